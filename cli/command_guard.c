@@ -248,6 +248,8 @@ static starg_status prepare(cli_session *session, void *data) {
     CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     CLI_TRY(announce_poses(session, v->poses_file));
+    v->scene.clearance = v->wanted.clearance;
+    memcpy(v->scene.up, v->wanted.visibility.up, sizeof v->scene.up);
     CLI_TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
         CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->poses));

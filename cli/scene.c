@@ -3,6 +3,8 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
 
@@ -18,8 +20,18 @@ starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene) {
     if (scene->cell > 0 && scene->from.count == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--cell is the size of cubes for --from X,Y,Z; add that point");
+    if ((scene->over != NULL) != (scene->height > 0))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        scene->over != NULL
+                            ? "--over needs to know how high guards may stand above "
+                              "the faces: add --height H"
+                            : "--height is a height above faces: add --over FACES");
+    if (scene->mount != NULL && !(scene->clearance > 0))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--mount needs to know how far from the faces guards hang: add --clearance "
+                        "D");
     if (scene->outside && scene->standoff.count == 0 && scene->within.count == 0 &&
-        session->command == &cli_command_guard)
+        scene->over == NULL && scene->mount == NULL && session->command == &cli_command_guard)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--outside needs to know how far guards may stand away: add --standoff "
                         "MIN,MAX or --within X0,Y0,Z0,X1,Y1,Z1");
@@ -30,7 +42,8 @@ done:
 static bool is_plain(const cli_scene *s) {
     return s->obstacles.count == 0 && s->orientation == STARG_ORIENTATION_NESTED && !s->outside &&
            s->standoff.count == 0 && s->within.count == 0 && s->see == NULL && s->ignore == NULL &&
-           s->weights == NULL && !s->soup && !s->two_sided && s->from.count == 0;
+           s->weights == NULL && !s->soup && !s->two_sided && s->from.count == 0 &&
+           s->over == NULL && s->mount == NULL;
 }
 
 static double diagonal(const starg_mesh *mesh) {
@@ -51,6 +64,11 @@ static void take_options(const cli_scene *s, const starg_mesh *model, starg_spac
         for (int k = 0; k < 3; k++)
             out->from[k] = last[k];
     }
+    out->height = s->height;
+    if (s->over != NULL)
+        memcpy(out->up, s->up, sizeof out->up);
+    if (s->mount != NULL) /* room for rounding, and for refinement */
+        out->mount_distance = 1.001 * s->clearance;
     if (s->standoff.count > 0) {
         const double *last = s->standoff.values + 2 * (s->standoff.count - 1);
         out->standoff_least = last[0];
@@ -81,18 +99,111 @@ void cli_scene_free_obstacles(starg_mesh **obstacles, size_t count) {
     free(obstacles);
 }
 
+/* ---- faces ---- */
+
+/* Numbers and ranges on the command line, such as 0-11,40. */
+static bool is_numbers(const char *word) {
+    return word[strspn(word, "0123456789,-")] == '\0' && word[0] != '-' && word[0] != '\0';
+}
+
+static starg_status take_numbers(cli_session *session, const char *word, size_t faces,
+                                 double **out) {
+    const char *at = word;
+    *out = calloc(faces + 1, sizeof **out);
+    if (*out == NULL)
+        return cli_fail_memory(session);
+    while (*at != '\0') {
+        char *end;
+        unsigned long long first = strtoull(at, &end, 10), last = first;
+        bool good = end != at;
+        if (good && *end == '-') {
+            at = end + 1;
+            last = strtoull(at, &end, 10);
+            good = end != at && last >= first;
+        }
+        if (!good || (*end != '\0' && (*end != ',' || end[1] == '\0')) || last >= faces)
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "'%.100s' is no list of faces of the model, which are 0 to %zu; write "
+                            "numbers and ranges, such as 0-11,40",
+                            word, faces - 1);
+        for (unsigned long long f = first; f <= last; f++)
+            (*out)[f] = 1;
+        at = *end == ',' ? end + 1 : end;
+    }
+    return STARG_OK;
+}
+
+/* Values by face from the library are copied, so that all are freed alike. */
+static starg_status keep_values(cli_session *session, double *values, size_t faces, double **out) {
+    *out = calloc(faces + 1, sizeof **out);
+    if (*out != NULL && values != NULL)
+        memcpy(*out, values, faces * sizeof **out);
+    starg_weights_free(session->context, values);
+    return *out != NULL ? STARG_OK : cli_fail_memory(session);
+}
+
+/* The values by face that a word says: a file, a list of numbers, or a name in the model. */
+static starg_status
+read_values(cli_session *session, const char *word, size_t faces,
+            starg_status (*read)(starg_context *, const char *, size_t, double **), double **out) {
+    starg_status status = STARG_OK;
+    double *values = NULL;
+    const char *model = session->operands[0];
+    bool file = strcmp(word, "-") == 0 || access(word, F_OK) == 0 || strpbrk(word, "/.") != NULL;
+    *out = NULL;
+    if (!file && is_numbers(word))
+        return take_numbers(session, word, faces, out);
+    if (!file && strcmp(model, "-") == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "there is no file '%.100s', and names in a model need its file, not "
+                        "standard input",
+                        word);
+    CLI_TRY(file ? read(session->context, word, faces, &values)
+                 : starg_faces_named(session->context, model, word, faces, &values));
+    status = keep_values(session, values, faces, out);
+done:
+    return status;
+}
+
 /* The weights that were asked for; NULL: none. */
 static starg_status read_weights(cli_session *session, const cli_scene *s, size_t faces,
                                  double **out) {
     starg_status status = STARG_OK;
+    const char *word = s->see != NULL ? s->see : s->ignore;
     *out = NULL;
     if (s->weights != NULL)
-        return starg_weights_read(session->context, s->weights, faces, out);
-    if (s->see == NULL && s->ignore == NULL)
+        return read_values(session, s->weights, faces, starg_weights_read, out);
+    if (word == NULL)
         return STARG_OK;
-    status = starg_faces_read(session->context, s->see != NULL ? s->see : s->ignore, faces, out);
-    for (size_t f = 0; status == STARG_OK && s->ignore != NULL && f < faces; f++)
-        (*out)[f] = 1 - (*out)[f];
+    status = read_values(session, word, faces, starg_faces_read, out);
+    for (size_t f = 0; status == STARG_OK && f < faces; f++)
+        (*out)[f] = ((*out)[f] != 0) == (s->ignore == NULL);
+    return status;
+}
+
+/* The faces that a word says, as an ascending list. */
+static starg_status read_list(cli_session *session, const char *option, const char *word,
+                              size_t faces, uint32_t **list, size_t *count) {
+    starg_status status = STARG_OK;
+    double *values = NULL;
+    *list = NULL;
+    *count = 0;
+    if (word == NULL)
+        return STARG_OK;
+    CLI_TRY(read_values(session, word, faces, starg_faces_read, &values));
+    *list = calloc(faces + 1, sizeof **list);
+    if (*list == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (size_t f = 0; f < faces; f++)
+        if (values[f] != 0)
+            (*list)[(*count)++] = (uint32_t)f;
+    if (*count == 0)
+        status = cli_fail(session, STARG_ERROR_ARGUMENT, "%s %.100s are no faces of the model",
+                          option, word);
+done:
+    free(values);
     return status;
 }
 
@@ -101,20 +212,28 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
     starg_space_options options;
     starg_mesh **obstacles = NULL;
     double *weights = NULL;
+    uint32_t *over = NULL, *mount = NULL;
+    size_t faces = starg_mesh_face_count(session->mesh);
     take_options(s, session->mesh, &options);
     if (is_plain(s)) {
         status = starg_solid_create(session->context, session->mesh, &session->solid);
         goto done;
     }
     CLI_TRY(read_obstacles(session, s->obstacles.values, s->obstacles.count, &obstacles));
-    CLI_TRY(read_weights(session, s, starg_mesh_face_count(session->mesh), &weights));
+    CLI_TRY(read_weights(session, s, faces, &weights));
+    CLI_TRY(read_list(session, "--over", s->over, faces, &over, &options.over_count));
+    CLI_TRY(read_list(session, "--mount", s->mount, faces, &mount, &options.mount_count));
+    options.over = over;
+    options.mount = mount;
     CLI_TRY(starg_space_create(session->context, session->mesh,
                                (const starg_mesh *const *)obstacles, s->obstacles.count, &options,
                                &session->solid));
     if (weights != NULL)
         CLI_TRY(starg_space_weigh(session->solid, weights));
 done:
-    starg_weights_free(session->context, weights);
+    free(weights);
+    free(over);
+    free(mount);
     cli_scene_free_obstacles(obstacles, s->obstacles.count);
     starg_mesh_free(session->mesh);
     session->mesh = NULL;

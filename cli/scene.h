@@ -14,7 +14,10 @@ typedef struct cli_scene {
     double cell;
     starg_places from;
     starg_places standoff, within;
-    const char *see, *ignore, *weights;
+    const char *see, *ignore, *weights, *over, *mount;
+    double height;
+    double clearance; /* of guards from where they are mounted, and what is up: from the other */
+    double up[3];     /* options of `guard` */
 } cli_scene;
 
 extern const char *const cli_orientation_words[];
@@ -35,14 +38,16 @@ extern const char *const cli_orientation_words[];
                     "seen from its front, where its corners turn counter-clockwise.")},            \
         {CLI_OPTION("two-sided", STARG_FIELD_FLAG, scene.two_sided, NULL,                          \
                     "--soup: faces are seen from either side.")},                                  \
-        CLI_INPUT_OPTION("see", scene.see, "FILE",                                                 \
-                         "Only these faces need to be seen: face numbers, from 0, in a text "      \
-                         "file."),                                                                 \
-        CLI_INPUT_OPTION("ignore", scene.ignore, "FILE",                                           \
-                         "All faces but these need to be seen: face numbers in a text file."),     \
-        CLI_INPUT_OPTION("weights", scene.weights, "FILE",                                         \
+        CLI_INPUT_OPTION("see", scene.see, "FACES",                                                \
+                         "Only these faces need to be seen: a text file of face numbers, from 0; " \
+                         "numbers, such as 0-11,40; or a name in the model: a group, an object "   \
+                         "or a material (OBJ), or a property of faces (PLY) that is not 0 there, " \
+                         "or has a value: NAME=VALUE."),                                           \
+        CLI_INPUT_OPTION("ignore", scene.ignore, "FACES", "All faces but these need to be seen."), \
+        CLI_INPUT_OPTION("weights", scene.weights, "FILE|PROPERTY",                                \
                          "How much each face matters: a number for each face of the model in a "   \
-                         "text file. Its area counts so many times; 0: need not be seen.")
+                         "text file, or a property of its faces (PLY). Its area counts so many "   \
+                         "times; 0: need not be seen.")
 
 /* Where guards may stand. */
 #define CLI_LIMIT_OPTIONS                                                                          \
@@ -57,7 +62,16 @@ extern const char *const cli_orientation_words[];
 
 /* The same for `guard`, which does not look from points. */
 #define CLI_PLACE_OPTIONS                                                                          \
-    CLI_LIMIT_OPTIONS, {                                                                           \
+    CLI_LIMIT_OPTIONS,                                                                             \
+        CLI_INPUT_OPTION("over", scene.over, "FACES",                                              \
+                         "Guards stand straight above one of these faces, as floors, at most "     \
+                         "--height high; faces as with --see. What is up says --up."),             \
+        CLI_POSITIVE_OPTION("height", scene.height, "H", 1e100, 0, NULL,                           \
+                            "--over: how high above them guards may stand."),                      \
+        CLI_INPUT_OPTION("mount", scene.mount, "FACES",                                            \
+                         "Guards hang at the distance --clearance from these faces only, as "      \
+                         "ceilings and masts; faces as with --see."),                              \
+    {                                                                                              \
         CLI_OPTION("from", STARG_FIELD_PLACES, scene.from, "X,Y,Z",                                \
                    "Guards stand where one gets from this point through cubes that no face "       \
                    "meets; their size is that of --cell."),                                        \

@@ -116,7 +116,7 @@ typedef struct starg_guards {
     starg_guard_options options;     /* as used; `points` is NULL                             */
 
     /* of a scene (starguard/space.h); the defaults and nothing for a plain solid */
-    starg_space_options space;
+    starg_space_options space; /* its lists belong to the result */
     size_t obstacle_count;
     starg_guard_obstacle *obstacles;
     size_t target_count; /* faces to be seen; 0: all                              */

@@ -42,6 +42,15 @@ typedef struct starg_space_options {
     double cell; /* above 0: guards stand where one gets from `from` through cubes of that size
                     that no face meets */
     double from[3];
+    uint32_t *over; /* over_count faces of the model, ascending: guards stand straight above
+                             one of them, at most `height` high; NULL: anywhere */
+    size_t over_count;
+    double height;
+    double up[3];    /* what is up there; 0, 0, 0: along y */
+    uint32_t *mount; /* mount_count faces, ascending: guards stand at most `mount_distance`
+                              from one of them; NULL: anywhere */
+    size_t mount_count;
+    double mount_distance;
 } starg_space_options;
 
 /* All zero: NESTED, inside, anywhere. */
@@ -50,8 +59,8 @@ STARG_API void starg_space_options_default(starg_space_options *options);
 /* Creates a scene from copies of a model and of obstacles, which may be none. A closed obstacle is
  * solid: its inside is not free. An open one blocks the view from both sides. Faces of obstacles
  * are not to be seen. Errors: those of starg_solid_create for the model; ARGUMENT (numbers out of
- * range; more than 2^30 cubes; `from` in a cube that a face meets; an obstacle that lies beyond the
- * bounding box of the model, by its index: not with `outside`). */
+ * range; more than 2^30 cubes; `from` in a cube that a face meets; faces that are not of the model;
+ * an obstacle that lies beyond the bounding box of the model, by its index: not with `outside`). */
 STARG_API starg_status starg_space_create(starg_context *context, const starg_mesh *model,
                                           const starg_mesh *const *obstacles, size_t obstacle_count,
                                           const starg_space_options *options, starg_solid **out);
@@ -68,6 +77,12 @@ STARG_API starg_status starg_faces_read(starg_context *context, const char *path
                                         double **weights);
 STARG_API starg_status starg_weights_read(starg_context *context, const char *path,
                                           size_t face_count, double **weights);
+/* The same for a name that the model's own file gives to faces: 1 for those of a group, an object
+ * or a material (OBJ), the values of a property of faces (PLY), or 1 where such a property has the
+ * value, for `name=value`. Errors: READ, ARGUMENT (no such name, with those that there are; another
+ * model), those of starg_mesh_read. */
+STARG_API starg_status starg_faces_named(starg_context *context, const char *model_file,
+                                         const char *name, size_t face_count, double **weights);
 STARG_API void starg_weights_free(starg_context *context, double *weights);
 
 /* Number of vertices and faces of the model: those before the obstacles' in the mesh. */

@@ -79,7 +79,9 @@ class Scene(Solid):
     the faces of the model count as they are turned. Guards of an `outside` keep the distances of
     `standoff` (least, most). A `soup` is any triangles, seen from their fronts. `within` is a box
     (lower and upper corner) for guards; `start` a point, with the size of cubes `cell`, from which
-    they can be reached. `weights` has a number for each face: how often its area counts.
+    they can be reached. With `over` (faces, height) they stand straight above one of these faces,
+    along `up` (by default y), with `mount` (faces, distance) no farther from one of them than that.
+    `weights` has a number for each face: how often its area counts.
 
     >>> import starguard
     >>> part = starguard.Scene(starguard.sample("torus", vertices=500), outside=True, standoff=(1, 4))
@@ -92,6 +94,8 @@ class Scene(Solid):
                  outside: bool = False, soup: bool = False,
                  standoff: tuple[float, float] | None = None, within: ArrayLike | None = None,
                  start: ArrayLike | None = None, cell: float | None = None,
+                 over: tuple[ArrayLike, float] | None = None, up: ArrayLike | None = None,
+                 mount: tuple[ArrayLike, float] | None = None,
                  weights: ArrayLike | None = None, threads: int | None = None,
                  progress: Progress | None = None) -> None:
         #: What is to be seen, and what stands in the way.
@@ -111,6 +115,16 @@ class Scene(Solid):
         if start is not None:
             options.cell = cell
             setattr(options, "from", _arrays.points(start, "start")[0].tolist())
+        lists = []  # alive until the call is over
+        for name, bound, distance in ("over", over, "height"), ("mount", mount, "mount_distance"):
+            if bound is not None:
+                faces = np.unique(np.asarray(bound[0])).astype(np.uint32)
+                lists.append(faces)
+                setattr(options, name, _arrays.pointer("uint32_t[]", faces))
+                setattr(options, name + "_count", len(faces))
+                setattr(options, distance, bound[1])
+        if up is not None:
+            options.up = _arrays.points(up, "up")[0].tolist()
         self._handle = session.make("starg_solid", lib.starg_solid_free, lib.starg_space_create,
                                     session.context, self.model._handle, self._pointers(),
                                     len(self.obstacles), options, progress=progress)

@@ -165,6 +165,8 @@ static bool is_default(const starg_field *f, const void *record) {
             same = same && value == 0;
         }
         return same;
+    case STARG_FIELD_INDICES:
+        return load_size(record, f->length) == 0;
     case STARG_FIELD_RECORD:
         for (size_t i = 0; i < f->of->count; i++)
             same = same && !is_written(&f->of->fields[i], at);

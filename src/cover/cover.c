@@ -73,30 +73,19 @@ done:
     return status;
 }
 
-/* The instance without dominated rows, for a partial target or a limit. */
-static starg_status reduce_rows(cover_run *run, const cover_instance *instance,
-                                cover_instance *rest) {
+/* For a partial target or a limit, the instance loses its dominated rows. */
+static starg_status solve_part(cover_run *run, cover_instance *instance, uint64_t goal, bool exact,
+                               cover_answer *answer) {
     starg_status status = STARG_OK;
-    STARG_TRY(cover_instance_select(instance, NULL, NULL, rest));
-    STARG_TRY(cover_reduce_partial(run, rest));
+    STARG_TRY(cover_reduce_partial(run, instance));
+    STARG_TRY(cover_solve_partial(run, instance, goal, exact, answer));
 done:
-    return status;
-}
-
-static starg_status solve_part(cover_run *run, const cover_instance *instance, uint64_t goal,
-                               bool exact, cover_answer *answer) {
-    starg_status status = STARG_OK;
-    cover_instance rest = {.context = run->context};
-    STARG_TRY(reduce_rows(run, instance, &rest));
-    STARG_TRY(cover_solve_partial(run, &rest, goal, exact, answer));
-done:
-    cover_instance_free(&rest);
     return status;
 }
 
 /* The fewest rows for the goal, ignoring max_rows. */
-static starg_status solve_goal(cover_run *run, const cover_instance *instance, uint64_t goal,
-                               bool exact, cover_answer *answer) {
+static starg_status solve_goal(cover_run *run, cover_instance *instance, uint64_t goal, bool exact,
+                               cover_answer *answer) {
     if (goal == 0)
         return STARG_OK;
     if (goal == instance->total)
@@ -105,14 +94,13 @@ static starg_status solve_goal(cover_run *run, const cover_instance *instance, u
 }
 
 /* The most weight with `limit` rows, if the goal takes more. */
-static starg_status solve_limit(cover_run *run, const cover_instance *instance, size_t limit,
+static starg_status solve_limit(cover_run *run, cover_instance *instance, size_t limit,
                                 uint64_t goal, bool exact, cover_answer *answer, uint64_t *most) {
     starg_status status = STARG_OK;
-    cover_instance rest = {.context = run->context};
     cover_answer limited = {0};
     bool unreachable = answer->lower_bound > limit;
-    STARG_TRY(reduce_rows(run, instance, &rest));
-    STARG_TRY(cover_solve_limited(run, &rest, limit, goal, exact, &limited, most));
+    STARG_TRY(cover_reduce_partial(run, instance));
+    STARG_TRY(cover_solve_limited(run, instance, limit, goal, exact, &limited, most));
     if (unreachable && *most >= goal)
         *most = goal - 1;
     if (limited.weight >= goal && limited.lower_bound < answer->lower_bound)
@@ -122,7 +110,6 @@ static starg_status solve_limit(cover_run *run, const cover_instance *instance, 
     limited = (cover_answer){0};
 done:
     STARG_ARRAY_FREE(run->context, &limited.rows);
-    cover_instance_free(&rest);
     return status;
 }
 
@@ -135,8 +122,10 @@ static starg_status order_rows(cover_run *run, const cover_instance *instance,
     cover_instance chosen = {.context = context};
     cover_state state = {0};
     STARG_NEW_ZERO(context, "cover", mask, instance->column_words);
-    for (size_t i = 0; i < names->count; i++)
-        starg_bit_set(mask, names->data[i]); /* the full instance holds all rows: name = index */
+    for (size_t row = 0; row < instance->rows; row++)
+        for (size_t i = 0; i < names->count; i++)
+            if (instance->row_names[row] == names->data[i])
+                starg_bit_set(mask, row);
     STARG_TRY(cover_instance_select(instance, mask, NULL, &chosen));
     STARG_TRY(cover_state_create(&chosen, &state));
     STARG_TRY(cover_greedy(run, &state, UINT64_MAX, chosen.rows));

@@ -42,6 +42,7 @@ void cover_mask_fill(uint64_t *mask, size_t count) {
 
 void cover_instance_free(cover_instance *instance) {
     starg_release(instance->context, instance->row_bits);
+    starg_release(instance->context, instance->row_used);
     starg_release(instance->context, instance->column_bits);
     starg_release(instance->context, instance->weights);
     starg_release(instance->context, instance->demands);
@@ -58,15 +59,17 @@ static starg_status shape(starg_context *context, size_t rows, size_t columns,
                             .rows = rows,
                             .columns = columns,
                             .row_words = starg_bit_words(columns),
+                            .used_words = starg_bit_words(starg_bit_words(columns)),
                             .column_words = starg_bit_words(rows)};
     STARG_NEW(context, "cover", out->weights, columns);
     STARG_NEW(context, "cover", out->demands, columns);
     STARG_NEW(context, "cover", out->row_names, rows);
     STARG_NEW(context, "cover", out->column_names, columns);
     out->row_bits = starg_allocate(context, rows, out->row_words * sizeof *out->row_bits);
+    out->row_used = starg_allocate_zero(context, rows, out->used_words * sizeof *out->row_used);
     out->column_bits =
         starg_allocate(context, columns, out->column_words * sizeof *out->column_bits);
-    if (out->row_bits == NULL || out->column_bits == NULL)
+    if (out->row_bits == NULL || out->row_used == NULL || out->column_bits == NULL)
         status = starg_fail_memory(context, "cover");
 done:
     if (status != STARG_OK)
@@ -88,57 +91,99 @@ done:
     return status;
 }
 
+static void copy_words(uint64_t *to, const uint64_t *from, size_t count) {
+    if (count != 0)
+        memcpy(to, from, count * sizeof *to);
+}
+
+/* Notes which words of the rows hold bits. */
+static void mark_used(cover_instance *instance) {
+    for (size_t i = 0; i < instance->rows; i++)
+        for (size_t w = 0; w < instance->row_words; w++)
+            if (cover_row(instance, i)[w] != 0)
+                starg_bit_set(instance->row_used + i * instance->used_words, w);
+}
+
+/* The kept columns, of all rows. */
+static starg_status select_columns(const cover_instance *from, const uint64_t *columns,
+                                   cover_instance *out) {
+    starg_status status = STARG_OK;
+    uint32_t *kept = NULL;
+    size_t count, words = from->column_words;
+    STARG_TRY(list_kept(from->context, columns, from->columns, &kept, &count));
+    STARG_TRY(shape(from->context, from->rows, count, out));
+    for (size_t j = 0; j < count; j++) {
+        copy_words(out->column_bits + j * words, cover_column(from, kept[j]), words);
+        out->weights[j] = from->weights[kept[j]];
+        out->demands[j] = from->demands[kept[j]];
+        out->column_names[j] = from->column_names[kept[j]];
+        out->total += out->weights[j];
+    }
+    transpose(out->column_bits, count, from->rows, words, out->row_bits, out->row_words);
+    memcpy(out->row_names, from->row_names, from->rows * sizeof *out->row_names);
+done:
+    starg_release(from->context, kept);
+    return status;
+}
+
+starg_status cover_instance_keep_rows(cover_instance *instance, const uint64_t *rows) {
+    starg_status status = STARG_OK;
+    uint32_t *kept = NULL;
+    size_t count, words = instance->row_words, used = instance->used_words;
+    STARG_TRY(list_kept(instance->context, rows, instance->rows, &kept, &count));
+    for (size_t i = 0; i < count; i++) {
+        if (words != 0) {
+            memmove(instance->row_bits + i * words, instance->row_bits + kept[i] * words,
+                    words * sizeof *instance->row_bits);
+            memmove(instance->row_used + i * used, instance->row_used + kept[i] * used,
+                    used * sizeof *instance->row_used);
+        }
+        instance->row_names[i] = instance->row_names[kept[i]];
+    }
+    instance->rows = count;
+    instance->column_words = starg_bit_words(count);
+    transpose(instance->row_bits, count, instance->columns, words, instance->column_bits,
+              instance->column_words);
+done:
+    starg_release(instance->context, kept);
+    return status;
+}
+
 starg_status cover_instance_select(const cover_instance *from, const uint64_t *rows,
                                    const uint64_t *columns, cover_instance *out) {
     starg_status status = STARG_OK;
-    starg_context *context = from->context;
-    uint32_t *kept_rows = NULL, *kept_columns = NULL;
-    uint64_t *tall = NULL, *wide = NULL; /* the kept columns, with all rows: by column, by row */
-    size_t row_count, column_count;
-    *out = (cover_instance){.context = context};
-    STARG_TRY(list_kept(context, rows, from->rows, &kept_rows, &row_count));
-    STARG_TRY(list_kept(context, columns, from->columns, &kept_columns, &column_count));
-    STARG_TRY(shape(context, row_count, column_count, out));
-
-    STARG_NEW(context, "cover", tall, column_count * from->column_words);
-    for (size_t j = 0; j < column_count; j++) {
-        if (from->column_words != 0)
-            memcpy(tall + j * from->column_words, cover_column(from, kept_columns[j]),
-                   from->column_words * sizeof *tall);
-        out->weights[j] = from->weights[kept_columns[j]];
-        out->demands[j] = from->demands[kept_columns[j]];
-        out->column_names[j] = from->column_names[kept_columns[j]];
-        out->total += out->weights[j];
-    }
-    STARG_NEW(context, "cover", wide, from->rows * out->row_words);
-    transpose(tall, column_count, from->rows, from->column_words, wide, out->row_words);
-    for (size_t i = 0; i < row_count; i++) {
-        if (out->row_words != 0)
-            memcpy(out->row_bits + i * out->row_words, wide + kept_rows[i] * out->row_words,
-                   out->row_words * sizeof *wide);
-        out->row_names[i] = from->row_names[kept_rows[i]];
-    }
-    transpose(out->row_bits, row_count, column_count, out->row_words, out->column_bits,
-              out->column_words);
+    *out = (cover_instance){.context = from->context};
+    STARG_TRY(select_columns(from, columns, out));
+    if (rows != NULL)
+        STARG_TRY(cover_instance_keep_rows(out, rows));
+    mark_used(out);
 done:
-    starg_release(context, kept_rows);
-    starg_release(context, kept_columns);
-    starg_release(context, tall);
-    starg_release(context, wide);
     if (status != STARG_OK)
         cover_instance_free(out);
     return status;
 }
 
-/* The caller's matrix as an instance, unchanged. */
+/* The number of columns up to the last one that some row holds. In scenes the faces of the model,
+ * which are to be seen, come first, and what follows is as much again. */
+static size_t count_held(const starg_bits *bits) {
+    size_t words = bits->words;
+    for (bool any = false; words > 0 && !any;) {
+        for (size_t i = 0; i < bits->rows && !any; i++)
+            any = starg_bits_row(bits, i)[words - 1] != 0;
+        words -= !any;
+    }
+    return 64 * words < bits->columns ? 64 * words : bits->columns;
+}
+
+/* The caller's matrix as an instance, without columns behind the last one in use. */
 static starg_status import(starg_context *context, const starg_cover_problem *problem,
                            cover_instance *out) {
     const starg_bits *bits = problem->rows;
-    starg_status status = shape(context, bits->rows, bits->columns, out);
+    starg_status status = shape(context, bits->rows, count_held(bits), out);
     if (status != STARG_OK)
         return status;
-    if (bits->rows * bits->words != 0)
-        memcpy(out->row_bits, bits->data, bits->rows * bits->words * sizeof *bits->data);
+    for (size_t i = 0; i < bits->rows; i++)
+        copy_words(out->row_bits + i * out->row_words, starg_bits_row(bits, i), out->row_words);
     transpose(out->row_bits, out->rows, out->columns, out->row_words, out->column_bits,
               out->column_words);
     for (size_t i = 0; i < out->rows; i++)
@@ -257,6 +302,8 @@ starg_status cover_instance_build(starg_context *context, const starg_cover_prob
     take_given(problem, &all, given);
     STARG_NEW_ZERO(context, "cover", keep, all.row_words);
     STARG_TRY(merge_columns(&all, keep));
+    starg_release(context, all.row_bits); /* what follows takes the columns */
+    all.row_bits = NULL;
     STARG_TRY(cover_instance_select(&all, NULL, keep, out));
 done:
     starg_release(context, keep);

@@ -21,7 +21,9 @@ typedef struct cover_instance {
     size_t rows, columns;
     size_t row_words;    /* words per row: one bit per column */
     size_t column_words; /* words per column: one bit per row */
+    size_t used_words;   /* words per row of row_used: one bit per word of the row */
     uint64_t *row_bits, *column_bits;
+    uint64_t *row_used;     /* the words of a row that may hold bits: of large scenes, few */
     uint64_t *weights;      /* per column, positive; their sum is below 2^62 */
     uint32_t *demands;      /* per column, 1 to the number of its rows (before rows are dropped) */
     uint32_t *row_names;    /* per row: its index in the caller's matrix */
@@ -46,6 +48,14 @@ static inline const uint64_t *cover_row(const cover_instance *instance, size_t r
     return instance->row_bits + row * instance->row_words;
 }
 
+/* Runs the body with W = index of each word of a row that may hold bits. */
+#define COVER_FOR_WORDS(W, INSTANCE, ROW)                                                          \
+    for (size_t used_ = 0; used_ < (INSTANCE)->used_words; used_++)                                \
+        for (uint64_t words_ = (INSTANCE)->row_used[(ROW) * (INSTANCE)->used_words + used_],       \
+                      W = 0;                                                                       \
+             words_ != 0 && (W = 64 * used_ + (uint64_t)starg_bit_lowest(words_), 1);              \
+             words_ &= words_ - 1)
+
 static inline const uint64_t *cover_column(const cover_instance *instance, size_t column) {
     return instance->column_bits + column * instance->column_words;
 }
@@ -66,6 +76,9 @@ starg_status cover_instance_build(starg_context *context, const starg_cover_prob
  * same. Errors: MEMORY. */
 starg_status cover_instance_select(const cover_instance *from, const uint64_t *rows,
                                    const uint64_t *columns, cover_instance *out);
+
+/* Leaves the rows set in the mask, in place. Errors: MEMORY, which leaves all. */
+starg_status cover_instance_keep_rows(cover_instance *instance, const uint64_t *rows);
 
 /* Frees the arrays and empties the instance; a zeroed one is allowed. */
 void cover_instance_free(cover_instance *instance);

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A partial target, or a limit on the rows: bounds by weight_bound.h and the linear relaxation
  * (weight_relax.c), exact search by search.h. The fewest rows for a target are found by testing
- * each number of rows from the bound upwards. */
+ * each number of rows from the bound upwards, unless the matrix is so large that the search would
+ * end in its first nodes. */
 #include "cover/solve.h"
 
 #include "cover/greedy.h"
 #include "cover/search.h"
+
+/* More bits are not searched. */
+static const double MOST_SEARCHED = 0x1p28;
 
 /* A good choice of few rows that reach the goal, by greedy, removal and swaps. */
 static starg_status find_first_choice(cover_run *run, cover_state *choice, uint64_t goal) {
@@ -65,7 +69,7 @@ starg_status cover_solve_partial(cover_run *run, const cover_instance *instance,
     STARG_TRY(find_first_choice(run, &choice, goal));
     STARG_TRY(cover_weight_bound_create(instance, choice.count - 1, goal, &bound));
     STARG_TRY(cover_weight_bound_relax(run, instance, true, choice.count, &bound));
-    if (exact)
+    if (exact && (double)instance->rows * (double)instance->columns <= MOST_SEARCHED)
         STARG_TRY(close_gap(run, instance, &bound, &choice));
     answer->lower_bound = bound.least;
     STARG_TRY(cover_state_names(&choice, &answer->rows));

@@ -311,7 +311,7 @@ static starg_status apply_row_dominance(cover_run *run, cover_instance *instance
     cover_mask_fill(rows, instance->rows);
     STARG_TRY(cover_drop_dominated_rows(run, instance, rows, &dropped));
     if (dropped != 0) {
-        STARG_TRY(replace_by_part(instance, rows, NULL));
+        STARG_TRY(cover_instance_keep_rows(instance, rows));
         *changed = true;
     }
 done:

@@ -108,13 +108,12 @@ void cover_state_remove(cover_state *state, size_t position) {
     }
 }
 
-uint64_t cover_weight_of(const cover_instance *instance, const uint64_t *row,
-                         const uint64_t *mask) {
+uint64_t cover_weight_of(const cover_instance *instance, size_t row, const uint64_t *mask) {
+    const uint64_t *bits = cover_row(instance, row);
     uint64_t sum = 0;
-    for (size_t w = 0; w < instance->row_words; w++) {
-        STARG_FOR_BITS (bit, row[w] & mask[w])
-            sum += instance->weights[64 * w + bit];
-    }
+    COVER_FOR_WORDS(w, instance, row)
+    STARG_FOR_BITS (bit, bits[w] & mask[w])
+        sum += instance->weights[64 * w + bit];
     return sum;
 }
 

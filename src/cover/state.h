@@ -29,22 +29,22 @@ void cover_state_add(cover_state *state, size_t row);
 void cover_state_remove(cover_state *state,
                         size_t position); /* index into `rows`; the last one moves there */
 
-/* Sum of the weights of the columns in both. */
-uint64_t cover_weight_of(const cover_instance *instance, const uint64_t *row, const uint64_t *mask);
+/* Sum of the weights of the columns of a row that are in the mask. */
+uint64_t cover_weight_of(const cover_instance *instance, size_t row, const uint64_t *mask);
 
 /* Weight of the columns of a row that still lack rows: never grows while rows are added. */
 static inline uint64_t cover_state_need(const cover_state *state, size_t row) {
-    return cover_weight_of(state->instance, cover_row(state->instance, row), state->open);
+    return cover_weight_of(state->instance, row, state->open);
 }
 
 /* Weight that adding a row would cover at once. */
 static inline uint64_t cover_state_gain(const cover_state *state, size_t row) {
-    return cover_weight_of(state->instance, cover_row(state->instance, row), state->last);
+    return cover_weight_of(state->instance, row, state->last);
 }
 
 /* Weight that removing a chosen row would uncover. */
 static inline uint64_t cover_state_loss(const cover_state *state, size_t row) {
-    return cover_weight_of(state->instance, cover_row(state->instance, row), state->exact);
+    return cover_weight_of(state->instance, row, state->exact);
 }
 
 /* Replaces `names` by the names of the chosen rows. Errors: MEMORY. */

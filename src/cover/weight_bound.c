@@ -20,13 +20,11 @@ void cover_sort_scores(cover_score *scores, size_t count) {
 /* Sum of the multipliers of a row's columns. Columns seen from one point are contiguous, so most
  * words are empty or full; for a nearly full word, the missing columns are subtracted. */
 static uint64_t row_sum(const cover_instance *instance, const cover_weight_bound *bound,
-                        const uint64_t *row) {
+                        size_t row) {
     uint64_t sum = 0;
-    for (size_t w = 0; w < instance->row_words; w++) {
+    COVER_FOR_WORDS(w, instance, row) {
         const uint64_t *trial = bound->trial + 64 * w;
-        uint64_t word = row[w];
-        if (word == 0)
-            continue;
+        uint64_t word = cover_row(instance, row)[w];
         if (starg_bit_count(&word, 1) <= 32 || instance->columns - 64 * w < 64) {
             STARG_FOR_BITS (bit, word)
                 sum += trial[bit];
@@ -48,8 +46,7 @@ static cover_wide evaluate(const cover_instance *instance, cover_weight_bound *b
         bound->word_sums[j / 64] += bound->trial[j];
     }
     for (size_t i = 0; i < instance->rows; i++)
-        bound->scores[i] =
-            (cover_score){row_sum(instance, bound, cover_row(instance, i)), (uint32_t)i};
+        bound->scores[i] = (cover_score){row_sum(instance, bound, i), (uint32_t)i};
     cover_sort_scores(bound->scores, instance->rows);
     return kept;
 }

@@ -16,8 +16,14 @@ typedef struct scene_job {
     size_t model_vertices, model_faces, guards, nodes, edges; /* 0 where the part is not shown */
 } scene_job;
 
-enum { SCENE_PARTS = 4 };
-typedef enum scene_part { SCENE_MODEL, SCENE_PIECE, SCENE_GUARD, SCENE_SKELETON } scene_part;
+enum { SCENE_PARTS = 5 };
+typedef enum scene_part {
+    SCENE_MODEL,
+    SCENE_PIECE,
+    SCENE_GUARD,
+    SCENE_SKELETON,
+    SCENE_VIEW
+} scene_part;
 
 extern const uint8_t SCENE_NEUTRAL[3], SCENE_UNSEEN[3], SCENE_CURVE[3];
 
@@ -36,6 +42,14 @@ typedef struct scene_ball {
 void scene_ball_make(scene_ball *ball);
 /* The radius that balls are given. */
 double scene_ball_radius(const scene_job *job);
+
+/* Views of guards that look one way (export/scene_view.c): triangles from the guard to a rim. The
+ * number of sides of each, 0 where guards look all around; corner 0 is the guard, the others follow
+ * around the rim; the corners of a face, counted over all guards, with `sides` + 1 corners each. */
+enum { VIEW_FRAME = 4, VIEW_SIDES = 24 };
+size_t scene_view_sides(const scene_job *job);
+void scene_view_corner(const scene_job *job, size_t guard, size_t corner, double p[3]);
+void scene_view_face(const scene_job *job, size_t face, uint32_t corners[3]);
 
 /* One writer for each format. */
 starg_status scene_write_glb(starg_context *context, const scene_job *job, const char *path);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as binary PLY: faces in the colours of guards and pieces, edges for the skeleton. The
- * vertices of the parts follow one another: model, surfaces of pieces, balls for guards, nodes. */
+ * vertices of the parts follow one another: model, surfaces of pieces, balls for guards, views of
+ * those that look one way, nodes. */
 #include "core/file.h"
 #include "core/memory.h"
 #include "export/little.h"
@@ -13,13 +14,14 @@ typedef struct ply_scene {
     const scene_job *job;
     scene_ball ball;
     size_t piece_faces;
+    size_t view_sides, view_corners; /* of a guard */
 } ply_scene;
 
 static void put_header(FILE *stream, const ply_scene *s) {
     const scene_job *job = s->job;
-    size_t vertices =
-        job->model_vertices + job->surfaces.vertex_count + job->guards * BALL_VERTICES + job->nodes;
-    size_t faces = job->model_faces + s->piece_faces + job->guards * BALL_FACES;
+    size_t vertices = job->model_vertices + job->surfaces.vertex_count +
+                      job->guards * (BALL_VERTICES + s->view_corners) + job->nodes;
+    size_t faces = job->model_faces + s->piece_faces + job->guards * (BALL_FACES + s->view_sides);
     fprintf(stream,
             "ply\nformat binary_little_endian 1.0\n"
             "element vertex %zu\nproperty double x\nproperty double y\nproperty double z\n"
@@ -55,6 +57,11 @@ static void put_vertices(FILE *stream, const ply_scene *s) {
         put_points(stream, scene_piece_vertex(job, i), 1);
     for (size_t g = 0; g < job->guards; g++)
         put_ball(stream, s, job->scene->guards->positions + 3 * g);
+    for (size_t i = 0; i < job->guards * s->view_corners; i++) {
+        double p[3];
+        scene_view_corner(job, i / s->view_corners, i % s->view_corners, p);
+        put_points(stream, p, 1);
+    }
     if (job->nodes > 0)
         put_points(stream, job->scene->skeleton->positions, job->nodes);
 }
@@ -88,12 +95,18 @@ static void put_faces(FILE *stream, const ply_scene *s) {
         for (size_t f = 0; f < BALL_FACES; f++)
             put_face(stream, s->ball.faces + 3 * f, base, rgb);
     }
+    for (size_t f = 0; f < job->guards * s->view_sides; f++) {
+        uint32_t corners[3];
+        scene_view_face(job, f, corners);
+        starg_distinct_color(f / s->view_sides, rgb);
+        put_face(stream, corners, base, rgb);
+    }
 }
 
 static void put_edges(FILE *stream, const ply_scene *s) {
     const scene_job *job = s->job;
-    size_t base =
-        job->model_vertices + job->surfaces.vertex_count + job->guards * (size_t)BALL_VERTICES;
+    size_t base = job->model_vertices + job->surfaces.vertex_count +
+                  job->guards * (BALL_VERTICES + s->view_corners);
     for (size_t i = 0; i < job->edges; i++) {
         const uint32_t *ends = job->scene->skeleton->edges + 2 * i;
         little_put_word(stream, (uint32_t)(base + ends[0]));
@@ -110,6 +123,8 @@ starg_status scene_write_ply(starg_context *context, const scene_job *job, const
     if (pieces->piece_count > 0)
         s.piece_faces = pieces->first_face[pieces->piece_count];
     scene_ball_make(&s.ball);
+    s.view_sides = scene_view_sides(job);
+    s.view_corners = s.view_sides > 0 ? s.view_sides + 1 : 0;
     STARG_TRY(starg_output_open(context, STAGE, path, &output));
     put_header(output.stream, &s);
     put_vertices(output.stream, &s);

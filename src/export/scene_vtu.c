@@ -3,8 +3,9 @@
  * tell apart. The numbers are appended raw behind the XML, as VTK's own writer does by default:
  * each array is 8 bytes of length and its numbers, little endian.
  *
- * Points: vertices of the model, of the tetrahedra, guards, nodes. Cells: faces of the model (5),
- * tetrahedra (10), guards (1), edges of the skeleton (3), in this order. */
+ * Points: vertices of the model, of the tetrahedra, guards, nodes, corners of views. Cells: faces
+ * of the model (5), tetrahedra (10), guards (1), edges of the skeleton (3), sides of views (5), in
+ * this order. */
 #include "core/file.h"
 #include "core/memory.h"
 #include "export/little.h"
@@ -21,13 +22,14 @@ typedef struct vtu_part {
     size_t corners;       /* of a cell */
     size_t count;         /* of cells  */
     size_t base;          /* the first point */
-    const uint32_t *ends; /* corners of the cells from there; NULL: cell i is point i */
+    const uint32_t *ends; /* corners of the cells from there; NULL: cell i is point i, or views */
 } vtu_part;
 
 typedef struct vtu_scene {
     const scene_job *job;
     vtu_part parts[SCENE_PARTS];
     size_t points, cells, corners;
+    size_t view_sides; /* of a guard */
 } vtu_scene;
 
 /* A skeleton without edges is shown by its nodes. */
@@ -54,7 +56,10 @@ static vtu_scene lay_out(const scene_job *job) {
     s.parts[2] = (vtu_part){SCENE_GUARD, VTK_POINT, 1, job->guards, base, NULL};
     base += job->guards;
     s.parts[3] = skeleton_part(job, base);
-    s.points = base + job->nodes;
+    base += job->nodes;
+    s.view_sides = scene_view_sides(job);
+    s.parts[4] = (vtu_part){SCENE_VIEW, VTK_TRIANGLE, 3, s.view_sides * job->guards, base, NULL};
+    s.points = base + (s.view_sides > 0 ? (s.view_sides + 1) * job->guards : 0);
     for (int p = 0; p < SCENE_PARTS; p++) {
         s.cells += s.parts[p].count;
         s.corners += s.parts[p].count * s.parts[p].corners;
@@ -82,20 +87,39 @@ static void put_points(FILE *stream, const vtu_scene *s) {
         put_doubles(stream, scene->guards->positions, 3 * s->job->guards);
     if (scene->skeleton != NULL)
         put_doubles(stream, scene->skeleton->positions, 3 * s->job->nodes);
+    for (size_t g = 0; s->view_sides > 0 && g < s->job->guards; g++)
+        for (size_t k = 0; k <= s->view_sides; k++) {
+            double p[3];
+            scene_view_corner(s->job, g, k, p);
+            put_doubles(stream, p, 3);
+        }
 }
 
 static void put_radii(FILE *stream, const vtu_scene *s) {
     const starg_skeleton *skeleton = s->job->scene->skeleton;
-    for (size_t i = 0; i < s->points - s->job->nodes; i++)
-        little_put_double(stream, 0);
-    for (size_t i = 0; i < s->job->nodes; i++)
-        little_put_double(stream, skeleton->radii != NULL ? skeleton->radii[i] : 0);
+    size_t nodes = s->parts[SCENE_VIEW].base; /* where they end */
+    for (size_t i = 0; i < s->points; i++) {
+        bool node = i >= nodes - s->job->nodes && i < nodes;
+        little_put_double(stream, node && skeleton->radii != NULL
+                                      ? skeleton->radii[i - (nodes - s->job->nodes)]
+                                      : 0);
+    }
+}
+
+static void put_view_corners(FILE *stream, const vtu_scene *s, const vtu_part *part) {
+    for (size_t i = 0; i < part->count; i++) {
+        uint32_t corners[3];
+        scene_view_face(s->job, i, corners);
+        for (int k = 0; k < 3; k++)
+            little_put_long(stream, part->base + corners[k]);
+    }
 }
 
 static void put_connectivity(FILE *stream, const vtu_scene *s) {
-    for (const vtu_part *part = s->parts; part < s->parts + SCENE_PARTS; part++)
+    for (const vtu_part *part = s->parts; part < s->parts + SCENE_VIEW; part++)
         for (size_t i = 0; i < part->count * part->corners; i++)
             little_put_long(stream, part->base + (part->ends != NULL ? part->ends[i] : i));
+    put_view_corners(stream, s, &s->parts[SCENE_VIEW]);
 }
 
 static void put_offsets(FILE *stream, const vtu_scene *s) {
@@ -126,13 +150,15 @@ static void put_pieces(FILE *stream, const vtu_scene *s) {
                                         : UINT32_MAX);
 }
 
-/* Of a face the first guard that sees it, of a guard its number, else -1. */
+/* Of a face the first guard that sees it, of a guard and its view its number, else -1. */
 static void put_guards(FILE *stream, const vtu_scene *s) {
     for (const vtu_part *part = s->parts; part < s->parts + SCENE_PARTS; part++)
         for (size_t i = 0; i < part->count; i++) {
             uint32_t guard = UINT32_MAX;
             if (part->part == SCENE_GUARD)
                 guard = (uint32_t)i;
+            else if (part->part == SCENE_VIEW)
+                guard = (uint32_t)(i / s->view_sides);
             else if (part->part == SCENE_MODEL && s->job->viewer != NULL)
                 guard = (uint32_t)s->job->viewer[i];
             little_put_word(stream, guard);

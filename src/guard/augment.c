@@ -148,31 +148,79 @@ static size_t pick_faces(const augmentation *all, const uint8_t *unseen, size_t 
     return picked;
 }
 
+static void free_job(starg_context *context, augmentation_job *job) {
+    scene_free(job->scene);
+    starg_release(context, job->rank_of);
+    starg_release(context, job->faces);
+    starg_release(context, job->found);
+}
+
+/* Prepares for up to `most` faces at a time. */
+static starg_status make_job(starg_context *context, const augmentation *all, size_t most,
+                             augmentation_job *job) {
+    starg_status status = STARG_OK;
+    size_t face_count = all->solid->mesh->face_count;
+    *job = (augmentation_job){.all = all};
+    STARG_TRY(scene_create(context, all->solid, &job->scene));
+    STARG_NEW(context, STAGE, job->rank_of, face_count);
+    STARG_NEW(context, STAGE, job->faces, most);
+    STARG_NEW(context, STAGE, job->found, most);
+    for (size_t rank = 0; rank < face_count; rank++)
+        job->rank_of[job->scene->face_of[rank]] = (uint32_t)rank;
+done:
+    return status;
+}
+
+static starg_status try_faces(starg_context *context, augmentation_job *job, size_t count) {
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = count, .shared = job, .item = augment_face};
+    return starg_parallel_in_time(context, &loop);
+}
+
 starg_status augment_candidates(starg_context *context, const augmentation *all,
                                 const uint8_t *unseen, candidate_points *points, bool *pending) {
     starg_status status = STARG_OK;
-    augmentation_job job = {.all = all};
-    size_t face_count = all->solid->mesh->face_count;
+    augmentation_job job;
     bool looks = sensor_is_directed(all->visibility);
-    STARG_TRY(scene_create(context, all->solid, &job.scene));
-    STARG_NEW(context, STAGE, job.rank_of, face_count);
-    STARG_NEW(context, STAGE, job.faces, BATCH);
-    STARG_NEW(context, STAGE, job.found, BATCH);
-    for (size_t rank = 0; rank < face_count; rank++)
-        job.rank_of[job.scene->face_of[rank]] = (uint32_t)rank;
-    size_t count = pick_faces(all, unseen, face_count, job.faces);
-    starg_parallel_loop loop = {
-        .stage = STAGE, .count = count, .shared = &job, .item = augment_face};
-    STARG_TRY(starg_parallel_in_time(context, &loop));
+    STARG_TRY(make_job(context, all, BATCH, &job));
+    size_t count = pick_faces(all, unseen, all->solid->mesh->face_count, job.faces);
+    STARG_TRY(try_faces(context, &job, count));
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < job.found[i].count; k++)
             STARG_TRY(candidates_push(context, points, job.found[i].p[k],
                                       looks ? job.found[i].direction[k] : NULL));
     *pending = count > 0;
 done:
-    scene_free(job.scene);
-    starg_release(context, job.rank_of);
-    starg_release(context, job.faces);
-    starg_release(context, job.found);
+    free_job(context, &job);
     return status;
+}
+
+starg_status augment_test(starg_context *context, const augmentation *all, const uint8_t *unseen,
+                          augmentation_finds *out) {
+    starg_status status = STARG_OK;
+    augmentation_job job;
+    size_t face_count = all->solid->mesh->face_count, count = 0;
+    bool looks = sensor_is_directed(all->visibility);
+    *out = (augmentation_finds){0};
+    STARG_TRY(make_job(context, all, face_count, &job));
+    for (size_t f = 0; f < face_count; f++)
+        if (unseen[f])
+            job.faces[count++] = (uint32_t)f;
+    STARG_TRY(try_faces(context, &job, count));
+    for (size_t i = 0; i < count; i++) {
+        int last = job.found[i].count - 1; /* the deepest */
+        if (last < 0)
+            continue;
+        STARG_PUSH(context, STAGE, &out->faces, job.faces[i]);
+        STARG_TRY(candidates_push(context, &out->poses, job.found[i].p[last],
+                                  looks ? job.found[i].direction[last] : NULL));
+    }
+done:
+    free_job(context, &job);
+    return status;
+}
+
+void augment_finds_free(starg_context *context, augmentation_finds *finds) {
+    candidates_free(context, &finds->poses);
+    STARG_ARRAY_FREE(context, &finds->faces);
 }

@@ -187,6 +187,8 @@ static starg_candidates source_in(const starg_solid *solid, starg_candidates wan
 
 static starg_status find(starg_context *context, const candidate_shape *shape,
                          starg_candidates source, size_t wanted, candidate_points *points) {
+    if (shape->solid->over.count > 0 || shape->solid->mount.count > 0)
+        return near_candidates(context, shape, wanted, points);
     source = source_in(shape->solid, source);
     if (source == STARG_CANDIDATES_SKELETON)
         return skeletal_candidates(context, shape, wanted, points);

@@ -46,6 +46,10 @@ typedef struct candidate_shape {
 starg_status candidates_check(starg_context *context, starg_candidates source, size_t wanted,
                               double clearance);
 
+/* The same where guards are bound to faces (guard/near_candidates.c). */
+starg_status near_candidates(starg_context *context, const candidate_shape *shape, size_t wanted,
+                             candidate_points *points);
+
 /* Adds about `wanted` points of a source, all allowed. Errors: MEMORY, CANCELLED, TIME. */
 starg_status candidates_find(starg_context *context, const candidate_shape *shape,
                              starg_candidates source, size_t wanted, candidate_points *points);
@@ -60,6 +64,18 @@ typedef struct augmentation {
     double clearance;
     uint8_t *tried; /* per face: points were already tried */
 } augmentation;
+
+/* Tries all these faces at once. Those that some point sees are listed, with the deepest such point
+ * of each, which is not added: `faces` has one face for each pose. Errors: MEMORY, CANCELLED, TIME.
+ */
+typedef struct augmentation_finds {
+    candidate_points poses;
+    STARG_ARRAY(uint32_t) faces;
+} augmentation_finds;
+
+starg_status augment_test(starg_context *context, const augmentation *augmentation,
+                          const uint8_t *unseen, augmentation_finds *out);
+void augment_finds_free(starg_context *context, augmentation_finds *finds);
 
 starg_status augment_candidates(starg_context *context, const augmentation *augmentation,
                                 const uint8_t *unseen, candidate_points *points, bool *pending);

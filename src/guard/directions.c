@@ -25,13 +25,14 @@
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
+#include "visibility/columns.h"
 #include "visibility/scene.h"
 
 enum {
     LOOKS = 10,
     NODES = 300,
     MOST_FACES = 768,
-    MOST = 12000,
+    MOST = 12000, /* directions; rows of more than MOST_BITS bits would not fit into memory */
     BATCH = 128,
     DEPTH = 16,
     START_YAWS = 8,
@@ -39,6 +40,7 @@ enum {
 };
 
 static const char STAGE[] = "directions";
+static const double MOST_BITS = 0x1p33;
 static const double PI = 3.14159265358979323846, GAP = 0.02, LEAST_SHARE = 0.01,
                     SMALLEST = 0.017; /* half side of a rectangle, in radians */
 
@@ -357,12 +359,19 @@ done:
     return status;
 }
 
+/* How many places may have directions. */
+static size_t most_places(const starg_solid *solid, const starg_visibility_options *view) {
+    double rows = MOST_BITS / (double)target_columns(solid->mesh, view->target);
+    return (size_t)fmax(1, fmin(rows, MOST) / LOOKS);
+}
+
 starg_status candidates_turn(starg_context *context, const starg_solid *solid,
                              const starg_visibility_options *view, const candidate_points *points,
                              candidate_points *out) {
     starg_status status = STARG_OK;
     double *weights = NULL, *places = NULL;
-    size_t count = candidates_count(points), used = count < MOST / LOOKS ? count : MOST / LOOKS;
+    size_t count = candidates_count(points), most = most_places(solid, view);
+    size_t used = count < most ? count : most;
     aiming a = {.solid = solid, .view = view};
     if (used < count)
         starg_log(context, STARG_LOG_NOTICE,

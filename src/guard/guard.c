@@ -224,20 +224,21 @@ static bool may_refine(const starg_guard_options *options) {
            options->candidates != STARG_CANDIDATES_GIVEN;
 }
 
-/* Solving the whole problem again, for the bounds, takes seconds. */
-static bool must_end(const guard_problem *problem, const guard_selection *first) {
-    return first->lower_bound > 0 && starg_time_is_over(problem->context);
+/* Without levels, the first choice is that of the whole problem, with its bounds. */
+static bool was_whole(const guard_detail *detail, const guard_selection *first) {
+    return detail->levels == NULL && first->lower_bound > 0;
 }
 
+/* Solving the whole problem again, for the bounds, takes seconds: not after the time limit. */
 static starg_status choose_by_levels(const guard_problem *problem, const guard_detail *detail,
                                      guard_outcome *out) {
     starg_status status = STARG_OK;
     guard_selection first = {0};
     STARG_TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
-    bool ends = must_end(problem, &first);
-    if (ends || may_refine(problem->options)) {
+    bool late = first.lower_bound > 0 && starg_time_is_over(problem->context);
+    if (late || was_whole(detail, &first) || may_refine(problem->options)) {
         out->selection = first;
-        out->selection.time_limited = first.time_limited || ends;
+        out->selection.time_limited = first.time_limited || late;
         first = (guard_selection){0};
     } else
         STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
@@ -532,6 +533,8 @@ void starg_guards_free(starg_context *context, starg_guards *guards) {
     for (size_t i = 0; guards->obstacles != NULL && i < guards->obstacle_count; i++)
         starg_release(context, guards->obstacles[i].file);
     starg_release(context, guards->obstacles);
+    starg_release(context, guards->space.over);
+    starg_release(context, guards->space.mount);
     starg_release(context, guards->targets);
     starg_release(context, guards->importance);
     starg_release(context, guards->file);

@@ -260,12 +260,27 @@ done:
     return status;
 }
 
+static starg_status copy_list(starg_context *context, const near_faces *faces, uint32_t **out) {
+    starg_status status = STARG_OK;
+    uint32_t *list = NULL;
+    if (faces->count == 0)
+        return STARG_OK;
+    STARG_NEW(context, STAGE, list, faces->count);
+    memcpy(list, faces->list, faces->count * sizeof *list);
+    *out = list;
+done:
+    return status;
+}
+
 static starg_status copy_scene(const guard_problem *problem, starg_guards *result) {
     starg_status status = STARG_OK;
     const starg_solid *scene = problem->solid;
     starg_space_options_default(&result->space);
     if (scene->scene)
         result->space = scene->space;
+    result->space.over = result->space.mount = NULL;
+    STARG_TRY(copy_list(problem->context, &scene->over, &result->space.over));
+    STARG_TRY(copy_list(problem->context, &scene->mount, &result->space.mount));
     if (scene->obstacle_count > 0)
         STARG_NEW_ZERO(problem->context, STAGE, result->obstacles, scene->obstacle_count);
     result->obstacle_count = scene->obstacle_count;

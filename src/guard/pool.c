@@ -6,13 +6,24 @@
 
 static const char STAGE[] = "guard";
 
+enum { MOST_ADDED = 256 };
+
+/* Columns behind the faces of the model, which come first, are never set. The search over every
+ * point has them as its engines do. */
+static size_t columns_of(const starg_solid *solid, const starg_guard_options *o) {
+    bool part = (o->coverage < 1 || o->max_guards > 0) && !o->prove;
+    return part && o->visibility.target == STARG_TARGET_FACES
+               ? starg_space_model_faces(solid)
+               : target_columns(solid->mesh, o->visibility.target);
+}
+
 starg_status pool_create(starg_context *context, const starg_solid *solid,
                          const starg_guard_options *options, guard_pool *pool) {
     starg_status status = STARG_OK;
     *pool = (guard_pool){.context = context,
                          .solid = solid,
                          .options = options,
-                         .columns = target_columns(solid->mesh, options->visibility.target)};
+                         .columns = columns_of(solid, options)};
     STARG_NEW_ZERO(context, STAGE, pool->coverable, starg_bit_words(pool->columns));
 done:
     return status;
@@ -35,23 +46,24 @@ static const double *up_of(const candidate_points *points, size_t index) {
     return points->ups.count > 0 ? points->ups.data + 3 * index : NULL;
 }
 
-/* Compacts the finished rows and appends their points; drops empty rows unless these are
- * allowed. */
+/* Compacts the finished rows to the columns of the pool and appends their points; drops empty rows
+ * unless these are allowed. */
 static starg_status keep_finished(guard_pool *pool, const candidate_points *points, bool empty,
                                   const uint8_t *finished, starg_bits *rows) {
     starg_status status = STARG_OK;
-    size_t kept = 0;
+    size_t kept = 0, words = starg_bit_words(pool->columns);
     for (size_t i = 0; i < rows->rows; i++) {
         pool->time_limited = pool->time_limited || !finished[i];
         if (!finished[i] || (!empty && starg_bits_count(rows, i) == 0))
             continue;
         STARG_TRY(candidates_push_pose(pool->context, &pool->points, points->data.data + 3 * i,
                                        direction_of(points, i), up_of(points, i)));
-        memmove(starg_bits_row_mutable(rows, kept), starg_bits_row(rows, i),
-                rows->words * sizeof *rows->data);
+        memmove(rows->data + kept * words, starg_bits_row(rows, i), words * sizeof *rows->data);
         kept++;
     }
     rows->rows = kept;
+    rows->columns = pool->columns;
+    rows->words = words;
 done:
     return status;
 }
@@ -160,12 +172,14 @@ static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
     const starg_mesh *mesh = pool->solid->mesh;
     starg_target target = pool->options->visibility.target;
     for (size_t f = 0; f < mesh->face_count; f++) {
+        unseen[f] = 0;
+        if (!solid_is_target(pool->solid, false, f))
+            continue;
         unseen[f] = target == STARG_TARGET_FACES && !starg_bit_test(pool->coverable, f);
         for (size_t k = 3 * f; k < 3 * f + 3 && target != STARG_TARGET_FACES; k++) {
             size_t column = target == STARG_TARGET_VERTICES ? mesh->faces[k] : k;
             unseen[f] = unseen[f] || !starg_bit_test(pool->coverable, column);
         }
-        unseen[f] = unseen[f] && solid_is_target(pool->solid, false, f);
     }
 }
 
@@ -187,6 +201,77 @@ static bool sees_enough(const guard_pool *pool, const column_weights *weights) {
     return missing <= 0.5 * (1 - o->coverage) * (double)weights->total;
 }
 
+/* Of a scene much may be hidden for ever: what lies on something, or behind what cannot be passed.
+ * Where a part suffices, all of what no candidate sees is tried before any is added. */
+static bool tests_first(const guard_pool *pool) {
+    const starg_guard_options *o = pool->options;
+    return pool->solid->scene && o->coverage < 1 && o->redundancy == 1 && o->max_guards == 0 &&
+           o->candidates != STARG_CANDIDATES_GIVEN && o->visibility.target == STARG_TARGET_FACES;
+}
+
+/* The weight of the faces that could be seen and are not, and how many they are. */
+static double weigh_missing(const guard_pool *pool, const column_weights *weights,
+                            const augmentation_finds *finds, size_t *count) {
+    double missing = 0;
+    *count = 0;
+    for (size_t i = 0; i < finds->faces.count; i++)
+        if (!starg_bit_test(pool->coverable, finds->faces.data[i])) {
+            missing += (double)weights->weights[finds->faces.data[i]];
+            ++*count;
+        }
+    return missing;
+}
+
+/* Adds some of the points that see these faces, evenly. */
+static starg_status add_some(guard_pool *pool, const augmentation_finds *finds, size_t count) {
+    starg_status status = STARG_OK;
+    candidate_points some = {0};
+    size_t take = count < MOST_ADDED ? count : MOST_ADDED, index = 0, taken = 0;
+    for (size_t i = 0; i < finds->faces.count; i++) {
+        if (starg_bit_test(pool->coverable, finds->faces.data[i]))
+            continue;
+        if (index++ * take / count == taken) {
+            STARG_TRY(candidates_push(pool->context, &some, finds->poses.data.data + 3 * i,
+                                      direction_of(&finds->poses, i)));
+            taken++;
+        }
+    }
+    STARG_TRY(pool_add(pool, &some));
+done:
+    candidates_free(pool->context, &some);
+    return status;
+}
+
+/* Adds points until candidates see enough of all that can be seen at all. What else could be seen
+ * is coverable, too. */
+static starg_status augment_part(guard_pool *pool, const column_weights *weights,
+                                 const augmentation *all, uint8_t *unseen) {
+    starg_status status = STARG_OK;
+    augmentation_finds finds = {0};
+    double allowed = 0.5 * (1 - pool->options->coverage);
+    size_t count;
+    mark_unseen(pool, unseen);
+    STARG_TRY(augment_test(pool->context, all, unseen, &finds));
+    double missing = weigh_missing(pool, weights, &finds, &count);
+    double most = allowed * ((double)pool_coverable_weight(pool, weights) + missing);
+    while (missing > most && !pool->time_limited) {
+        double before = missing;
+        STARG_TRY(add_some(pool, &finds, count));
+        missing = weigh_missing(pool, weights, &finds, &count);
+        if (!(missing < before))
+            break; /* never: each point sees its face */
+    }
+    for (size_t i = 0; i < finds.faces.count; i++)
+        starg_bit_set(pool->coverable, finds.faces.data[i]);
+done:
+    augment_finds_free(pool->context, &finds);
+    if (status == STARG_ERROR_TIME) {
+        pool->time_limited = true;
+        return STARG_OK;
+    }
+    return status;
+}
+
 starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
     starg_status status = STARG_OK;
     uint8_t *unseen = NULL;
@@ -196,6 +281,10 @@ starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
     pool->first_count = pool_count(pool);
     STARG_NEW_ZERO(pool->context, STAGE, all.tried, pool->solid->mesh->face_count);
     STARG_NEW(pool->context, STAGE, unseen, pool->solid->mesh->face_count);
+    if (tests_first(pool)) {
+        status = augment_part(pool, weights, &all, unseen);
+        goto done;
+    }
     while (pending && !pool->time_limited) {
         pool->curtailed = sees_enough(pool, weights);
         if (pool->curtailed)

@@ -12,12 +12,13 @@ typedef struct guard_pool {
     const starg_solid *solid;
     const starg_guard_options *options; /* visibility, clearance, where guards may stand */
     candidate_points points;
-    size_t first_count;  /* candidates before augmentation, set by pool_augment */
-    starg_bits *rows;    /* by candidate; columns are faces or vertices; NULL before the first */
-    size_t columns;      /* of the rows */
-    uint64_t *coverable; /* bits of the columns that some row holds */
-    bool curtailed;      /* augmentation stopped before all faces were tried: enough can be seen */
-    bool time_limited;   /* candidates were left out because time ran out */
+    size_t first_count; /* candidates before augmentation, set by pool_augment */
+    starg_bits *rows;   /* by candidate; columns are faces or vertices; NULL before the first */
+    size_t columns;     /* of the rows */
+    uint64_t
+        *coverable;    /* bits of the columns that some row holds, or that a point not kept sees */
+    bool curtailed;    /* augmentation stopped before all faces were tried: enough can be seen */
+    bool time_limited; /* candidates were left out because time ran out */
 } guard_pool;
 
 /* An empty pool. Errors: MEMORY. */

@@ -20,7 +20,8 @@ done:
 
 static bool is_plain(const starg_guards *g) {
     const starg_space_options *o = &g->space;
-    bool bounded = o->standoff_least > 0 || o->standoff_most > 0 || o->cell > 0;
+    bool bounded = o->standoff_least > 0 || o->standoff_most > 0 || o->cell > 0 ||
+                   o->over_count > 0 || o->mount_count > 0;
     for (int k = 0; k < 6; k++)
         bounded = bounded || o->within[k] != 0;
     return !bounded && g->obstacle_count == 0 && g->targets == NULL && !o->outside && !o->soup &&

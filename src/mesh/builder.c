@@ -125,6 +125,9 @@ starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place) 
     }
     builder->faces.count += 3 * (count - 2);
     builder->corners.count = 0;
+    while (builder->values != NULL && builder->values->data.count < builder->faces.count / 3)
+        STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->values->data,
+                   builder->values->current);
 done:
     return status;
 }

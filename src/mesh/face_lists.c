@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Faces and weights of faces from text files. */
+/* Faces and weights of faces from text files, and by names in the file of the model. */
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "core/memory.h"
@@ -102,6 +104,81 @@ starg_status starg_weights_read(starg_context *context, const char *path, size_t
     return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
                       "'%.200s' has %zu weights, and the model %zu faces; write one for each", path,
                       count, face_count);
+}
+
+/* ---- names in the model ---- */
+
+bool starg_values_know(starg_face_values *values, const char *name, size_t length) {
+    size_t used = strlen(values->others);
+    if (length == values->length && memcmp(name, values->name, length) == 0)
+        return values->found = true;
+    if (used + length + 3 < sizeof values->others) {
+        char quoted[sizeof values->others];
+        snprintf(quoted, sizeof quoted, "%s%.*s", used > 0 ? ", " : "", (int)length, name);
+        const char *at = strstr(values->others, quoted + (used > 0 ? 2 : 0));
+        if (at == NULL)
+            strcat(values->others, quoted);
+    }
+    return false;
+}
+
+static starg_status fail_unknown(starg_context *context, const starg_face_values *values,
+                                 const char *path) {
+    bool any = values->others[0] != '\0';
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                      "no file, and no group, material or property of faces in '%.200s', is called "
+                      "'%.*s'%s%s",
+                      path, (int)(values->length < 100 ? values->length : 100), values->name,
+                      any ? "; there are " : "; it names no faces: give a file of face numbers",
+                      values->others);
+}
+
+/* 1 where the value is the one wanted. */
+static starg_status compare(starg_context *context, starg_face_values *values) {
+    starg_status status = STARG_OK;
+    starg_c_locale locale = {0};
+    double wanted;
+    if (values->equals == NULL)
+        return STARG_OK;
+    STARG_TRY(starg_c_locale_enter(context, &locale));
+    if (!starg_parse_real(values->equals, strlen(values->equals), &wanted))
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "'%.100s' is not a number that a property can have", values->equals);
+    for (size_t i = 0; status == STARG_OK && i < values->data.count; i++)
+        values->data.data[i] = values->data.data[i] == wanted;
+done:
+    starg_c_locale_leave(&locale);
+    return status;
+}
+
+starg_status starg_faces_named(starg_context *context, const char *model_file, const char *name,
+                               size_t face_count, double **weights) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    char *bytes = NULL;
+    size_t size = 0;
+    const char *equals = strchr(name, '=');
+    starg_face_values values = {.name = name,
+                                .length = equals != NULL ? (size_t)(equals - name) : strlen(name),
+                                .equals = equals != NULL ? equals + 1 : NULL};
+    *weights = NULL;
+    STARG_TRY(starg_file_read(context, STAGE, model_file, &bytes, &size));
+    STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
+    if (!values.found)
+        status = fail_unknown(context, &values, model_file);
+    else if (values.data.count != face_count)
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "'%.200s' has %zu faces, and the model %zu", model_file,
+                            values.data.count, face_count);
+    STARG_TRY(status);
+    STARG_TRY(compare(context, &values));
+    *weights = values.data.data;
+    values.data.data = NULL;
+done:
+    STARG_ARRAY_FREE(context, &values.data);
+    starg_mesh_free(mesh);
+    starg_release(context, bytes);
+    return status;
 }
 
 void starg_weights_free(starg_context *context, double *weights) {

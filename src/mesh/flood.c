@@ -161,7 +161,7 @@ done:
     return status;
 }
 
-static starg_status spread(flood_cells *f, const double from[3]) {
+static starg_status spread(flood_cells *f, const starg_solid *scene, const double from[3]) {
     starg_status status = STARG_OK;
     cell_stack stack = {0};
     size_t at[3];
@@ -173,6 +173,11 @@ static starg_status spread(flood_cells *f, const double from[3]) {
                           from[0], from[1], from[2],
                           locate(f, from, at) ? "a face meets its cube"
                                               : "it is not in the box where guards may be");
+    if (!starg_solid_contains(scene, from))
+        return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
+                          "nobody can stand at (%g, %g, %g): it is within matter, or outside of "
+                          "everything; choose another point",
+                          from[0], from[1], from[2]);
     STARG_TRY(reach(f, cell_at(f, at), &stack));
     while (stack.count > 0) {
         size_t cell = stack.data[--stack.count];
@@ -198,7 +203,7 @@ starg_status flood_create(starg_context *context, const starg_solid *scene, cons
     f->context = context;
     STARG_TRY(make_grid(context, scene, size, f));
     STARG_TRY(take_faces(context, scene->mesh, f));
-    STARG_TRY(spread(f, from));
+    STARG_TRY(spread(f, scene, from));
     *out = f;
     f = NULL;
 done:

@@ -205,6 +205,8 @@ void starg_solid_free(starg_solid *solid) {
     starg_release(context, solid->other_side);
     starg_release(context, solid->once_twin);
     flood_free(solid->reached);
+    near_faces_free(context, &solid->over);
+    near_faces_free(context, &solid->mount);
     starg_release(context, solid->importance);
     starg_release(context, solid->targets[0]);
     starg_release(context, solid->targets[1]);

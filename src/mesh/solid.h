@@ -7,6 +7,7 @@
 #include "core/private.h"
 #include "geometry/bvh.h"
 #include "mesh/mesh.h"
+#include "mesh/near_faces.h"
 #include "starguard/solid.h"
 #include "starguard/space.h"
 
@@ -29,6 +30,7 @@ struct starg_solid {
                                of them; NULL: there are no backs */
     uint32_t *once_twin;
     struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
+    near_faces over, mount;      /* faces that guards are bound to */
     double *importance;          /* by face; NULL: 1 each */
     uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */
     starg_space_options space;

@@ -294,6 +294,20 @@ done:
     return status;
 }
 
+/* Keeps its own lists of the faces that guards are bound to. */
+static starg_status bind_guards(starg_context *context, const starg_mesh *model,
+                                starg_solid *scene) {
+    starg_status status = STARG_OK;
+    starg_space_options *o = &scene->space;
+    const double *vertices = scene->mesh->vertices;
+    STARG_TRY(near_faces_make(context, model, vertices, o->over, o->over_count, &scene->over));
+    STARG_TRY(near_faces_make(context, model, vertices, o->mount, o->mount_count, &scene->mount));
+    o->over = scene->over.list;
+    o->mount = scene->mount.list;
+done:
+    return status;
+}
+
 static starg_status note_sizes(starg_solid *scene, const starg_mesh *const *obstacles,
                                size_t count) {
     starg_status status = STARG_OK;
@@ -367,6 +381,7 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     starg_space_options_default(&defaults);
     const starg_space_options *o = options != NULL ? options : &defaults;
     STARG_TRY(check_options(context, o));
+    STARG_TRY(near_faces_check(context, o, model->face_count));
     STARG_TRY(push_model(&p, model, o));
     STARG_TRY(push_obstacles(&p, model, obstacles, obstacle_count, !o->outside && !o->soup));
     STARG_NEW_ZERO(context, STAGE, scene, 1);
@@ -382,6 +397,7 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     STARG_TRY(starg_mesh_create(context, p.vertices.data, p.vertices.count / 3, p.faces.data,
                                 p.faces.count / 3, &scene->mesh));
     STARG_TRY(examine(context, scene));
+    STARG_TRY(bind_guards(context, model, scene));
     STARG_TRY(note_sizes(scene, obstacles, obstacle_count));
     if (obstacle_count > 0)
         STARG_TRY(keep_model(context, model, scene));
@@ -416,6 +432,8 @@ bool starg_space_admits(const starg_solid *scene, const double p[3]) {
             return false;
     if (scene->reached != NULL && !flood_reaches(scene->reached, p))
         return false;
+    if (!near_faces_admit(&scene->over, &scene->mount, o, p))
+        return false;
     if (o->standoff_least > 0 || o->standoff_most > 0) {
         double distance =
             bvh_distance(scene->model_tree != NULL ? scene->model_tree : scene->tree, p);
@@ -433,6 +451,8 @@ bool solid_bars(const starg_solid *solid, const bvh_box *box) {
     if (!solid->scene)
         return false;
     if (solid->reached != NULL && !flood_meets(solid->reached, box))
+        return true;
+    if (near_faces_bar(&solid->over, &solid->mount, o, box))
         return true;
     if (!(o->standoff_least > 0 || o->standoff_most > 0))
         return false;
@@ -456,6 +476,8 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
         return;
     bool open = solid->ambient > 0;
     double grow = 0; /* of a soup without distances: its own box */
+    bvh_box bound;
+    bool near = near_faces_box(&solid->over, &solid->mount, o, &bound);
     if (open && o->standoff_most > 0)
         grow = o->standoff_most;
     else if (o->outside)
@@ -466,6 +488,11 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
         if (is_bounded(o)) {
             out->lower[k] = open ? o->within[k] : fmax(out->lower[k], o->within[k]);
             out->upper[k] = open ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
+        }
+        if (near) { /* beside a soup's own box, too */
+            bool own = open && grow == 0 && !is_bounded(o);
+            out->lower[k] = own ? bound.lower[k] : fmax(out->lower[k], bound.lower[k]);
+            out->upper[k] = own ? bound.upper[k] : fmin(out->upper[k], bound.upper[k]);
         }
     }
 }

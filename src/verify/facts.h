@@ -36,6 +36,12 @@ static inline bool verify_targets_vertices(const verify_facts *known) {
 /* Does the space restrict guards to a part of the free space? */
 bool verify_space_is_narrow(const starg_space_options *space);
 
+/* Counts the guards that cannot be reached from where the space says, through cubes of half the
+ * size (verify/reach.c); *known_cubes: false if there are too many of them to tell. Errors: MEMORY,
+ * CANCELLED. */
+starg_status verify_find_unreached(const verify_facts *known, bool *known_cubes, size_t *count,
+                                   size_t *first);
+
 /* Rows of the target elements: faces, or vertices. */
 static inline const starg_bits *verify_rows(const verify_facts *known) {
     return verify_targets_vertices(known) ? known->vertices : known->faces;

@@ -16,6 +16,7 @@
 #include "verify/everywhere.h"
 #include "verify/measure.h"
 #include "verify/sight.h"
+#include "verify/signs.h"
 #include "verify/space.h"
 
 static const char STAGE[] = "verify";
@@ -23,7 +24,8 @@ static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* relative; for lengths, areas and fractions */
 
 bool verify_space_is_narrow(const starg_space_options *o) {
-    bool narrow = o->cell > 0 || o->standoff_least > 0 || o->standoff_most > 0;
+    bool narrow = o->cell > 0 || o->standoff_least > 0 || o->standoff_most > 0 ||
+                  o->over_count > 0 || o->mount_count > 0;
     for (int k = 0; k < 6; k++)
         narrow = narrow || o->within[k] != 0;
     return narrow;
@@ -309,9 +311,6 @@ static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
     size_t bad = 0, first = 0;
     if (!verify_space_is_narrow(&guards->space))
         return;
-    if (guards->space.cell > 0)
-        verify_leave(verdict, "that guards can be reached from (%.17g, %.17g, %.17g)",
-                     guards->space.from[0], guards->space.from[1], guards->space.from[2]);
     for (size_t g = guards->count; g-- > 0;)
         if (!stands_within(known, g)) {
             bad++;
@@ -324,6 +323,74 @@ static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
                      "guards keep their distances from the model, and to their box: %zu do not, "
                      "first guard %zu at a distance of %.17g",
                      bad, first, known->standoff[first]);
+}
+
+/* Is the guard straight above a listed face, and near one? Lists are searched one by one. */
+static bool stands_by_faces(const verify_facts *known, size_t g) {
+    const starg_space_options *o = &known->guards->space;
+    const double *p = known->guards->positions + 3 * g;
+    double foot[3], up[3] = {0, 1, 0}, length = 0, least = INFINITY;
+    bool over = o->over_count == 0;
+    for (int k = 0; k < 3; k++)
+        length = hypot(length, o->up[k]);
+    for (int k = 0; k < 3; k++) {
+        up[k] = length > 0 ? o->up[k] / length : up[k];
+        foot[k] = p[k] - o->height * (1 + TOLERANCE) * up[k];
+    }
+    for (size_t i = 0; i < o->over_count && !over; i++) {
+        const double *t[3];
+        verify_corners(known->surface, o->over[i], t);
+        over = verify_blocks(p, foot, t);
+    }
+    for (size_t i = 0; i < o->mount_count; i++)
+        least = fmin(least, verify_squared_distance(known->surface, o->mount[i], p, known->scale));
+    return over && (o->mount_count == 0 ||
+                    ldexp(sqrt(least), -known->scale) <= o->mount_distance * (1 + TOLERANCE));
+}
+
+static starg_status claim_reached(starg_verdict *verdict, const verify_facts *known) {
+    const double *from = known->guards->space.from;
+    bool known_cubes;
+    size_t bad, first;
+    if (!(known->guards->space.cell > 0))
+        return STARG_OK;
+    starg_status status = verify_find_unreached(known, &known_cubes, &bad, &first);
+    if (status != STARG_OK)
+        return status;
+    if (!known_cubes)
+        verify_leave(verdict,
+                     "that guards can be reached from (%.17g, %.17g, %.17g): the cubes are "
+                     "too small",
+                     from[0], from[1], from[2]);
+    else if (bad == 0)
+        verify_claim(verdict, true, "guards can be reached from (%.17g, %.17g, %.17g)", from[0],
+                     from[1], from[2]);
+    else
+        verify_claim(
+            verdict, false,
+            "guards can be reached from (%.17g, %.17g, %.17g): %zu cannot, first guard %zu",
+            from[0], from[1], from[2], bad, first);
+    return STARG_OK;
+}
+
+static void claim_faces_near(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    size_t bad = 0, first = 0;
+    if (guards->space.over_count == 0 && guards->space.mount_count == 0)
+        return;
+    for (size_t g = guards->count; g-- > 0;)
+        if (!stands_by_faces(known, g)) {
+            bad++;
+            first = g;
+        }
+    if (bad == 0)
+        verify_claim(verdict, true,
+                     "guards stand over, or hang near, the faces that they are bound to");
+    else
+        verify_claim(verdict, false,
+                     "guards stand over, or hang near, the faces that they are bound to: %zu do "
+                     "not, first guard %zu",
+                     bad, first);
 }
 
 static void claim_seen(starg_verdict *verdict, const verify_facts *known) {
@@ -734,6 +801,8 @@ starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *
     claim_inside(verdict, &known);
     claim_clearance(verdict, &known);
     claim_standoff(verdict, &known);
+    claim_faces_near(verdict, &known);
+    STARG_TRY(claim_reached(verdict, &known));
     claim_seen(verdict, &known);
     claim_coverage(verdict, &known);
     STARG_TRY(claim_curve(context, verdict, &known));

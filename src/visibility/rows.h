@@ -16,6 +16,7 @@ typedef struct visibility_job {
     starg_bits *rows;
     uint8_t *finished;               /* by point; may be NULL */
     const visibility_engine *engine; /* follows from the options; visibility_fill sets it */
+    const size_t *starts; /* the first point of each place, if directions of one are done in turn */
 } visibility_job;
 
 /* Makes the scene that the options' engine needs for `count` points. Errors: MEMORY. */

@@ -18,9 +18,11 @@ typedef visibility_job job;
 typedef struct worker {
     void *engine_scratch;
     const job *job;
-    int8_t *side;     /* by rank */
-    uint8_t *visible; /* by slot */
-    uint8_t *within;  /* by slot: visible, and in the view; only where it is directed */
+    int8_t *side;            /* by rank */
+    uint8_t *visible;        /* by slot */
+    uint8_t *within;         /* by slot: visible, and in the view; only where it is directed */
+    uint32_t *slots, *ranks; /* where views are directed: what the place sees all around */
+    size_t slot_count, rank_count;
     sensor sensor;
     const double *last; /* point that side and visible are for, or NULL */
 } worker;
@@ -33,6 +35,8 @@ static void free_worker(starg_context *context, void *scratch) {
     starg_release(context, w->side);
     starg_release(context, w->visible);
     starg_release(context, w->within);
+    starg_release(context, w->slots);
+    starg_release(context, w->ranks);
     starg_release(context, w);
 }
 
@@ -46,9 +50,12 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     w->sensor = sensor_of(all->options);
     w->side = starg_allocate(context, all->scene->face_count, sizeof *w->side);
     w->visible = starg_allocate(context, all->scene->vertex_count, sizeof *w->visible);
-    w->within = starg_allocate(context, all->scene->vertex_count, sizeof *w->within);
+    w->within = starg_allocate_zero(context, all->scene->vertex_count, sizeof *w->within);
+    w->slots = starg_allocate(context, all->scene->vertex_count, sizeof *w->slots);
+    w->ranks = starg_allocate(context, all->scene->face_count, sizeof *w->ranks);
     starg_status status = STARG_ERROR_MEMORY;
-    if (w->side != NULL && w->visible != NULL && w->within != NULL)
+    if (w->side != NULL && w->visible != NULL && w->within != NULL && w->slots != NULL &&
+        w->ranks != NULL)
         status = all->engine->make_scratch(all->scene, &w->engine_scratch);
     if (status != STARG_OK) {
         free_worker(context, w);
@@ -66,10 +73,43 @@ static void drop_out_of_reach(const worker *w, const double p[3]) {
     }
 }
 
+/* Does the place see the face, wherever it looks? */
+static bool sees_around(const worker *w, const double p[3], size_t rank) {
+    const visibility_scene *scene = w->job->scene;
+    const uint32_t *c = scene->corners + 3 * rank;
+    return w->side[rank] > 0 && (w->visible[c[0]] & w->visible[c[1]] & w->visible[c[2]]) &&
+           sensor_faces(&w->sensor, p, scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                        scene_corner(scene, rank, 2));
+}
+
+/* Directions of one place look among what it sees all around. */
+static void list_visible(worker *w, const double p[3]) {
+    const visibility_scene *scene = w->job->scene;
+    for (size_t i = 0; i < w->slot_count; i++)
+        w->within[w->slots[i]] = 0;
+    w->slot_count = w->rank_count = 0;
+    for (uint32_t slot = 0; slot < scene->vertex_count; slot++)
+        if (w->visible[slot])
+            w->slots[w->slot_count++] = slot;
+    if (w->job->options->target != STARG_TARGET_FACES)
+        return;
+    for (size_t first = 0; first < scene->face_count; first += SCENE_CHUNK) {
+        size_t end =
+            first + SCENE_CHUNK < scene->face_count ? first + SCENE_CHUNK : scene->face_count;
+        if (scene_is_beyond(scene, first / SCENE_CHUNK, p))
+            continue;
+        for (size_t rank = first; rank < end; rank++)
+            if (sees_around(w, p, rank))
+                w->ranks[w->rank_count++] = (uint32_t)rank;
+    }
+}
+
 static void find_visible(const job *all, worker *w, const double p[3]) {
     scene_sides(all->scene, p, w->side);
     all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
     drop_out_of_reach(w, p);
+    if (sensor_is_directed(all->options))
+        list_visible(w, p);
 }
 
 /* Aims the sensor of an item and leaves out what is not in its view. */
@@ -77,9 +117,10 @@ static void narrow(const job *all, worker *w, const double p[3], size_t item) {
     const visibility_scene *scene = all->scene;
     const starg_visibility_options *o = all->options;
     sensor_aim(&w->sensor, o->directions + 3 * item, o->ups != NULL ? o->ups + 3 * item : NULL);
-    for (size_t slot = 0; slot < scene->vertex_count; slot++) {
+    for (size_t i = 0; i < w->slot_count; i++) {
+        uint32_t slot = w->slots[i];
         const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
-        w->within[slot] = w->visible[slot] && sensor_frames(&w->sensor, p, q);
+        w->within[slot] = sensor_frames(&w->sensor, p, q);
     }
 }
 
@@ -105,18 +146,23 @@ static bool sees_whole(const job *all, const worker *w, const double p[3], size_
     return face_is_wholly_visible(all->scene, p, w->side, rank);
 }
 
-static void write_faces(const job *all, const worker *w, const uint8_t *visible, const double p[3],
-                        uint64_t *row) {
-    const visibility_scene *scene = all->scene;
-    bool whole = all->options->face_rule == STARG_FACES_WHOLE;
-    for (size_t rank = 0; rank < scene->face_count; rank++) {
-        const uint32_t *c = scene->corners + 3 * rank;
-        if (w->side[rank] <= 0 || !(visible[c[0]] & visible[c[1]] & visible[c[2]]) ||
-            !sensor_faces(&w->sensor, p, scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
-                          scene_corner(scene, rank, 2)))
-            continue;
-        if (!whole || sees_whole(all, w, p, rank))
-            starg_bit_set(row, scene->face_of[rank]);
+static void write_face(const job *all, const worker *w, const double p[3], size_t rank,
+                       uint64_t *row) {
+    if (all->options->face_rule != STARG_FACES_WHOLE || sees_whole(all, w, p, rank))
+        starg_bit_set(row, all->scene->face_of[rank]);
+}
+
+static void write_faces(const job *all, const worker *w, const double p[3], uint64_t *row) {
+    for (size_t rank = 0; rank < all->scene->face_count; rank++)
+        if (sees_around(w, p, rank))
+            write_face(all, w, p, rank, row);
+}
+
+static void write_faces_within(const job *all, const worker *w, const double p[3], uint64_t *row) {
+    for (size_t i = 0; i < w->rank_count; i++) {
+        const uint32_t *c = all->scene->corners + 3 * (size_t)w->ranks[i];
+        if (w->within[c[0]] & w->within[c[1]] & w->within[c[2]])
+            write_face(all, w, p, w->ranks[i], row);
     }
 }
 
@@ -140,8 +186,10 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
             write_vertices(all, visible, row);
         else if (all->options->target == STARG_TARGET_CORNERS)
             write_corners(all, w, visible, row);
+        else if (sensor_is_directed(all->options))
+            write_faces_within(all, w, p, row);
         else
-            write_faces(all, w, visible, p, row);
+            write_faces(all, w, p, row);
     }
     if (all->finished != NULL)
         all->finished[item] = 1;
@@ -187,18 +235,53 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
     return status;
 }
 
+/* Directions of one place are for one thread, which finds once what the place sees all around. */
+static starg_status find_rows_of_place(starg_context *context, void *shared, void *scratch,
+                                       size_t place) {
+    const job *all = shared;
+    starg_status status = STARG_OK;
+    for (size_t i = all->starts[place]; i < all->starts[place + 1]; i++)
+        STARG_TRY(find_row(context, shared, scratch, i));
+done:
+    return status;
+}
+
+/* The first item of each place, and the number of all at the end. */
+static starg_status find_starts(starg_context *context, const job *all, size_t **out,
+                                size_t *places) {
+    starg_status status = STARG_OK;
+    *places = 0;
+    STARG_NEW(context, STAGE, *out, all->count + 1);
+    for (size_t i = 0; i < all->count; i++)
+        if (i == 0 || !vec3_equal(all->points + 3 * i, all->points + 3 * (i - 1)))
+            (*out)[(*places)++] = i;
+    (*out)[*places] = all->count;
+done:
+    return status;
+}
+
 starg_status visibility_fill(starg_context *context, const visibility_job *of,
                              const starg_parallel_remote *remote) {
+    starg_status status = STARG_OK;
     job all = *of;
+    size_t *starts = NULL;
     all.engine = choose_engine(of->options);
-    const starg_parallel_loop loop = {.stage = STAGE,
-                                      .count = of->count,
-                                      .shared = &all,
-                                      .item = find_row,
-                                      .make_scratch = make_worker,
-                                      .free_scratch = free_worker,
-                                      .remote = remote};
-    return starg_parallel_in_time(context, &loop);
+    starg_parallel_loop loop = {.stage = STAGE,
+                                .count = of->count,
+                                .shared = &all,
+                                .item = find_row,
+                                .make_scratch = make_worker,
+                                .free_scratch = free_worker,
+                                .remote = remote};
+    if (remote == NULL && sensor_is_directed(of->options)) {
+        STARG_TRY(find_starts(context, &all, &starts, &loop.count));
+        all.starts = starts;
+        loop.item = find_rows_of_place;
+    }
+    status = starg_parallel_in_time(context, &loop);
+done:
+    starg_release(context, starts);
+    return status;
 }
 
 /* With other processes, if there are any and enough work. */

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: obstacles, shells as given, outsides, soups, targets; and what is wrong with them."""
 import json
+import struct
 
 from support import Case, main
 
@@ -134,6 +135,21 @@ class Scenes(Case):
         self.assertEqual(result["scene"]["from"], [1, 1, 1])
         self.verified("soup.off")
 
+    def test_reach(self):
+        """Guards behind a wall, in a locked room or on the roof have not been reached."""
+        vertices, faces = box((0, 0, 0), (8, 6, 3), 4, inward=True)
+        wall = [(4, 0, 0), (4, 6, 0), (4, 6, 3), (4, 0, 3)], [(0, 1, 2), (0, 2, 3)]
+        closet = box((1, 1, 0), (2, 2, 2), 2)
+        self.write("level.off", off((vertices, faces), wall, closet))
+        result = self.guards("level.off", "--soup", "--two-sided", "--from", "0.6,0.6,1", "--cell",
+                             "0.3")
+        self.assertIn("ok     guards can be reached", self.run_text("verify", "level.off", "g.json")[0])
+        for place in [6, 3, 1], [1.5, 1.5, 1], [3, 3, 3.2]:
+            result["guards"][0]["position"] = place
+            self.write("g.json", json.dumps(result))
+            out, _ = self.run_text("verify", "level.off", "g.json", status=4)
+            self.assertIn("FAILED guards can be reached", out)
+
     def test_targets(self):
         """What need not be seen costs no guards, and counts for nothing."""
         self.write("far.txt", "# both ends\n0 1 2 3\n40 41\n")
@@ -263,6 +279,108 @@ class Scenes(Case):
         _, err = self.run_text("verify", "room.off", "g.json", status=1)
         self.assertIn("obstacle 0", err)
 
+    def test_over(self):
+        """Guards stand above the floor, no higher than they may; not above the crate or elsewhere."""
+        floor = [f for f, face in enumerate(ROOM[1]) if all(ROOM[0][v][2] == 0 for v in face)]
+        self.write("floor.txt", "\n".join(map(str, floor)))
+        words = ["room.off", "--over", "floor.txt", "--height", "0.5", "--up", "0,0,1"]
+        result = self.guards(*words)
+        self.assertEqual(result["scene"]["over"], floor)
+        self.assertTrue(all(0 < g["position"][2] <= 0.5 for g in result["guards"]))
+        self.verified("room.off")
+        listed = ",".join(map(str, floor[:3])) + f",{floor[3]}-{floor[3]}"
+        self.guards("room.off", "--over", listed, "--height", "0.5", "--up", "0,0,1")
+        self.verified("room.off")
+        result["guards"][0]["position"][2] = 0.6
+        self.write("g.json", json.dumps(result))
+        out, _ = self.run_text("verify", "room.off", "g.json", status=4)
+        self.assertIn("bound to", out)
+
+    def test_mount(self):
+        """Cameras hang below the ceiling at their clearance, and nowhere else."""
+        ceiling = [f for f, face in enumerate(ROOM[1]) if all(ROOM[0][v][2] == 3 for v in face)]
+        self.write("ceiling.txt", " ".join(map(str, ceiling)))
+        result = self.guards("room.off", "--obstacles", "crate.off", "--mount", "ceiling.txt",
+                             "--clearance", "0.2", "--fov", "100,80", "--coverage", "0.8")
+        self.assertEqual(result["scene"]["mount"], ceiling)
+        for guard in result["guards"]:
+            self.assertAlmostEqual(guard["position"][2], 2.8, 3)
+        self.verified("room.off")
+        result["guards"][0]["position"][2] = 2
+        self.write("g.json", json.dumps(result))
+        out, _ = self.run_text("verify", "room.off", "g.json", status=4)
+        self.assertIn("bound to", out)
+
+    def test_names(self):
+        """Faces by what the model's own file calls them: groups, materials, properties."""
+        vertices, faces = ROOM
+        lines = [f"v {x} {y} {z}" for x, y, z in vertices]
+        for f, face in enumerate(faces):
+            lines += [f"g {'floor' if f < 32 else 'rest'} all", f"usemtl paint{f % 2}"]
+            lines.append("f " + " ".join(str(v + 1) for v in face))
+        self.write("room.obj", "\n".join(lines) + "\n")
+        targets = lambda result: [face for face, _ in result["scene"]["targets"]]
+        self.assertEqual(targets(self.guards("room.obj", "--see", "floor")), list(range(32)))
+        self.verified("room.obj")
+        even = targets(self.guards("room.obj", "--ignore", "paint1"))
+        self.assertEqual(even, list(range(0, len(faces), 2)))
+        _, err = self.run_text("guard", "room.obj", "-o", "n.json", "--see", "ceiling", status=1)
+        for name in ("ceiling", "floor", "paint0"):
+            self.assertIn(name, err)
+        self.assertNotIn("n.json", self.names())
+
+    def test_properties(self):
+        """Weights are a property of the faces of a PLY file, also where these are polygons."""
+        vertices, faces = box((0, 0, 0), (8, 6, 3))
+        quads = [(a, b, c, faces[f + 1][2]) for f, (a, b, c) in enumerate(faces) if f % 2 == 0]
+        head = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}", "property double x",
+                "property double y", "property double z", f"element face {len(quads)}",
+                "property float care", "property list uchar int vertex_indices",
+                "property int kind", "end_header"]
+        rows = [f"{x} {y} {z}" for x, y, z in vertices]
+        rows += [f"{q} 4 {' '.join(map(str, quad))} {q % 3}" for q, quad in enumerate(quads)]
+        self.write("room.ply", "\n".join(head + rows) + "\n")
+        found = self.guards("room.ply", "--weights", "care")["scene"]["targets"]
+        self.assertEqual(found, [[2 * q + i, q / 5] for q in range(1, 6) for i in range(2)])
+        self.verified("room.ply")
+        kinds = self.guards("room.ply", "--see", "kind=2")["scene"]["targets"]
+        self.assertEqual([face for face, _ in kinds], [4, 5, 10, 11])
+        _, err = self.run_text("guard", "room.ply", "-o", "n.json", "--see", "kind=x", status=1)
+        self.assertIn("not a number", err)
+
+    def test_views_in_exports(self):
+        """Cones and pyramids of cameras are in VTU and PLY files, from the guard outwards."""
+        for words, sides in ((["--cone", "80"], 24), (["--fov", "90,60"], 4)):
+            result = self.guards("room.off", *words, "--range", "9", "--coverage", "0.7")
+            count = len(result["guards"])
+            for name in ("g.vtu", "g.ply"):
+                self.run_text("export", "g.json", "-o", name)
+            head = self.read("g.ply").split(b"end_header")[0].decode().split("\n")
+            faces = next(line for line in head if line.startswith("element face"))
+            self.assertEqual(int(faces.split()[2]), len(ROOM[1]) + count * (72 + sides))
+            vtu = self.read("g.vtu")
+            cells = int(vtu.split(b'NumberOfCells="')[1].split(b'"')[0])
+            self.assertEqual(cells, len(ROOM[1]) + count + count * sides)
+            points = self.appended(vtu, b"Points")
+            corners = [points[3 * i:3 * i + 3] for i in range(len(points) // 3)]
+            views = corners[len(ROOM[0]) + count:]
+            self.assertEqual(len(views), count * (sides + 1))
+            for g, guard in enumerate(result["guards"]):
+                apex, *rim = views[g * (sides + 1):(g + 1) * (sides + 1)]
+                self.assertEqual(list(apex), guard["position"])
+                for corner in rim:
+                    way = [a - b for a, b in zip(corner, apex)]
+                    ahead = sum(a * b for a, b in zip(way, guard["direction"]))
+                    self.assertGreater(ahead, 0)
+                    self.assertAlmostEqual(sum(a * a for a in way) ** 0.5, 0.8, 6)
+
+    def appended(self, vtu, name):
+        """The doubles of an appended array."""
+        place = int(vtu.split(b'Name="' + name + b'"')[1].split(b'offset="')[1].split(b'"')[0])
+        data = vtu[vtu.index(b"_", vtu.index(b"<AppendedData")) + 1 + place:]
+        size, = struct.unpack("<Q", data[:8])
+        return struct.unpack(f"<{size // 8}d", data[8:8 + size])
+
     def test_bad_questions(self):
         for words, says in [
                 (["room.off", "--unseen", "--box", "0,0,0,1,1,1"], "leave out --box"),
@@ -290,6 +408,8 @@ class Scenes(Case):
                 (["room.off", "--soup", "--from", "1,1,0", "--cell", "0.1"], 1, "a face meets"),
                 (["room.off", "--soup", "--from", "50,1,1"], 1, "not in the box"),
                 (["room.off", "--soup", "--from", "1,1,1", "--cell", "1e-5"], 1, "2^30"),
+                (["room.off", "--obstacles", "crate.off", "--from", "4,3,0.7", "--cell", "0.2"], 1,
+                 "within matter"),
                 (["room.off", "--soup", "--outside", "--standoff", "1,2"], 1, "soup"),
                 (["room.off", "--weights", "short.txt"], 2, "3 weights"),
                 (["room.off", "--weights", "negative.txt"], 2, "-1"),
@@ -299,6 +419,13 @@ class Scenes(Case):
                 (["room.off", "--see", "missing.txt"], 2, "missing.txt"),
                 (["room.off", "--orientation", "keeep"], 1, "did you mean 'keep'"),
                 (["room.off", "--two-sided"], 1, "only a soup"),
+                (["room.off", "--over", "0-3"], 1, "--height"),
+                (["room.off", "--height", "1"], 1, "--over"),
+                (["room.off", "--over", "0-9999", "--height", "1"], 1, "0 to 191"),
+                (["room.off", "--over", "3-1", "--height", "1"], 1, "no list of faces"),
+                (["room.off", "--mount", "0"], 1, "--clearance"),
+                (["room.off", "--mount", "ceiling", "--clearance", "0.1"], 1, "'ceiling'"),
+                (["room.off", "--mount", "0", "--clearance", "50"], 2, "no candidate"),
                 (["room.off", "--fov", "200,60"], 1, "--fov takes H,V"),
                 (["room.off", "--fov", "90"], 1, "--fov takes H,V"),
                 (["room.off", "--fov", "90,0"], 1, "--fov takes H,V"),

@@ -135,8 +135,15 @@ static starg_status scene_of(starg_context *context, bool soup) {
     options.outside = !soup;
     options.standoff_most = 1;
     options.cell = soup ? 0.5 : 0;
+    uint32_t faces[] = {0, 1, 3};
+    options.over = options.mount = faces;
+    options.over_count = soup ? 0 : 3;
+    options.mount_count = 3;
+    options.height = options.mount_distance = 10;
+    double lower[3], upper[3];
+    starg_mesh_bounds(in.room, lower, upper);
     for (int k = 0; k < 3; k++)
-        options.from[k] = -0.7;
+        options.from[k] = lower[k] - 0.6;
     starg_status status = starg_space_create(context, in.room, obstacles, 1, &options, &scene);
     failing_result(status, scene);
     starg_solid_free(scene);
@@ -160,6 +167,14 @@ static starg_status weights_read(starg_context *context, bool of_faces) {
     double *out = NULL;
     starg_status status = of_faces ? starg_faces_read(context, file, faces, &out)
                                    : starg_weights_read(context, file, faces, &out);
+    failing_result(status, out);
+    starg_weights_free(context, out);
+    return status;
+}
+
+static starg_status faces_named(starg_context *context) {
+    double *out = NULL;
+    starg_status status = starg_faces_named(context, failing_input("named.obj"), "a", 2, &out);
     failing_result(status, out);
     starg_weights_free(context, out);
     return status;
@@ -205,6 +220,7 @@ static starg_status scenes(starg_context *context) {
     FAILING_BY(starg_space_weigh, "", weigh(context));
     FAILING_BY(starg_faces_read, "", weights_read(context, true));
     FAILING_BY(starg_weights_read, "", weights_read(context, false));
+    FAILING_BY(starg_faces_named, "", faces_named(context));
     FAILING_BY(starg_guards_name_obstacles, "", name_obstacles(context));
     FAILING_BY(starg_unseen, "", unseen(context));
     FAILING_BY(starg_guards_scene, "", scene_again(context));

@@ -12,6 +12,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
+#include "mesh/solid.h"
 #include "models.h"
 #include "starguard/guard.h"
 #include "starguard/space.h"
@@ -412,6 +413,133 @@ static void test_random_sensors(void **state) {
     assert_true(seen > 500);
 }
 
+/* ---- faces that guards are bound to ---- */
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double distance_to_edge(const double p[3], const double a[3], const double b[3]) {
+    double along[3], to[3], left[3];
+    for (int k = 0; k < 3; k++) {
+        along[k] = b[k] - a[k];
+        to[k] = p[k] - a[k];
+    }
+    double t = fmin(1, fmax(0, dot(along, along) > 0 ? dot(to, along) / dot(along, along) : 0));
+    for (int k = 0; k < 3; k++)
+        left[k] = to[k] - t * along[k];
+    return sqrt(dot(left, left));
+}
+
+/* To the plane, if the foot is on the right side of all edges, else to the nearest edge. */
+static double distance_to(const double p[3], const double *const t[3]) {
+    double u[3], v[3], n[3], to[3], least = INFINITY;
+    bool above = true;
+    for (int k = 0; k < 3; k++) {
+        u[k] = t[1][k] - t[0][k];
+        v[k] = t[2][k] - t[0][k];
+        to[k] = p[k] - t[0][k];
+    }
+    for (int k = 0; k < 3; k++)
+        n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    for (int e = 0; e < 3; e++) {
+        const double *a = t[e], *b = t[(e + 1) % 3];
+        double side[3];
+        for (int k = 0; k < 3; k++) {
+            int i = (k + 1) % 3, j = (k + 2) % 3;
+            side[k] = n[i] * (b[j] - a[j]) - n[j] * (b[i] - a[i]);
+        }
+        double from[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+        above = above && dot(side, from) >= 0;
+        least = fmin(least, distance_to_edge(p, a, b));
+    }
+    return above && dot(n, n) > 0 ? fabs(dot(n, to)) / sqrt(dot(n, n)) : least;
+}
+
+/* Over one of the faces, with the same rounding of the foot, and near one: one by one, in
+ * rationals. */
+static bool is_bound(const scene *s, const starg_space_options *o, const double p[3]) {
+    bool over = o->over_count == 0, near = o->mount_count == 0;
+    double foot[3];
+    for (int k = 0; k < 3; k++)
+        foot[k] = p[k] - o->height * o->up[k];
+    for (size_t i = 0; i < o->over_count; i++)
+        over = over || oracle_segment_meets_triangle(p, foot, corner(&s->model, o->over[i], 0),
+                                                     corner(&s->model, o->over[i], 1),
+                                                     corner(&s->model, o->over[i], 2));
+    for (size_t i = 0; i < o->mount_count; i++) {
+        const double *t[3];
+        for (int k = 0; k < 3; k++)
+            t[k] = corner(&s->model, o->mount[i], k);
+        near = near || distance_to(p, t) <= o->mount_distance;
+    }
+    return over && near;
+}
+
+static size_t pick_faces(starg_rng *rng, size_t faces, uint32_t *list) {
+    size_t count = 0;
+    uint64_t one_in = 1 + starg_rng_below(rng, 20);
+    for (uint32_t f = 0; f < faces; f++)
+        if (starg_rng_below(rng, one_in) == 0)
+            list[count++] = f;
+    return count;
+}
+
+/* Who may stand where, and no box that is barred has such a place in it. */
+static size_t check_bound(const scene *s, const starg_space_options *o, starg_rng *rng) {
+    size_t admitted = 0;
+    starg_solid *bound = NULL;
+    test_ok(s->context,
+            starg_space_create(s->context, s->mesh, (const starg_mesh *const *)s->others, s->count,
+                               o, &bound));
+    for (int i = 0; i < 60; i++) {
+        double p[3], size = ldexp(1, -(int)starg_rng_below(rng, 8));
+        bvh_box box;
+        for (int k = 0; k < 3; k++) {
+            p[k] = (SIDE + 1) * starg_rng_unit(rng) - 0.5;
+            p[k] = i % 2 == 0 ? p[k] : 0.5 * round(2 * p[k]);
+            box.lower[k] = p[k] - size * starg_rng_unit(rng);
+            box.upper[k] = p[k] + size * starg_rng_unit(rng);
+        }
+        bool expected = is_free(s, p) && is_bound(s, o, p);
+        assert_int_equal(starg_space_admits(bound, p), expected);
+        admitted += expected;
+        if (expected)
+            assert_false(solid_bars(bound, &box));
+    }
+    starg_solid_free(bound);
+    return admitted;
+}
+
+static void test_bound_guards(void **state) {
+    (void)state;
+    size_t admitted = 0;
+    for (uint64_t seed = 300; seed < 300 + scenes_of(40); seed++) {
+        scene s;
+        starg_rng rng = starg_rng_make(seed, 45, 0);
+        starg_space_options options;
+        make(&s, seed);
+        uint32_t *list = malloc(2 * s.model.face_count * sizeof *list);
+        assert_non_null(list);
+        starg_space_options_default(&options);
+        options.outside = s.outside;
+        options.soup = s.soup;
+        options.over = list;
+        options.mount = list + s.model.face_count;
+        if (seed % 3 != 0)
+            options.over_count = pick_faces(&rng, s.model.face_count, options.over);
+        if (seed % 3 != 1)
+            options.mount_count = pick_faces(&rng, s.model.face_count, options.mount);
+        options.height = 0.5 * (double)(1 + starg_rng_below(&rng, 4));
+        options.mount_distance = 0.3 + starg_rng_unit(&rng);
+        options.up[starg_rng_below(&rng, 3)] = starg_rng_below(&rng, 2) ? 1 : -1;
+        admitted += check_bound(&s, &options, &rng);
+        free(list);
+        end(&s);
+    }
+    assert_true(admitted > 100);
+}
+
 /* ---- guards ---- */
 
 static starg_status guard_scene(const scene *s, const view *v, bool ilp, starg_guards **out) {
@@ -486,6 +614,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_random_sensors),
+        cmocka_unit_test(test_bound_guards),
         cmocka_unit_test(test_guards_of_scenes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -48,6 +48,17 @@ static inline starg_place starg_at_file(void) {
 starg_status starg_source_fail(const starg_source *source, starg_place place, const char *format,
                                ...) __attribute__((format(printf, 3, 4)));
 
+/* Values of faces by a name in their file: groups, materials, properties. */
+typedef struct starg_face_values {
+    const char *name; /* wanted, `length` characters */
+    size_t length;
+    const char *equals;       /* text after "name=", or NULL */
+    bool found;               /* the name occurs in the file */
+    double current;           /* of the next face */
+    STARG_ARRAY(double) data; /* by triangle so far */
+    char others[160];         /* names that do, for messages */
+} starg_face_values;
+
 /* A mesh under construction. Every vertex and corner is checked on arrival, so that errors name
  * their place. Zero-initialize all but `source`. */
 typedef struct starg_mesh_builder {
@@ -55,6 +66,7 @@ typedef struct starg_mesh_builder {
     STARG_ARRAY(double) vertices;  /* 3 numbers per vertex */
     STARG_ARRAY(uint32_t) faces;   /* 3 indices per triangle */
     STARG_ARRAY(uint32_t) corners; /* of the open face */
+    starg_face_values *values;     /* NULL: not wanted */
     size_t ticks;
 } starg_mesh_builder;
 
@@ -70,6 +82,9 @@ starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, s
 
 /* Closes the open face and triangulates it. Errors: FORMAT (fewer than 3 corners), MEMORY. */
 starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place);
+
+/* Notes a name of the file; is it the wanted one? */
+bool starg_values_know(starg_face_values *values, const char *name, size_t length);
 
 /* Called once per item with the number of bytes read: progress and cancellation. */
 starg_status starg_builder_tick(starg_mesh_builder *builder, size_t done);
@@ -89,6 +104,10 @@ bool starg_polygon_fan(const double *vertices, const uint32_t *corners, size_t c
                        uint32_t *triangles);
 starg_status starg_polygon_clip(starg_context *context, const double *vertices,
                                 const uint32_t *corners, size_t count, uint32_t *triangles);
+
+/* starg_mesh_read_memory that also finds values of faces; NULL: none are wanted. */
+starg_status starg_mesh_read_with(starg_context *context, const void *bytes, size_t size,
+                                  const char *name, starg_face_values *values, starg_mesh **out);
 
 /* Readers. `matches` recognizes the format by content; `read` fills the builder and never reads
  * beyond the source. */

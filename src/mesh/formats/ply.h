@@ -25,6 +25,7 @@ typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_OTHER } ply_role;
 typedef struct ply_property {
     ply_role role;
     bool list;
+    bool wanted;         /* the values of faces that the builder asks for */
     ply_type count_type; /* for lists */
     ply_type type;
 } ply_property;

@@ -60,13 +60,13 @@ void starg_source_shorten(const char *name, char *shown, size_t size) {
         snprintf(shown, size, "...%s", name + length - (size - 4));
 }
 
-starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, size_t size,
-                                    const char *name, starg_mesh **out) {
+starg_status starg_mesh_read_with(starg_context *context, const void *bytes, size_t size,
+                                  const char *name, starg_face_values *values, starg_mesh **out) {
     starg_status status = STARG_OK;
     char shown[256];
     starg_source_shorten(name, shown, sizeof shown);
     starg_source source = {context, shown, bytes, size};
-    starg_mesh_builder builder = {.source = &source};
+    starg_mesh_builder builder = {.source = &source, .values = values};
     starg_c_locale locale = {0};
     const struct format *format = NULL;
     *out = NULL;
@@ -82,6 +82,11 @@ done:
     starg_builder_free(&builder);
     starg_progress_end(context);
     return status;
+}
+
+starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, size_t size,
+                                    const char *name, starg_mesh **out) {
+    return starg_mesh_read_with(context, bytes, size, name, NULL, out);
 }
 
 starg_status starg_mesh_read(starg_context *context, const char *path, starg_mesh **out) {

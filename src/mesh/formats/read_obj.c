@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Wavefront OBJ: lines of a keyword and values; only v and f matter. Faces may refer to later
+/* Wavefront OBJ: lines of a keyword and values; only v and f matter, and for values of faces by a
+ * name the groups, objects and materials that they are in. Faces may refer to later
  * vertices, so a first pass reads vertices and a second one faces. Referenced files are never
  * opened. */
 #include "mesh/formats/scan.h"
@@ -116,13 +117,33 @@ done:
     return status;
 }
 
+/* Which of group, object and material have the wanted name at this line? */
+enum { GROUP, OBJECT, MATERIAL, KEYWORDS };
+
+static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *values,
+                       bool held[KEYWORDS]) {
+    static const char *const keywords[KEYWORDS] = {"g", "o", "usemtl"};
+    for (int k = 0; k < KEYWORDS; k++) {
+        starg_word name;
+        if (!starg_word_is(keyword, keywords[k]))
+            continue;
+        held[k] = false;
+        while (starg_scan_word_here(scan, &name))
+            held[k] = starg_values_know(values, name.text, name.length) || held[k];
+    }
+    values->current = held[GROUP] || held[OBJECT] || held[MATERIAL];
+}
+
 static starg_status read_faces(starg_mesh_builder *builder) {
     starg_status status = STARG_OK;
     starg_scan scan = scan_lines(builder->source);
     starg_word word;
     size_t before = 0;
+    bool held[KEYWORDS] = {false};
     while (starg_scan_word(&scan, &word)) {
         before += starg_word_is(word, "v");
+        if (builder->values != NULL)
+            take_names(&scan, word, builder->values, held);
         if (starg_word_is(word, "f"))
             STARG_TRY(read_face(&scan, before, builder));
         starg_scan_next_line(&scan);

@@ -144,6 +144,9 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
         else if (property->role <= PLY_Z)
             STARG_TRY(
                 read_real(ply, property->type, "a coordinate of a vertex", &point[property->role]));
+        else if (property->wanted)
+            STARG_TRY(read_real(ply, property->type, "the value of a property",
+                                &ply->builder->values->current));
         else
             STARG_TRY(skip_values(ply, property->type, 1));
     }
@@ -225,6 +228,8 @@ static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_
     ply->by_lines = by_lines;
     ply->extra = 0;
     ply->builder->vertices.count = ply->builder->faces.count = ply->builder->corners.count = 0;
+    if (ply->builder->values != NULL)
+        ply->builder->values->data.count = 0;
     return read_data(ply);
 }
 
