@@ -3,10 +3,13 @@
 #include "commands.h"
 #include "model.h"
 #include "report.h"
+#include "map_solid.h"
 #include "starguard/morph.h"
 
 typedef struct values {
-    const char *output, *landmarks;
+    const char *output, *landmarks, *map;
+    bool solid;
+    starg_solid_map_options wanted;
 } values;
 
 static const cli_option options[] = {
@@ -15,6 +18,11 @@ static const cli_option options[] = {
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
         "of B; or six coordinates, which select the nearest vertices."),
+    CLI_FLAG_OPTION("solid", solid,
+                    "Map the solids that the surfaces bound: one set of tetrahedra, positive in "
+                    "both. The output is MAP.vtu. Needs TetGen."),
+    CLI_INPUT_OPTION("map", map, "MAP.json",
+                     "With --solid: map of the surfaces from 'starguard map'. Default: computed."),
 };
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -49,8 +57,7 @@ done:
     return status;
 }
 
-static starg_status run(cli_session *session, void *data) {
-    const values *v = data;
+static starg_status map_surfaces(cli_session *session, const values *v) {
     starg_status status = STARG_OK;
     starg_mesh *target = NULL;
     starg_map *map = NULL;
@@ -75,6 +82,14 @@ done:
     return status;
 }
 
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    const cli_solid_map solid = {v->output, v->map, v->landmarks, &v->wanted};
+    if (v->solid)
+        return cli_solid_map_run(session, &solid);
+    return map_surfaces(session, v);
+}
+
 const cli_command cli_command_map = {
     .name = "map",
     .usage = "A B [--landmarks FILE] -o MAP.json",
@@ -90,6 +105,7 @@ const cli_command cli_command_map = {
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),
+    CLI_LIBRARY(starg_solid_map_options_fields, wanted),
     .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,

@@ -65,8 +65,13 @@ static starg_status read_model(cli_session *session, model *out) {
 /* Reads all results before verifying the first, so that a bad name is reported at once. */
 static starg_status read_results(cli_session *session, starg_result **results) {
     starg_status status = STARG_OK;
-    for (size_t i = 1; i < session->operand_count && status == STARG_OK; i++)
-        status = starg_result_read(session->context, session->operands[i], &results[i]);
+    size_t last = session->operand_count - 1;
+    CLI_TRY(starg_result_read(session->context, session->operands[last], &results[last]));
+    if (results[last]->solid_map != NULL)
+        goto done; /* before it stand models */
+    for (size_t i = 1; i < last; i++)
+        CLI_TRY(starg_result_read(session->context, session->operands[i], &results[i]));
+done:
     return status;
 }
 
@@ -188,6 +193,51 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
     return STARG_OK;
 }
 
+/* Of the operands A, B and MAP.vtu; or A and MAP.vtu. */
+static starg_status verify_solid_map(cli_session *session, const model *given,
+                                     const starg_solid_map *map, json_t *list) {
+    starg_status status = STARG_OK;
+    starg_mesh *target = NULL;
+    starg_verdict *verdict = NULL;
+    size_t last = session->operand_count - 1;
+    if (last > 2)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "'%.200s' is a map between solids; give A, B and the map",
+                        session->operands[last]);
+    if (last == 2)
+        CLI_TRY(starg_mesh_read(session->context, session->operands[1], &target));
+    CLI_TRY(starg_verify_solid_map(session->context, given->mesh, target, map, &verdict));
+    json_t *entry = json_object();
+    if (target != NULL)
+        cli_put(session, entry, "target", cli_json_text(session->operands[1]));
+    cli_put(session, entry, "tetrahedra", json_integer((json_int_t)map->count));
+    cli_put(session, entry, "pieces", json_integer((json_int_t)map->piece_count));
+    tell_verdict(session, session->operands[last], verdict, entry, list);
+done:
+    starg_verdict_free(session->context, verdict);
+    starg_mesh_free(target);
+    return status;
+}
+
+static starg_status verify_all(cli_session *session, const model *given,
+                               starg_result *const *results, json_t *list) {
+    starg_status status = STARG_OK;
+    decomposition found;
+    const starg_solid_map *map = results[session->operand_count - 1]->solid_map;
+    if (map != NULL)
+        return verify_solid_map(session, given, map, list);
+    CLI_TRY(check_certificates(session, results));
+    CLI_TRY(find_decomposition(session, results, &found));
+    for (size_t i = 1; i < session->operand_count; i++) {
+        if (results[i]->guards != NULL)
+            CLI_TRY(verify_guards(session, given, i, results, list));
+        else if (i == found.pieces)
+            CLI_TRY(verify_pieces(session, given, found, results, list));
+    }
+done:
+    return status;
+}
+
 static void report(cli_session *session, const starg_mesh *mesh, json_t *results) {
     cli_report_head(session, "starguard-verify", session->operands[0], mesh);
     cli_put(session, session->report, "passed", json_boolean(session->outcome == CLI_EXIT_DONE));
@@ -198,7 +248,6 @@ static starg_status run(cli_session *session, void *data) {
     (void)data;
     starg_status status = STARG_OK;
     model given = {0};
-    decomposition found;
     json_t *list = json_array();
     starg_result **results = calloc(session->operand_count, sizeof(starg_result *));
     if (results == NULL || list == NULL) {
@@ -207,14 +256,7 @@ static starg_status run(cli_session *session, void *data) {
     }
     CLI_TRY(read_model(session, &given));
     CLI_TRY(read_results(session, results));
-    CLI_TRY(check_certificates(session, results));
-    CLI_TRY(find_decomposition(session, results, &found));
-    for (size_t i = 1; i < session->operand_count; i++) {
-        if (results[i]->guards != NULL)
-            CLI_TRY(verify_guards(session, &given, i, results, list));
-        else if (i == found.pieces)
-            CLI_TRY(verify_pieces(session, &given, found, results, list));
-    }
+    CLI_TRY(verify_all(session, &given, results, list));
     if (session->report != NULL)
         report(session, given.mesh, list);
 done:

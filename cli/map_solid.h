@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* map --solid: maps between solids. */
+#ifndef STARGUARD_CLI_MAP_SOLID_H
+#define STARGUARD_CLI_MAP_SOLID_H
+
+#include "session.h"
+#include "starguard/solidmap.h"
+
+/* The options that concern solids. */
+typedef struct cli_solid_map {
+    const char *output, *map, *landmarks;
+    const starg_solid_map_options *wanted;
+} cli_solid_map;
+
+/* The first operand has been read into the session. */
+starg_status cli_solid_map_run(cli_session *session, const cli_solid_map *v);
+
+#endif
