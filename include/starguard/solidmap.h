@@ -11,6 +11,7 @@
 #include "context.h"
 #include "fields.h"
 #include "mesh.h"
+#include "morph.h"
 #include "verify.h"
 
 #ifdef __cplusplus
@@ -38,6 +39,10 @@ STARG_API starg_status starg_solid_map_create(starg_context *context, const star
                                               const double *images,
                                               const starg_solid_map_options *options,
                                               starg_solid_map **out);
+
+/* The map of a morph of method solid, with its keys. Errors: ARGUMENT (another method), MEMORY,
+ * CANCELLED. */
+STARG_API starg_status starg_morph_solid_map(const starg_morph *morph, starg_solid_map **out);
 
 /* Writes MAP.vtu (docs/formats.md). "-" is standard output. Errors: WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_solid_map_write(starg_context *context, const starg_solid_map *map,

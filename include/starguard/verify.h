@@ -185,6 +185,11 @@ typedef struct starg_solid_map {
     /* Largest over smallest singular value of a tetrahedron's map: the largest of all, the mean
      * weighted by volume in A, and the share of that volume where it is above 10. */
     double worst, mean, above_10;
+    /* Of a morph: where the vertices are at times between 0 and 1, key_count x vertex_count x 3.
+     * They move straight from A's places through these to B's, and every tetrahedron is positive at
+     * every time. */
+    size_t key_count;
+    double *times, *keys;
 } starg_solid_map;
 
 /* Reads MAP.vtu with a separate reader: a VTK XML unstructured grid of tetrahedra with numbers as

@@ -70,7 +70,7 @@ static starg_status spread(const starg_morph *m, const starg_solid_map_options *
     starg_status status = STARG_OK;
     size_t inverted;
     double reached;
-    STARG_TRY(deform(m, c, &inverted, &reached));
+    STARG_TRY(deform(m, c, NULL, &inverted, &reached));
     if (reached < 1)
         STARG_TRY(unfold_at_end(m, c, reached));
     for (int end = 1; end >= 0; end--) {
@@ -163,7 +163,8 @@ static void measure(starg_solid_map *map) {
     map->above_10 = fmin(high / all, 1);
 }
 
-static starg_status finish(starg_context *context, const deform_mesh *c, starg_solid_map **out) {
+starg_status solid_map_finish(starg_context *context, const deform_mesh *c,
+                              starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_tetmesh *places[2] = {NULL, NULL};
     starg_decomposition *pieces[2] = {NULL, NULL};
@@ -208,7 +209,7 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
     STARG_TRY(starg_morph_create(context, a, images, &way, &m));
     STARG_TRY(solids_fill(m, options->density, &c, &solid, &surface));
     STARG_TRY(spread(m, options, &c));
-    STARG_TRY(finish(context, &c, out));
+    STARG_TRY(solid_map_finish(context, &c, out));
 done:
     starg_time_end(context, former);
     deform_free(&c);

@@ -3,7 +3,12 @@
 #ifndef STARG_MORPH_SOLID_MAP_H
 #define STARG_MORPH_SOLID_MAP_H
 
+#include "morph/deform.h"
 #include "starguard/solidmap.h"
+
+/* Divides tetrahedra, positive in both places, into pieces, and measures. Errors: MESH, MEMORY,
+ * CANCELLED. */
+starg_status solid_map_finish(starg_context *context, const deform_mesh *c, starg_solid_map **out);
 
 /* Exponents of the extents of both places, as units of length. */
 void solid_map_exponents(const starg_solid_map *map, int out[2]);

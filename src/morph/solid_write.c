@@ -9,7 +9,7 @@
 
 static const char STAGE[] = "map file";
 
-enum { VTK_TETRAHEDRON = 10, COLUMNS = 20 };
+enum { VTK_TETRAHEDRON = 10, COLUMNS = 20, KEY_NAME = 32 };
 
 static void put_reals(FILE *stream, const double *values, size_t rows, size_t columns) {
     for (size_t i = 0; i < rows * columns; i++)
@@ -85,11 +85,18 @@ starg_status starg_solid_map_write(starg_context *context, const starg_solid_map
     put_field(stream, "distortion", distortion, 1, 3);
     put_field(stream, "guard", map->guards, map->piece_count, 3);
     put_field(stream, "guard_image", map->guard_images, map->piece_count, 3);
+    if (map->key_count > 0)
+        put_field(stream, "time", map->times, map->key_count, 1);
     fprintf(stream,
             "</FieldData>\n<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n"
             "<PointData Vectors=\"image\">\n",
             map->vertex_count, map->count);
     put_points(stream, "image", map->images, map->vertex_count);
+    for (size_t key = 0; key < map->key_count; key++) {
+        char name[KEY_NAME];
+        snprintf(name, sizeof name, "key_%04zu", key);
+        put_points(stream, name, map->keys + 3 * key * map->vertex_count, map->vertex_count);
+    }
     fputs("</PointData>\n", stream);
     put_cell_data(stream, map);
     fputs("<Points>\n", stream);

@@ -104,7 +104,7 @@ done:
 static starg_status deform_along(const starg_morph *m, deform_mesh *c) {
     size_t inverted;
     double reached;
-    starg_status status = deform(m, c, &inverted, &reached);
+    starg_status status = deform(m, c, NULL, &inverted, &reached);
     if (status == STARG_OK && reached < 1)
         status = starg_fail(m->context, STARG_ERROR_MESH, STAGE,
                             "%zu of %zu tetrahedra turn over near t = %.3g and cannot be mended: "

@@ -42,6 +42,10 @@ starg_status verify_claim_fewest(const verify_context *own);
 /* Maps of pieces to balls, if there are any. Errors: MEMORY. */
 starg_status verify_claim_balls(const verify_context *own);
 
+/* Between the keys of a map no tetrahedron is ever inverted. Errors: CANCELLED. */
+starg_status verify_claim_path(starg_context *context, const starg_solid_map *map,
+                               starg_verdict *verdict);
+
 /* ---- names of elements ---- */
 
 typedef struct verify_words {

@@ -2,7 +2,9 @@
 /* MAP.vtu, read for the verifier: a VTK XML unstructured grid of this form only (docs/formats.md):
  *
  *     VTKFile > UnstructuredGrid > FieldData: distortion (3), guard (3 p), guard_image (3 p)
- *                                  Piece > PointData: image (3 n); CellData: piece (m)
+ *                                             time (k)
+ *                                  Piece > PointData: image (3 n), key_0000 (3 n) ...
+ *                                          CellData: piece (m)
  *                                          Points (3 n); Cells: connectivity (4 m), types (m: 10)
  *
  * Elements are taken in any order, arrays of other names are skipped, and numbers are text
@@ -34,6 +36,7 @@ typedef enum vtu_name {
     DISTORTION,
     GUARD,
     GUARD_IMAGE,
+    TIME,
     NAMES
 } vtu_name;
 
@@ -50,6 +53,7 @@ static const vtu_array WANTED[NAMES] = {
     [DISTORTION] = {"FieldData", "distortion"},
     [GUARD] = {"FieldData", "guard"},
     [GUARD_IMAGE] = {"FieldData", "guard_image"},
+    [TIME] = {"FieldData", "time"},
 };
 
 typedef struct reader {
@@ -59,6 +63,8 @@ typedef struct reader {
     char section[WORD]; /* the last element that may hold arrays */
     bool found[NAMES];
     number_list numbers[NAMES];
+    number_list keys; /* of arrays key_0000, key_0001, ..., one after the other */
+    size_t key_count;
     size_t points, cells; /* as declared */
     bool counted;
 } reader;
@@ -156,9 +162,22 @@ done:
     return status;
 }
 
+/* Arrays of keys must come in order. */
+static starg_status read_key(reader *r, const tag *t, const char *name) {
+    char expected[WORD], format[WORD] = "";
+    snprintf(expected, sizeof expected, "key_%04zu", r->key_count++);
+    if (strcmp(name, expected) != 0)
+        return reject(r, "places at times must be named key_0000, key_0001 and so on");
+    if (!attribute(t, "format", format) || strcmp(format, "ascii") != 0)
+        return reject(r, "only arrays of format \"ascii\" are read");
+    return t->closed ? STARG_OK : read_numbers(r, &r->keys);
+}
+
 static starg_status read_array(reader *r, const tag *t) {
     char name[WORD] = "", format[WORD] = "";
     attribute(t, "Name", name);
+    if (strcmp(r->section, "PointData") == 0 && strncmp(name, "key_", 4) == 0)
+        return read_key(r, t, name);
     for (int i = 0; i < NAMES; i++) {
         if (strcmp(r->section, WANTED[i].section) != 0 ||
             (WANTED[i].name != NULL && strcmp(name, WANTED[i].name) != 0))
@@ -221,9 +240,8 @@ static starg_status expect_count(const reader *r, vtu_name array, size_t count) 
     return reject_array(r, name, text);
 }
 
-static starg_status take_points(const reader *r, vtu_name array, double **out) {
+static starg_status take_points(const reader *r, const number_list *from, double **out) {
     starg_status status = STARG_OK;
-    const number_list *from = &r->numbers[array];
     STARG_NEW(r->context, STAGE, *out, from->count);
     for (size_t i = 0; i < from->count; i++) {
         uint64_t index = i / 3;
@@ -270,6 +288,28 @@ done:
     return status;
 }
 
+/* Places at times that ascend between 0 and 1. */
+static starg_status take_keys(const reader *r, starg_solid_map *map) {
+    starg_status status = STARG_OK;
+    double before = 0;
+    if (r->key_count == 0 && !r->found[TIME])
+        return STARG_OK;
+    STARG_TRY(expect_count(r, TIME, r->key_count));
+    if (r->keys.count != 3 * r->points * r->key_count)
+        return reject_array(r, "key_0000", "and those that follow have not three numbers a point");
+    STARG_NEW(r->context, STAGE, map->times, r->key_count);
+    for (size_t key = 0; key < r->key_count; key++) {
+        map->times[key] = r->numbers[TIME].data[key];
+        if (!(map->times[key] > before && map->times[key] < 1))
+            return reject_array(r, "time", "does not ascend between 0 and 1");
+        before = map->times[key];
+    }
+    STARG_TRY(take_points(r, &r->keys, &map->keys));
+    map->key_count = r->key_count;
+done:
+    return status;
+}
+
 static starg_status take_map(const reader *r, starg_solid_map *map) {
     starg_status status = STARG_OK;
     size_t pieces = r->numbers[GUARD].count / 3;
@@ -284,16 +324,17 @@ static starg_status take_map(const reader *r, starg_solid_map *map) {
     STARG_TRY(expect_count(r, DISTORTION, 3));
     STARG_TRY(expect_count(r, GUARD, 3 * pieces));
     STARG_TRY(expect_count(r, GUARD_IMAGE, 3 * pieces));
-    STARG_TRY(take_points(r, POINTS, &map->vertices));
-    STARG_TRY(take_points(r, IMAGE, &map->images));
-    STARG_TRY(take_points(r, GUARD, &map->guards));
-    STARG_TRY(take_points(r, GUARD_IMAGE, &map->guard_images));
+    STARG_TRY(take_points(r, &r->numbers[POINTS], &map->vertices));
+    STARG_TRY(take_points(r, &r->numbers[IMAGE], &map->images));
+    STARG_TRY(take_points(r, &r->numbers[GUARD], &map->guards));
+    STARG_TRY(take_points(r, &r->numbers[GUARD_IMAGE], &map->guard_images));
     map->vertex_count = r->points;
     map->piece_count = pieces;
     map->worst = r->numbers[DISTORTION].data[0];
     map->mean = r->numbers[DISTORTION].data[1];
     map->above_10 = r->numbers[DISTORTION].data[2];
     STARG_TRY(take_cells(r, map));
+    STARG_TRY(take_keys(r, map));
 done:
     return status;
 }
@@ -332,6 +373,7 @@ done:
     freelocale(plain);
     for (int i = 0; i < NAMES; i++)
         STARG_ARRAY_FREE(context, &r.numbers[i]);
+    STARG_ARRAY_FREE(context, &r.keys);
     starg_release(context, copy);
     if (status != STARG_OK)
         starg_solid_map_free(context, map);
@@ -342,7 +384,8 @@ void starg_solid_map_free(starg_context *context, starg_solid_map *map) {
     if (map == NULL)
         return;
     void *const blocks[] = {map->vertices, map->images, map->tetrahedra,
-                            map->labels,   map->guards, map->guard_images};
+                            map->labels,   map->guards, map->guard_images,
+                            map->times,    map->keys};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(context, blocks[i]);
     starg_release(context, map);

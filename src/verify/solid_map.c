@@ -28,6 +28,19 @@ typedef struct end {
 
 /* ---- parts ---- */
 
+/* Coordinates of keys are checked as those of the ends. */
+static starg_status check_keys(starg_context *context, const starg_solid_map *map) {
+    starg_status status = STARG_OK;
+    starg_pieces_mesh mesh = {.vertex_count = map->vertex_count,
+                              .count = map->count,
+                              .tetrahedra = map->tetrahedra};
+    for (size_t key = 0; key < map->key_count && status == STARG_OK; key++) {
+        mesh.vertices = map->keys + 3 * key * map->vertex_count;
+        status = verify_check_arrays(context, &mesh, NULL);
+    }
+    return status;
+}
+
 static starg_status take_end(starg_context *context, const starg_solid_map *map, end *e, int side) {
     starg_status status = STARG_OK;
     const double *guards = side == 0 ? map->guards : map->guard_images;
@@ -156,10 +169,12 @@ starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     for (int side = 0; side < 2; side++)
         STARG_TRY(take_end(context, map, &ends[side], side));
+    STARG_TRY(check_keys(context, map));
     STARG_TRY(verify_verdict_create(context, &verdict));
     for (int side = 0; side < 2; side++)
         STARG_TRY(claim_end(&ends[side], verdict));
     claim_distortion(verdict, map, ends);
+    STARG_TRY(verify_claim_path(context, map, verdict));
     *out = verdict;
     verdict = NULL;
 done:
