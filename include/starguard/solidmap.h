@@ -40,9 +40,52 @@ STARG_API starg_status starg_solid_map_create(starg_context *context, const star
                                               const starg_solid_map_options *options,
                                               starg_solid_map **out);
 
+typedef enum starg_solid_shape {
+    STARG_SOLID_BALL = 0, /* of radius 1 about the origin */
+    STARG_SOLID_CUBE = 1  /* of edge 2 about the origin */
+} starg_solid_shape;
+
+/* Maps the solid A, whose surface is connected and of genus 0, to a polyhedron inscribed in a ball
+ * or a cube: every vertex of A's surface has its image on the ball's sphere (up to rounding) or on
+ * the cube's surface, exactly; faces across an edge of the cube cut it off. `options` may be NULL.
+ * Errors: ARGUMENT, MESH (also: not connected, another genus), SOLVER (no TetGen; too uneven for the
+ * sphere), MEMORY, CANCELLED, TIME. */
+STARG_API starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,
+                                          starg_solid_shape shape,
+                                          const starg_solid_map_options *options,
+                                          starg_solid_map **out);
+
 /* The map of a morph of method solid, with its keys. Errors: ARGUMENT (another method), MEMORY,
  * CANCELLED. */
 STARG_API starg_status starg_morph_solid_map(const starg_morph *morph, starg_solid_map **out);
+
+/* ---- fields ---- */
+
+/* Points, and the values of a field there. */
+typedef struct starg_samples {
+    size_t count;
+    size_t width;   /* of values at a point: 0, 1 (numbers, labels) or 3 (vectors) */
+    double *points; /* count x 3 */
+    double *values; /* count x width */
+} starg_samples;
+
+/* Reads a text with a point per line: x y z, x y z value, or x y z u v w; '#' begins a comment.
+ * Errors: READ, FORMAT (with the line), MEMORY. */
+STARG_API starg_status starg_samples_read(starg_context *context, const char *path,
+                                          starg_samples **out);
+/* Writes such a text. "-" is standard output. Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_samples_write(starg_context *context, const starg_samples *samples,
+                                           const char *path);
+STARG_API void starg_samples_free(starg_context *context, starg_samples *samples);
+
+/* Carries points and values from A to B, or with `back` from B to A. Each point is found in a
+ * tetrahedron by exact tests, and goes along linearly; numbers stay, vectors are multiplied by the
+ * Jacobian there. Errors: MESH (points outside: which), MEMORY, CANCELLED. */
+STARG_API starg_status starg_solid_map_carry(starg_context *context, const starg_solid_map *map,
+                                             const starg_samples *samples, bool back,
+                                             starg_samples **out);
+
+/* ---- files ---- */
 
 /* Writes MAP.vtu (docs/formats.md). "-" is standard output. Errors: WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_solid_map_write(starg_context *context, const starg_solid_map *map,

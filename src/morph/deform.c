@@ -13,9 +13,9 @@
  * together (unfold.c); below a minimal step the deformation fails. On a path a step must in addition
  * keep every tetrahedron positive at every moment (stays_positive).
  *
- * Before the first step, interior edges with both ends on the surface are split (split.c), because
- * they leave no freedom where the surface bends. This has always sufficed if the surface did not
- * intersect itself on the way.
+ * Before the first step (deform_free_surface), interior edges with both ends on the surface are split
+ * (split.c), because they leave no freedom where the surface bends, and so are tetrahedra that have
+ * all corners on it. This has always sufficed if the surface did not intersect itself on the way.
  *
  * Invariant: after each step all tetrahedra are positive, exactly. Cost: per step one frame, three
  * solves and some sweeps over the tetrahedra. */
@@ -327,15 +327,31 @@ done:
     return status;
 }
 
-static starg_status split_chords(const walk *w) {
+starg_status deform_free_surface(const starg_morph *m, deform_mesh *c) {
     starg_status status = STARG_OK;
+    const walk w = {.m = m, .c = c};
     edge_list surface = {0}, chords = {0};
-    STARG_TRY(find_surface_edges(w, &surface));
-    STARG_TRY(find_chords(w, &surface, &chords));
-    STARG_TRY(deform_split(w->c, chords.data, chords.count));
+    STARG_TRY(find_surface_edges(&w, &surface));
+    STARG_TRY(find_chords(&w, &surface, &chords));
+    STARG_TRY(deform_split(c, chords.data, chords.count));
+    STARG_TRY(deform_fill_flat(c));
 done:
-    STARG_ARRAY_FREE(w->c->context, &surface);
-    STARG_ARRAY_FREE(w->c->context, &chords);
+    STARG_ARRAY_FREE(c->context, &surface);
+    STARG_ARRAY_FREE(c->context, &chords);
+    return status;
+}
+
+/* ---- harmonic extension ---- */
+
+starg_status deform_harmonic(const starg_morph *m, deform_mesh *c) {
+    starg_status status = STARG_OK;
+    walk w = {.m = m, .c = c};
+    STARG_TRY(prepare(&w));
+    memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
+    STARG_TRY(predict(&w, 1));
+    memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);
+done:
+    walk_free(&w);
     return status;
 }
 
@@ -399,7 +415,6 @@ starg_status deform(const starg_morph *m, deform_mesh *c, deform_path *path, siz
     walk w = {.m = m, .c = c, .path = path};
     double longest = path != NULL ? LONGEST_PROVEN : LONGEST_STEP, step = longest;
     *reached = 0;
-    STARG_TRY(split_chords(&w));
     STARG_TRY(prepare(&w));
     while (*reached < 1 && step >= SHORTEST_STEP) {
         double to = fmin(1, *reached + step);

@@ -65,12 +65,16 @@ done:
     return status;
 }
 
+/* Along a morph, or at once. */
 static starg_status spread(const starg_morph *m, const starg_solid_map_options *options,
                            deform_mesh *c) {
     starg_status status = STARG_OK;
     size_t inverted;
-    double reached;
-    STARG_TRY(deform(m, c, NULL, &inverted, &reached));
+    double reached = 0;
+    if (m->method == STARG_MORPH_ARAP)
+        STARG_TRY(deform(m, c, NULL, &inverted, &reached));
+    else
+        STARG_TRY(deform_harmonic(m, c));
     if (reached < 1)
         STARG_TRY(unfold_at_end(m, c, reached));
     for (int end = 1; end >= 0; end--) {
@@ -186,11 +190,11 @@ done:
     return status;
 }
 
-/* ---- public function ---- */
+/* ---- public functions ---- */
 
-starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
-                                    const double *images, const starg_solid_map_options *options,
-                                    starg_solid_map **out) {
+static starg_status make_map(starg_context *context, const starg_mesh *a, const double *images,
+                             starg_morph_method method, const starg_solid_map_options *options,
+                             starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_solid_map_options defaults;
     starg_morph_options way;
@@ -201,20 +205,41 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
     starg_solid_map_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
-    *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(fields_check(context, STAGE, starg_solid_map_options_fields(), options));
     starg_morph_options_default(&way);
-    way.method = STARG_MORPH_ARAP;
+    way.method = method;
     STARG_TRY(starg_morph_create(context, a, images, &way, &m));
     STARG_TRY(solids_fill(m, options->density, &c, &solid, &surface));
     STARG_TRY(spread(m, options, &c));
     STARG_TRY(solid_map_finish(context, &c, out));
 done:
-    starg_time_end(context, former);
     deform_free(&c);
     starg_solid_free(solid);
     starg_release(context, surface);
     starg_morph_free(m);
+    return status;
+}
+
+starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
+                                    const double *images, const starg_solid_map_options *options,
+                                    starg_solid_map **out) {
+    *out = NULL;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    starg_status status = make_map(context, a, images, STARG_MORPH_ARAP, options, out);
+    starg_time_end(context, former);
+    return status;
+}
+
+starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a, starg_solid_shape shape,
+                                const starg_solid_map_options *options, starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    double *images = NULL;
+    *out = NULL;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    STARG_TRY(solid_map_shape(context, a, shape, &images));
+    STARG_TRY(make_map(context, a, images, STARG_MORPH_LINEAR, options, out));
+done:
+    starg_time_end(context, former);
+    starg_release(context, images);
     return status;
 }

@@ -6,6 +6,11 @@
 #include "morph/deform.h"
 #include "starguard/solidmap.h"
 
+/* The images of A's vertices on a ball of radius 1 or a cube of edge 2 (solid_shape.c); a block of
+ * the context. Errors: MESH, SOLVER, MEMORY, CANCELLED. */
+starg_status solid_map_shape(starg_context *context, const starg_mesh *a, starg_solid_shape shape,
+                             double **images);
+
 /* Divides tetrahedra, positive in both places, into pieces, and measures. Errors: MESH, MEMORY,
  * CANCELLED. */
 starg_status solid_map_finish(starg_context *context, const deform_mesh *c, starg_solid_map **out);

@@ -97,6 +97,7 @@ starg_status solids_fill(const starg_morph *m, double density, deform_mesh *c, s
     STARG_TRY(list_surface(m, surface, &c->fixed));
     c->surface = *surface;
     STARG_TRY(fill(m, *solid, density, c));
+    STARG_TRY(deform_free_surface(m, c));
 done:
     return status;
 }
