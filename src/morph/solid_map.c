@@ -30,7 +30,7 @@
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "solid map";
-enum { UNFOLD_STEPS = 4000 };
+enum { UNFOLD_STEPS = 2000, ROUNDS = 10 };
 /* Ratios of singular values: from where they count as high, and what stands for more. */
 static const double HIGH = 10, HIGHEST = 1e300;
 
@@ -47,20 +47,43 @@ static unfold_problem problem_of(deform_mesh *c, int free_end) {
                             .now = free_end == 1 ? c->now.data : c->rest.data};
 }
 
-/* Puts the surface into place at once, and moves inner vertices until nothing is inverted. */
+/* The edges of inverted tetrahedra that are not on the surface. */
+static starg_status split_inverted(deform_mesh *c) {
+    starg_status status = STARG_OK;
+    const unfold_problem p = problem_of(c, 1);
+    STARG_ARRAY(deform_edge) edges = {0};
+    for (size_t i = 0; i < 6 * p.count; i++) {
+        uint32_t a = p.tetrahedra[i / 6 * 4 + (size_t)DEFORM_EDGES[i % 6][0]];
+        uint32_t b = p.tetrahedra[i / 6 * 4 + (size_t)DEFORM_EDGES[i % 6][1]];
+        if ((a >= c->fixed || b >= c->fixed) && !unfold_is_positive(&p, i / 6))
+            STARG_PUSH(c->context, STAGE, &edges, deform_edge_of(a, b));
+    }
+    deform_edges_sort(edges.data, &edges.count);
+    STARG_TRY(deform_split(c, edges.data, edges.count));
+done:
+    STARG_ARRAY_FREE(c->context, &edges);
+    return status;
+}
+
+/* Puts the surface into place at once, and moves inner vertices until nothing is inverted. Where
+ * that does not do, there are more of them. */
 static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, double reached) {
     starg_status status = STARG_OK;
-    size_t inverted;
+    size_t inverted = 0;
     for (size_t v = 0; v < c->fixed; v++)
         vec3_copy(m->target + 3 * (size_t)c->surface[v], c->now.data + 3 * v);
-    const unfold_problem p = problem_of(c, 1);
-    STARG_TRY(unfold(&p, UNFOLD_STEPS, &inverted));
-    if (inverted > 0)
-        status = starg_fail(c->context, STARG_ERROR_MESH, STAGE,
-                            "%zu of %zu tetrahedra stay inverted in B (the way there ended at t = "
-                            "%.3g): A's surface folds too much in B; a finer A (--density, or more "
-                            "vertices), another map of the surfaces or landmarks may do",
-                            inverted, p.count, reached);
+    for (int round = 0; round < ROUNDS; round++) {
+        const unfold_problem p = problem_of(c, 1);
+        STARG_TRY(unfold(&p, UNFOLD_STEPS, &inverted));
+        if (inverted == 0)
+            goto done;
+        STARG_TRY(split_inverted(c));
+    }
+    status = starg_fail(c->context, STARG_ERROR_MESH, STAGE,
+                        "%zu of %zu tetrahedra stay inverted in B (the way there ended at t = "
+                        "%.3g): A's surface folds too much in B; a finer A (--density, or more "
+                        "vertices), another map of the surfaces or landmarks may do",
+                        inverted, c->tetrahedra.count / 4, reached);
 done:
     return status;
 }

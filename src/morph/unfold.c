@@ -6,14 +6,14 @@
  * positive, and the maps from its rest place distort little.
  *
  * Method: with J the Jacobian of a tetrahedron's map and D its determinant, minimise the sum over
- * tetrahedra, weighted by rest volume, of
+ * tetrahedra (relaxation: weighted by rest volume) of
  *
  *     tr(J^T J) / X(D)^(2/3) + THETA (D^2 + 1) / X(D),    X(D) = (D + sqrt(e^2 + D^2)) / 2,
  *
  * by limited-memory BFGS. For e = 0 this is an elastic energy that is infinite at inversions; e > 0
  * makes it finite there, and is lowered by the rule of the paper, after which the number of
- * inversions becomes zero in finitely many rounds if descent makes progress. Both places are scaled
- * to the same volume.
+ * inversions becomes zero in finitely many rounds if descent makes progress. Rest places are scaled
+ * by how much the surface grows nearby, so that tetrahedra are small where there is little room.
  *
  * Stages: unfold: rounds of descent with falling e, until no tetrahedron is inverted.
  * unfold_relax: descent with e = 0, in which steps to places with an inverted tetrahedron are
@@ -36,6 +36,7 @@ static const char STAGE[] = "unfold";
 enum {
     MEMORY = 8,      /* pairs of the approximation to the Hessian */
     ROUND = 40,      /* steps with one e */
+    GROWTH_SWEEPS = 200,
     HALVINGS = 30,   /* of a step, at most */
     ROUNDS_IDLE = 12 /* with no fewer inversions, until it is given up */
 };
@@ -49,8 +50,9 @@ typedef double matrix[3][3];
 typedef struct descent {
     const unfold_problem *p;
     double epsilon;
-    matrix *gradients; /* of the barycentric coordinates of corners 1 to 3, in units of equal volume */
-    double *weights;   /* shares of the volume */
+    bool by_volume;    /* weights are shares of the rest volume; else all are the same */
+    matrix *gradients; /* of the barycentric coordinates of corners 1 to 3 */
+    double *weights;
     double extent;
     double lowest; /* the least determinant at the last evaluation */
     size_t size;   /* unknowns */
@@ -85,6 +87,10 @@ static size_t count_inverted(const unfold_problem *p, const double *places) {
     for (size_t t = 0; t < p->count; t++)
         inverted += !is_positive(p, places, t);
     return inverted;
+}
+
+bool unfold_is_positive(const unfold_problem *p, size_t tetrahedron) {
+    return is_positive(p, p->now, tetrahedron);
 }
 
 size_t unfold_count(const unfold_problem *p) {
@@ -122,21 +128,89 @@ static double extent_of(const unfold_problem *p) {
     return extent;
 }
 
-static void prepare_tetrahedra(descent *d) {
+/* The logarithm of how much the surface grows about each of its vertices, in length. */
+static starg_status find_growth_outside(const unfold_problem *p, double *growth) {
+    starg_status status = STARG_OK;
+    double *areas[2] = {NULL, NULL};
+    for (int end = 0; end < 2; end++)
+        STARG_NEW_ZERO(p->context, STAGE, areas[end], p->vertex_count);
+    for (size_t i = 0; i < 4 * p->count; i++) {
+        const uint32_t *corners = p->tetrahedra + i / 4 * 4;
+        uint32_t v[3];
+        for (size_t k = 0; k < 3; k++)
+            v[k] = corners[(i + k + 1) % 4];
+        if (v[0] >= p->fixed || v[1] >= p->fixed || v[2] >= p->fixed)
+            continue;
+        for (int end = 0; end < 2; end++) {
+            const double *at = end == 0 ? p->rest : p->now;
+            double area = vec3_triangle_area(at + 3 * (size_t)v[0], at + 3 * (size_t)v[1],
+                                             at + 3 * (size_t)v[2]);
+            for (int k = 0; k < 3; k++)
+                areas[end][v[k]] += area;
+        }
+    }
+    for (size_t v = 0; v < p->fixed; v++)
+        if (areas[0][v] > 0 && areas[1][v] > 0)
+            growth[v] = log(areas[1][v] / areas[0][v]) / 2;
+done:
+    for (int end = 0; end < 2; end++)
+        starg_release(p->context, areas[end]);
+    return status;
+}
+
+/* Extends it to the inside: each vertex takes the mean over its tetrahedra. */
+static starg_status find_growth(const unfold_problem *p, double **out) {
+    starg_status status = STARG_OK;
+    double *sums = NULL, *growth = NULL;
+    uint32_t *counts = NULL;
+    STARG_NEW_ZERO(p->context, STAGE, *out, p->vertex_count);
+    growth = *out;
+    STARG_NEW(p->context, STAGE, sums, p->vertex_count);
+    STARG_NEW(p->context, STAGE, counts, p->vertex_count);
+    STARG_TRY(find_growth_outside(p, growth));
+    for (int sweep = 0; sweep < GROWTH_SWEEPS; sweep++) {
+        memset(sums, 0, p->vertex_count * sizeof *sums);
+        memset(counts, 0, p->vertex_count * sizeof *counts);
+        for (size_t i = 0; i < 4 * p->count; i++) {
+            const uint32_t *corners = p->tetrahedra + i / 4 * 4;
+            for (size_t k = 0; k < 4; k++)
+                sums[corners[i % 4]] += growth[corners[k]];
+            counts[corners[i % 4]] += 4;
+        }
+        for (size_t v = p->fixed; v < p->vertex_count; v++)
+            if (counts[v] > 0)
+                growth[v] = sums[v] / counts[v];
+    }
+done:
+    starg_release(p->context, sums);
+    starg_release(p->context, counts);
+    return status;
+}
+
+/* Rest places are scaled by the growth, so that determinants are about 1. */
+static starg_status prepare_tetrahedra(descent *d) {
+    starg_status status = STARG_OK;
     const unfold_problem *p = d->p;
-    double rest = volume_of(p, p->rest), now = volume_of(p, p->now);
-    double scale = now > 0 && rest > 0 ? cbrt(rest / now) : 1;
+    double rest = volume_of(p, p->rest), *growth = NULL;
+    STARG_TRY(find_growth(p, &growth));
     for (size_t t = 0; t < p->count; t++) {
+        const uint32_t *corners = p->tetrahedra + 4 * t;
         matrix e;
         edges_of(p, p->rest, t, e);
         double six = vec3_triple(e[0], e[1], e[2]);
+        double scale = exp(-(growth[corners[0]] + growth[corners[1]] + growth[corners[2]] +
+                             growth[corners[3]]) /
+                           4);
         for (int k = 0; k < 3; k++) {
             vec3_cross(e[(k + 1) % 3], e[(k + 2) % 3], d->gradients[t][k]);
             for (int i = 0; i < 3; i++)
                 d->gradients[t][k][i] *= scale / six;
         }
-        d->weights[t] = six / 6 / rest;
+        d->weights[t] = d->by_volume ? six / 6 / rest : 1 / (double)p->count;
     }
+done:
+    starg_release(p->context, growth);
+    return status;
 }
 
 static starg_status prepare(descent *d) {
@@ -154,7 +228,7 @@ static starg_status prepare(descent *d) {
         STARG_NEW(p->context, STAGE, d->moves[i], d->size);
         STARG_NEW(p->context, STAGE, d->bends[i], d->size);
     }
-    prepare_tetrahedra(d);
+    STARG_TRY(prepare_tetrahedra(d));
     memcpy(d->trial, p->now, 3 * p->vertex_count * sizeof *d->trial);
 done:
     return status;
@@ -380,7 +454,7 @@ done:
 
 starg_status unfold_relax(const unfold_problem *p, size_t steps) {
     starg_status status = STARG_OK;
-    descent d = {.p = p};
+    descent d = {.p = p, .by_volume = true};
     double before, after = INFINITY;
     if (p->fixed >= p->vertex_count || steps == 0)
         return STARG_OK;

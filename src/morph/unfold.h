@@ -15,6 +15,9 @@ typedef struct unfold_problem {
     double *now;                /* vertex_count x 3: to be moved */
 } unfold_problem;
 
+/* Is a tetrahedron positive where it is now, exactly? */
+bool unfold_is_positive(const unfold_problem *p, size_t tetrahedron);
+
 /* Number of tetrahedra that are not positive where they are now, exactly. */
 size_t unfold_count(const unfold_problem *p);
 
