@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard map: maps each vertex of one surface to another surface. */
 #include "commands.h"
+#include "map_solid.h"
 #include "model.h"
 #include "report.h"
-#include "map_solid.h"
 #include "starguard/morph.h"
 
 typedef struct values {
@@ -31,10 +31,12 @@ static const cli_option options[] = {
                       "cube; B is then left out."),
     CLI_INPUT_OPTION("points", points, "FILE",
                      "With --solid: points of A, x y z per line, to be carried to B."),
-    CLI_INPUT_OPTION("apply", field, "FIELD",
-                     "With --solid: the same with values of a field: x y z and a number or a label, "
-                     "or x y z and a vector, which is transformed by the map's Jacobian."),
-    CLI_TEXT_OPTION("carried", carried, "FILE", "Output of --points and --apply, in the same order."),
+    CLI_INPUT_OPTION(
+        "apply", field, "FIELD",
+        "With --solid: the same with values of a field: x y z and a number or a label, "
+        "or x y z and a vector, which is transformed by the map's Jacobian."),
+    CLI_TEXT_OPTION("carried", carried, "FILE",
+                    "Output of --points and --apply, in the same order."),
     CLI_FLAG_OPTION("back", back, "Carry from B to A instead."),
 };
 

@@ -226,6 +226,11 @@ static starg_status verify_all(cli_session *session, const model *given,
     const starg_solid_map *map = results[session->operand_count - 1]->solid_map;
     if (map != NULL)
         return verify_solid_map(session, given, map, list);
+    for (size_t i = 1; i < session->operand_count; i++)
+        if (results[i]->solid_map != NULL)
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "'%.200s' is a map between solids; it belongs last, behind A and B",
+                            session->operands[i]);
     CLI_TRY(check_certificates(session, results));
     CLI_TRY(find_decomposition(session, results, &found));
     for (size_t i = 1; i < session->operand_count; i++) {
@@ -287,7 +292,10 @@ const cli_command cli_command_verify = {
         "piece is connected, has the stated size and contacts, and is star-shaped about "
         "its guard where this is stated. MODEL may also be a tetrahedral mesh. For "
         "PIECES.vtk alone, guards are not checked. With the certificate of 'starguard decompose "
-        "--prove --certificate' behind them, it is checked that no fewer pieces are possible.",
+        "--prove --certificate' behind them, it is checked that no fewer pieces are possible.\n"
+        "MAP.vtu of 'starguard map --solid', behind A and B: tetrahedra are positive in both and "
+        "fill "
+        "both, pieces are star-shaped in both, and no tetrahedron of a morph is ever inverted.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
                 "# and that no fewer guards would do, wherever they stand\n"
@@ -296,7 +304,9 @@ const cli_command cli_command_verify = {
                 "# several at once, for a script\n"
                 "starguard verify model.off ilp.json greedy.json --quiet && echo verified\n"
                 "# a star decomposition\n"
-                "starguard verify model.off pieces.json pieces.vtk",
+                "starguard verify model.off pieces.json pieces.vtk\n"
+                "# a map between two solids\n"
+                "starguard verify a.off b.off map.vtu",
     CLI_OPERANDS(2, SIZE_MAX),
     .run = run,
 };

@@ -122,8 +122,8 @@ static starg_status make_map(cli_session *session, const cli_solid_map *v, starg
     if (is_solid_map(v->map))
         return read_map(session, v->map, out);
     if (v->shape > 0)
-        return starg_solid_map_to(session->context, session->mesh, (starg_solid_shape)(v->shape - 1),
-                                  v->wanted, out);
+        return starg_solid_map_to(session->context, session->mesh,
+                                  (starg_solid_shape)(v->shape - 1), v->wanted, out);
     CLI_TRY(find_images(session, v, &images));
     CLI_TRY(starg_solid_map_create(session->context, session->mesh, images, v->wanted, out));
 done:

@@ -91,9 +91,9 @@ STARG_API void starg_landmarks_free(starg_context *context, uint32_t *pairs);
 /* ---- morphs ---- */
 
 typedef enum starg_morph_method {
-    STARG_MORPH_STAR = 0,     /* pieces with corresponding guards [YL11] */
-    STARG_MORPH_ARAP = 1,     /* as rigid as possible, about one centre [ACOL00, BBA08]     */
-    STARG_MORPH_LINEAR = 2,   /* straight vertex paths */
+    STARG_MORPH_STAR = 0,      /* pieces with corresponding guards [YL11] */
+    STARG_MORPH_ARAP = 1,      /* as rigid as possible, about one centre [ACOL00, BBA08]     */
+    STARG_MORPH_LINEAR = 2,    /* straight vertex paths */
     STARG_MORPH_SPHERICAL = 3, /* spherical coordinates about the guards [SR95] */
     STARG_MORPH_SOLID = 4 /* tetrahedra that fill both, none of which is inverted at any time */
 } starg_morph_method;

@@ -48,8 +48,8 @@ typedef enum starg_solid_shape {
 /* Maps the solid A, whose surface is connected and of genus 0, to a polyhedron inscribed in a ball
  * or a cube: every vertex of A's surface has its image on the ball's sphere (up to rounding) or on
  * the cube's surface, exactly; faces across an edge of the cube cut it off. `options` may be NULL.
- * Errors: ARGUMENT, MESH (also: not connected, another genus), SOLVER (no TetGen; too uneven for the
- * sphere), MEMORY, CANCELLED, TIME. */
+ * Errors: ARGUMENT, MESH (also: not connected, another genus), SOLVER (no TetGen; too uneven for
+ * the sphere), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,
                                           starg_solid_shape shape,
                                           const starg_solid_map_options *options,

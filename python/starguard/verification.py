@@ -15,8 +15,10 @@ from ._session import Session
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .guards import Guards
+from .mesh import as_mesh
 from .pieces import OPTIONS, Decomposition
 from .solid import Scene
+from .solidmaps import SolidMap
 from .tetra import TetMesh, as_shape
 
 
@@ -135,8 +137,8 @@ def _read(data: bytes, name: str, kind: str, free: Any, function: Any) -> Any:
 Result = Union[Guards, Certificate, Decomposition, PiecesMesh, PiecesReport]
 
 
-def read_result(path: PathLike) -> Guards | Certificate | PiecesMesh | PiecesReport:
-    """Reads GUARDS.json, a certificate, PIECES.vtk or PIECES.json, recognized by content.
+def read_result(path: PathLike) -> Guards | Certificate | PiecesMesh | PiecesReport | SolidMap:
+    """Reads GUARDS.json, a certificate, PIECES.vtk, PIECES.json or MAP.vtu, recognized by content.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -151,6 +153,8 @@ def read_result(path: PathLike) -> Guards | Certificate | PiecesMesh | PiecesRep
         return Guards._of(result.guards, owner=result)
     if result.certificate:
         return Certificate(result.certificate, result)
+    if result.solid_map:
+        return SolidMap._of(result.solid_map, result)
     if result.pieces:
         return PiecesMesh._of(result.pieces, result)
     return PiecesReport._of(result.report, result)
@@ -199,6 +203,21 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
         else:
             _judge(session, lib.starg_verify_pieces_with, shape, why, mesh, report, claims=claims,
                    rest=rest, progress=progress)
+    return Verdict(all(claim.holds for claim in claims), claims, rest)
+
+
+def verify_map(a: Any, b: Any, given: SolidMap | PathLike, *, threads: int | None = None,
+               progress: Progress | None = None) -> Verdict:
+    """Checks that a SolidMap, or a MAP.vtu, maps the solid A to the solid B one to one. B may be None:
+    then the surface of the images is compared with nothing."""
+    found = given if isinstance(given, SolidMap) else read_result(given)
+    if not isinstance(found, SolidMap):
+        raise ArgumentError("not a map between solids")
+    claims: list[Claim] = []
+    rest: list[str] = []
+    target = ffi.NULL if b is None else as_mesh(b)._handle
+    _judge(Session(threads), lib.starg_verify_solid_map, as_mesh(a), target, found._handle,
+           claims=claims, rest=rest, progress=progress)
     return Verdict(all(claim.holds for claim in claims), claims, rest)
 
 

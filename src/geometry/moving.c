@@ -5,8 +5,8 @@
  * coefficients over [0, 1], times 3, are sums of determinants with rows from the start and from the
  * end; if all are positive, so is the polynomial. Otherwise the interval is halved [de Casteljau],
  * which multiplies all numbers by 8 and so stays in integers. A value at an end of an interval that
- * is not positive refutes; so does the depth limit, which is reached only where the polynomial comes
- * within about 4^-DEPTH of zero, relative to its coefficients.
+ * is not positive refutes; so does the depth limit, which is reached only where the polynomial
+ * comes within about 4^-DEPTH of zero, relative to its coefficients.
  *
  * A floating-point filter with a bound on its error accepts what is clear; multi-limb integers
  * decide the rest. Bound: a triple product of differences has the error of orient3d (8 u times its

@@ -49,8 +49,8 @@ int compare_parallax(const double a[3], const double b[3], const double c[3], co
 
 /* Is the tetrahedron of four points, each moving on a line at constant speed from `from` to `to`,
  * positive at every time: det of the edges from the first corner > 0? True is a proof; false may
- * also mean that the determinant comes within about 1e-14 of zero, relative to the terms of which it
- * is the sum. */
+ * also mean that the determinant comes within about 1e-14 of zero, relative to the terms of which
+ * it is the sum. */
 bool stays_positive(const double *const from[4], const double *const to[4])
     STARG_PRIVATE(stays_positive);
 

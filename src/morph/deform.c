@@ -10,12 +10,13 @@
  * vertices of inverted or thin tetrahedra are moved one by one to the point farthest from the
  * planes of the surrounding faces, a linear program [Freitag, Plassmann 2000], until none is
  * inverted. If some stay inverted, the step is halved; short steps may also move all vertices
- * together (unfold.c); below a minimal step the deformation fails. On a path a step must in addition
- * keep every tetrahedron positive at every moment (stays_positive).
+ * together (unfold.c); below a minimal step the deformation fails. On a path a step must in
+ * addition keep every tetrahedron positive at every moment (stays_positive).
  *
- * Before the first step (deform_free_surface), interior edges with both ends on the surface are split
- * (split.c), because they leave no freedom where the surface bends, and so are tetrahedra that have
- * all corners on it. This has always sufficed if the surface did not intersect itself on the way.
+ * Before the first step (deform_free_surface), interior edges with both ends on the surface are
+ * split (split.c), because they leave no freedom where the surface bends, and so are tetrahedra
+ * that have all corners on it. This has always sufficed if the surface did not intersect itself on
+ * the way.
  *
  * Invariant: after each step all tetrahedra are positive, exactly. Cost: per step one frame, three
  * solves and some sweeps over the tetrahedra. */
@@ -51,7 +52,7 @@ static const double FAR = 4; /* largest move of a vertex, relative to its neighb
 typedef struct walk {
     const starg_morph *m;
     deform_mesh *c;
-    deform_path *path; /* or NULL */
+    deform_path *path;       /* or NULL */
     size_t inner;            /* vertices after the fixed ones */
     uint32_t *first, *about; /* tetrahedra at inner vertex i: about[first[i]] and on */
     sparse_factors *system;

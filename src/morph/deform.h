@@ -56,8 +56,8 @@ typedef struct deform_path {
 
 /* Moves the inner vertices of `c`, initially as in A, along with the morph to B. *inverted is 0, or
  * the number of tetrahedra that could not be kept positive near `*reached`. With a path (or NULL),
- * initially empty, steps are shorter, and every tetrahedron is proven to be positive at every moment
- * of each. Errors: SOLVER, MEMORY, CANCELLED. */
+ * initially empty, steps are shorter, and every tetrahedron is proven to be positive at every
+ * moment of each. Errors: SOLVER, MEMORY, CANCELLED. */
 starg_status deform(const starg_morph *m, deform_mesh *c, deform_path *path, size_t *inverted,
                     double *reached);
 

@@ -101,7 +101,8 @@ starg_status morph_prepare_guards(starg_morph *m);
 /* Spherical coordinates about the guards (spherical.c). */
 starg_status morph_frame_spherical(const starg_morph *m, double t, double *out);
 
-/* The path of tetrahedra, along the frames of the rigid morph; shapes at t in (0, 1) (solid_path.c).
+/* The path of tetrahedra, along the frames of the rigid morph; shapes at t in (0, 1)
+ * (solid_path.c).
  */
 starg_status morph_prepare_solid(starg_morph *m);
 void morph_frame_solid(const starg_morph *m, double t, double *out);

@@ -30,7 +30,7 @@
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "solid map";
-enum { UNFOLD_STEPS = 2000, ROUNDS = 10 };
+enum { UNFOLD_STEPS = 2000, ROUNDS = 8, FEW = 40 };
 /* Ratios of singular values: from where they count as high, and what stands for more. */
 static const double HIGH = 10, HIGHEST = 1e300;
 
@@ -77,6 +77,8 @@ static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, double r
         STARG_TRY(unfold(&p, UNFOLD_STEPS, &inverted));
         if (inverted == 0)
             goto done;
+        if (inverted > p.count / FEW) /* not a matter of single vertices */
+            break;
         STARG_TRY(split_inverted(c));
     }
     status = starg_fail(c->context, STARG_ERROR_MESH, STAGE,
@@ -190,8 +192,7 @@ static void measure(starg_solid_map *map) {
     map->above_10 = fmin(high / all, 1);
 }
 
-starg_status solid_map_finish(starg_context *context, const deform_mesh *c,
-                              starg_solid_map **out) {
+starg_status solid_map_finish(starg_context *context, const deform_mesh *c, starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_tetmesh *places[2] = {NULL, NULL};
     starg_decomposition *pieces[2] = {NULL, NULL};
@@ -253,8 +254,9 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
     return status;
 }
 
-starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a, starg_solid_shape shape,
-                                const starg_solid_map_options *options, starg_solid_map **out) {
+starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,
+                                starg_solid_shape shape, const starg_solid_map_options *options,
+                                starg_solid_map **out) {
     starg_status status = STARG_OK;
     double *images = NULL;
     *out = NULL;

@@ -5,8 +5,8 @@
  * Between the places after two steps all vertices move on straight lines, and every step is taken
  * only when every tetrahedron is proven to be positive at every moment of it: its determinant is a
  * cubic polynomial in time, whose sign is decided exactly (stays_positive, geometry/moving.c).
- * Otherwise there are more steps. So the inside is locally injective at every time, and at both ends
- * injective.
+ * Otherwise there are more steps. So the inside is locally injective at every time, and at both
+ * ends injective.
  *
  * The frame at a time between two keys is the straight one. Cost: that of deform.c, and a test of
  * each tetrahedron in each step. */

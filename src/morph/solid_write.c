@@ -78,10 +78,9 @@ starg_status starg_solid_map_write(starg_context *context, const starg_solid_map
     const double distortion[3] = {map->worst, map->mean, map->above_10};
     STARG_TRY(starg_output_open(context, STAGE, path, &output));
     FILE *stream = output.stream;
-    fprintf(stream,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
-            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
-            "<FieldData>\n");
+    fprintf(stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+                    "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
+                    "<FieldData>\n");
     put_field(stream, "distortion", distortion, 1, 3);
     put_field(stream, "guard", map->guards, map->piece_count, 3);
     put_field(stream, "guard_image", map->guard_images, map->piece_count, 3);

@@ -8,12 +8,12 @@
  *
  * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the
  * respective surface, so they fill both without overlap. Cost: that of its stages. */
+#include "morph/solids.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
 #include "morph/deform.h"
 #include "morph/morph.h"
-#include "morph/solids.h"
 #include "star/strict/start/compatible.h"
 #include "tetra/tetmesh.h"
 

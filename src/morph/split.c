@@ -211,8 +211,8 @@ static bool has_room(const deform_mesh *c, size_t t, const double centre[3]) {
     const double *corners[4];
     for (int own = 0; own < 4; own++) {
         for (size_t k = 0; k < 4; k++)
-            corners[k] = (int)k == own ? centre
-                                       : c->rest.data + 3 * (size_t)c->tetrahedra.data[4 * t + k];
+            corners[k] =
+                (int)k == own ? centre : c->rest.data + 3 * (size_t)c->tetrahedra.data[4 * t + k];
         if (orient3d(corners[0], corners[1], corners[2], corners[3]) >= 0)
             return false;
     }

@@ -34,8 +34,8 @@
 static const char STAGE[] = "unfold";
 
 enum {
-    MEMORY = 8,      /* pairs of the approximation to the Hessian */
-    ROUND = 40,      /* steps with one e */
+    MEMORY = 8, /* pairs of the approximation to the Hessian */
+    ROUND = 40, /* steps with one e */
     GROWTH_SWEEPS = 200,
     HALVINGS = 30,   /* of a step, at most */
     ROUNDS_IDLE = 12 /* with no fewer inversions, until it is given up */
@@ -54,9 +54,9 @@ typedef struct descent {
     matrix *gradients; /* of the barycentric coordinates of corners 1 to 3 */
     double *weights;
     double extent;
-    double lowest; /* the least determinant at the last evaluation */
-    size_t size;   /* unknowns */
-    double *trial; /* vertex_count x 3 */
+    double lowest;                /* the least determinant at the last evaluation */
+    size_t size;                  /* unknowns */
+    double *trial;                /* vertex_count x 3 */
     double *slope, *former, *way; /* by unknown */
     double *moves[MEMORY], *bends[MEMORY], scales[MEMORY];
     size_t pairs; /* made so far */
@@ -198,9 +198,9 @@ static starg_status prepare_tetrahedra(descent *d) {
         matrix e;
         edges_of(p, p->rest, t, e);
         double six = vec3_triple(e[0], e[1], e[2]);
-        double scale = exp(-(growth[corners[0]] + growth[corners[1]] + growth[corners[2]] +
-                             growth[corners[3]]) /
-                           4);
+        double scale = exp(
+            -(growth[corners[0]] + growth[corners[1]] + growth[corners[2]] + growth[corners[3]]) /
+            4);
         for (int k = 0; k < 3; k++) {
             vec3_cross(e[(k + 1) % 3], e[(k + 2) % 3], d->gradients[t][k]);
             for (int i = 0; i < 3; i++)
@@ -438,7 +438,7 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
     STARG_TRY(prepare(&d));
     evaluate(&d, p->now, NULL);
     d.epsilon = fmax(1e-3, sqrt(1e-6 + 0.04 * d.lowest * d.lowest));
-    for (size_t done_steps = 0; done_steps < steps && *inverted > 0 && idle < ROUNDS_IDLE;
+    for (size_t done_steps = 0; done_steps<steps && * inverted> 0 && idle < ROUNDS_IDLE;
          done_steps += ROUND) {
         double before = evaluate(&d, p->now, NULL), after;
         STARG_TRY(go_down(&d, ROUND, &after));

@@ -24,8 +24,8 @@ starg_status verify_claim_tetrahedra(const verify_context *own);
 /* The boundary and the volume are those of the model. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_boundary(const verify_context *own);
 
-/* The boundary does not cross itself and winds around its inside once, so that positive tetrahedra do
- * not overlap. Errors: MEMORY, CANCELLED. */
+/* The boundary does not cross itself and winds around its inside once, so that positive tetrahedra
+ * do not overlap. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_once(const verify_context *own);
 
 /* The report's numbers. Requires valid labels. Errors: MEMORY, CANCELLED. */

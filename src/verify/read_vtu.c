@@ -246,10 +246,9 @@ static starg_status take_points(const reader *r, const number_list *from, double
     for (size_t i = 0; i < from->count; i++) {
         uint64_t index = i / 3;
         if (!(fabs(from->data[i]) < 1e100)) {
-            status = starg_fail_at(r->context, STARG_ERROR_RANGE, STAGE, STARG_ELEMENT_VERTEX,
-                                   &index, 1,
-                                   "'%s': point %zu is not finite, or not below 1e100 in magnitude",
-                                   r->name, i / 3);
+            status = starg_fail_at(
+                r->context, STARG_ERROR_RANGE, STAGE, STARG_ELEMENT_VERTEX, &index, 1,
+                "'%s': point %zu is not finite, or not below 1e100 in magnitude", r->name, i / 3);
             goto done;
         }
         (*out)[i] = from->data[i];
@@ -383,9 +382,8 @@ done:
 void starg_solid_map_free(starg_context *context, starg_solid_map *map) {
     if (map == NULL)
         return;
-    void *const blocks[] = {map->vertices, map->images, map->tetrahedra,
-                            map->labels,   map->guards, map->guard_images,
-                            map->times,    map->keys};
+    void *const blocks[] = {map->vertices, map->images,       map->tetrahedra, map->labels,
+                            map->guards,   map->guard_images, map->times,      map->keys};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(context, blocks[i]);
     starg_release(context, map);

@@ -31,9 +31,8 @@ typedef struct end {
 /* Coordinates of keys are checked as those of the ends. */
 static starg_status check_keys(starg_context *context, const starg_solid_map *map) {
     starg_status status = STARG_OK;
-    starg_pieces_mesh mesh = {.vertex_count = map->vertex_count,
-                              .count = map->count,
-                              .tetrahedra = map->tetrahedra};
+    starg_pieces_mesh mesh = {
+        .vertex_count = map->vertex_count, .count = map->count, .tetrahedra = map->tetrahedra};
     for (size_t key = 0; key < map->key_count && status == STARG_OK; key++) {
         mesh.vertices = map->keys + 3 * key * map->vertex_count;
         status = verify_check_arrays(context, &mesh, NULL);
