@@ -120,7 +120,7 @@ static starg_status run(cli_session *session, void *data) {
 
 const cli_command cli_command_map = {
     .name = "map",
-    .usage = "A B [--landmarks FILE] -o MAP.json | --solid A B [--map FILE] -o MAP.vtu",
+    .usage = "[--solid] A B [--landmarks FILE] [--map FILE] -o MAP",
     .summary = "compute a bijection between two surfaces or solids",
     .description =
         "Maps each vertex of A to a point of B: a face and barycentric coordinates. Surfaces with "

@@ -108,7 +108,13 @@ def map_solid(a: Any, target: Any, *, threads: int | None = None, seed: int | No
               time_limit: float | None = None, progress: Progress | None = None,
               **options: Unpack[SolidMapOptions]) -> SolidMap:
     """Maps the solid A to another: `target` is a model B, a SurfaceMap, images of A's vertices (n, 3),
-    "ball" or "cube". Needs TetGen."""
+    "ball" or "cube". Needs TetGen.
+
+    >>> import starguard
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
+    >>> starguard.verify_map(a, b, starguard.map_solid(a, b)).passed
+    True
+    """
     mesh = as_mesh(a)
     session = Session(threads, seed)
     wanted = _OPTIONS.make(options)
@@ -131,7 +137,14 @@ def map_solid(a: Any, target: Any, *, threads: int | None = None, seed: int | No
 
 
 def map_of_morph(morph: Morph) -> SolidMap:
-    """The map of a morph of method "solid", with its keys."""
+    """The map of a morph of method "solid", with its keys.
+
+    >>> import starguard
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
+    >>> path = starguard.map_of_morph(starguard.Morph(a, b, method="solid"))
+    >>> bool((0 < path.times).all() and (path.times < 1).all())
+    True
+    """
     with morph._lock:
         return SolidMap._of(morph._session.make("starg_solid_map", lib.starg_solid_map_free,
                                                 lib.starg_morph_solid_map, morph._handle,

@@ -209,7 +209,13 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
 def verify_map(a: Any, b: Any, given: SolidMap | PathLike, *, threads: int | None = None,
                progress: Progress | None = None) -> Verdict:
     """Checks that a SolidMap, or a MAP.vtu, maps the solid A to the solid B one to one. B may be None:
-    then the surface of the images is compared with nothing."""
+    then the surface of the images is compared with nothing.
+
+    >>> import starguard
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
+    >>> starguard.verify_map(a, a, starguard.map_solid(a, b)).passed
+    False
+    """
     found = given if isinstance(given, SolidMap) else read_result(given)
     if not isinstance(found, SolidMap):
         raise ArgumentError("not a map between solids")
