@@ -40,7 +40,8 @@ class Morph(Case):
         self.run_text(*same, "--points", "points.txt", "--carried", "there.txt")
         self.assertEqual([float(w) for w in self.read("there.txt").split()], image)
         self.run_text(*same, "--points", "there.txt", "--back", "--carried", "back.txt")
-        self.assertEqual(self.read("back.txt").split(), corner.encode().split())
+        self.assertEqual([float(w) for w in self.read("back.txt").split()],
+                         [float(w) for w in corner.split()])
         self.write("field.txt", corner + " 7\n")
         self.run_text(*same, "--apply", "field.txt", "--carried", "field_b.txt")
         self.assertEqual(float(self.read("field_b.txt").split()[3]), 7)
