@@ -52,7 +52,7 @@ class Morph(Case):
         self.assertNotIn("none.txt", self.names())
         text = self.read("map.vtu").decode()
         start = text.index(">", text.index('Name="image"')) + 2
-        self.write("forged.vtu", text[:start] + "9" + text[start:])
+        self.write("forged.vtu", text[:start] + "9" + text[text.index(" ", start):])
         self.run_text("verify", "a.off", "b.off", "forged.vtu", status=4)
         self.write("cut.vtu", text[:start])
         self.run_text("verify", "a.off", "b.off", "cut.vtu", status=2)
