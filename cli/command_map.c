@@ -5,15 +5,18 @@
 
 #include "commands.h"
 #include "extensions.h"
+#include "map_solid.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/morph.h"
 #include "starguard/picture.h"
 
 typedef struct values {
-    const char *output, *landmarks, *picture;
+    const char *output, *landmarks, *picture, *map, *points, *field, *carried;
     int up;
-    bool overlay;
+    bool overlay, solid, back;
+    int shape;
+    starg_solid_map_options wanted;
 } values;
 
 enum { TILE_WIDTH = 900, TILE_HEIGHT = 700 };
@@ -23,7 +26,8 @@ static const double SQUARES = 16; /* of the checker along A's longest side */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("MAP.json", "Map (docs/formats.md); '-' writes to standard output."),
+    CLI_OUTPUT_OPTION("MAP", "Map (docs/formats.md): MAP.json, or MAP.vtu with --solid; '-' writes "
+                             "to standard output."),
     CLI_INPUT_OPTION(
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
@@ -35,12 +39,47 @@ static const cli_option options[] = {
                     "Picture of both surfaces: A with a checker, and B with what the map makes of "
                     "it."),
     CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture."),
+    CLI_FLAG_OPTION("solid", solid,
+                    "Map the solids that the surfaces bound: one set of tetrahedra, positive in "
+                    "both. Needs TetGen."),
+    CLI_INPUT_OPTION("map", map, "FILE",
+                     "With --solid: map of the surfaces from 'starguard map'; by default it is "
+                     "computed. Or a MAP.vtu, to carry points and fields by."),
+    CLI_CHOICE_OPTION("to", shape, cli_solid_shapes, 0, "b|ball|cube",
+                      "With --solid: map A, of genus 0, to a polyhedron inscribed in a ball or a "
+                      "cube; B is then left out."),
+    CLI_INPUT_OPTION("points", points, "FILE",
+                     "With --solid: points of A, x y z per line, to be carried to B."),
+    CLI_INPUT_OPTION(
+        "apply", field, "FIELD",
+        "With --solid: the same with values of a field: x y z and a number or a label, "
+        "or x y z and a vector, which is transformed by the map's Jacobian."),
+    CLI_TEXT_OPTION("carried", carried, "FILE",
+                    "Output of --points and --apply, in the same order."),
+    CLI_FLAG_OPTION("back", back, "Carry from B to A instead."),
 };
+
+static cli_solid_map solid_options(const values *v) {
+    return (cli_solid_map){.solid = v->solid,
+                           .output = v->output,
+                           .map = v->map,
+                           .landmarks = v->landmarks,
+                           .points = v->points,
+                           .field = v->field,
+                           .carried = v->carried,
+                           .back = v->back,
+                           .shape = v->shape,
+                           .wanted = &v->wanted};
+}
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
+    const cli_solid_map solid = solid_options(v);
     starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "MAP.json"));
+    if (v->solid && (v->overlay || v->picture != NULL))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--overlay and --picture are for maps of surfaces; leave out --solid");
+    CLI_TRY(cli_solid_map_prepare(session, &solid));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
     return status;
@@ -153,8 +192,7 @@ done:
     return status;
 }
 
-static starg_status run(cli_session *session, void *data) {
-    const values *v = data;
+static starg_status map_surfaces(cli_session *session, const values *v) {
     starg_status status = STARG_OK;
     starg_mesh *target = NULL;
     starg_map *map = NULL;
@@ -183,22 +221,42 @@ done:
     return status;
 }
 
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    const cli_solid_map solid = solid_options(v);
+    if (v->solid)
+        return cli_solid_map_run(session, &solid);
+    return map_surfaces(session, v);
+}
+
 const cli_command cli_command_map = {
     .name = "map",
-    .usage = "A B [--landmarks FILE] [--overlay] -o MAP.json",
-    .summary = "compute a bijection between two surfaces",
+    .usage = "[--solid] A B [--landmarks FILE] [--map FILE] [--overlay] -o MAP",
+    .summary = "compute a bijection between two surfaces or solids",
     .description =
         "Maps each vertex of A to a point of B: a face and barycentric coordinates. Surfaces with "
         "the same faces, such as poses of one model, are mapped vertex to vertex. Other surfaces "
         "must be closed, connected and of genus 0: both are mapped to the sphere, aligned, and "
         "warped until the landmarks coincide exactly. Without landmarks the alignment uses the "
         "principal axes, which can map a head to a tail; a few landmarks prevent that. "
-        "'starguard verify A B MAP.json' proves that the map is a bijection.",
+        "'starguard verify A B MAP.json' proves that the map is a bijection.\n"
+        "With --solid the solids inside are mapped: tetrahedra that fill A, and places of their "
+        "corners in B, such that each is positive in both, by exact signs. Surfaces may have any "
+        "genus if they have the same faces or a map is given, and must not meet themselves.",
     .examples = "# two poses, then two animals with landmarks\n"
                 "starguard map horse_0.off horse_1.off -o poses.json\n"
-                "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json",
+                "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json\n"
+                "# the solids, with an independent check\n"
+                "starguard map --solid horse_0.off horse_1.off -o horse.vtu\n"
+                "starguard verify horse_0.off horse_1.off horse.vtu\n"
+                "# a field, given at points of the first, for the second\n"
+                "starguard map --solid horse_0.off horse_1.off --map horse.vtu \\\n"
+                "    --apply field.txt --carried field_1.txt\n"
+                "# to a ball\n"
+                "starguard map --solid horse_0.off --to ball -o ball.vtu",
     CLI_OPTIONS(options),
-    CLI_OPERANDS(2, 2),
+    CLI_OPERANDS(1, 2),
+    CLI_LIBRARY(starg_solid_map_options_fields, wanted),
     .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,

@@ -10,9 +10,10 @@
 #include "starguard/animation.h"
 #include "starguard/morph.h"
 #include "starguard/picture.h"
+#include "starguard/solidmap.h"
 
 typedef struct values {
-    const char *output, *map, *landmarks, *glb, *picture;
+    const char *output, *map, *landmarks, *glb, *picture, *certificate;
     starg_morph_options wanted;
     uint64_t frames;
     int up;
@@ -44,6 +45,9 @@ static const cli_option options[] = {
                     "Frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of five time steps, one row each for star, arap and linear."),
+    CLI_TEXT_OPTION("certificate", certificate, "FILE.vtu",
+                    "With --method solid: the tetrahedra and where they pass, as a map between the "
+                    "solids that 'starguard verify A B FILE.vtu' checks."),
     CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture."),
     CLI_FLAG_OPTION(
         "guards", guards,
@@ -120,6 +124,10 @@ static starg_status prepare(cli_session *session, void *data) {
                         "--guards: method %s has no guards; use star or spherical", method_word(v));
     CLI_TRY(cli_announce_with_extension(session, "--glb", v->glb, ".glb"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "--certificate", v->certificate, ".vtu"));
+    if (v->certificate != NULL && v->wanted.method != STARG_MORPH_SOLID)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--certificate: only method solid has one, and this is %s", method_word(v));
     if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
         return cli_fail(session, STARG_ERROR_ARGUMENT, "--glb takes at most %d frames",
                         STARG_ANIMATION_FRAMES);
@@ -412,6 +420,19 @@ static json_t *pieces_json(const starg_decomposition *const pieces[2]) {
                      pieces[1]->flattest);
 }
 
+/* ---- the path of a solid ---- */
+
+static starg_status write_certificate(cli_session *session, const values *v,
+                                      const starg_morph *morph) {
+    starg_solid_map *map = NULL;
+    starg_status status = starg_morph_solid_map(morph, &map);
+    if (status == STARG_OK)
+        status = starg_solid_map_write(session->context, map,
+                                       cli_outputs_place(&session->outputs, v->certificate));
+    starg_solid_map_free(session->context, map);
+    return status;
+}
+
 /* ---- picture ---- */
 
 static starg_status draw_row(cli_session *session, const subject *s, starg_morph_options wanted,
@@ -492,6 +513,11 @@ static void report_morph(cli_session *session, json_t *report, const values *v, 
     if (v->pieces)
         cli_put(session, report, "pieces",
                 pieces_json((const starg_decomposition *const *)found->pieces));
+    if (starg_morph_tetrahedron_count(morph) > 0)
+        cli_put(session, report, "solid",
+                json_pack("{s:I, s:I, s:i}", "tetrahedra",
+                          (json_int_t)starg_morph_tetrahedron_count(morph), "keys",
+                          (json_int_t)starg_morph_key_count(morph), "inverted", 0));
     cli_put(session, report, "frames", json_incref(frames));
 }
 
@@ -528,6 +554,9 @@ static void say_morph(cli_session *session, const values *v, const subject *s,
     if (s->refined != NULL)
         cli_say(session, "overlay       %zu vertices, %zu faces\n",
                 starg_mesh_vertex_count(s->refined), starg_mesh_face_count(s->refined));
+    if (starg_morph_tetrahedron_count(morph) > 0)
+        cli_say(session, "tetrahedra    %zu, none inverted at any time (proven between %zu keys)\n",
+                starg_morph_tetrahedron_count(morph), starg_morph_key_count(morph));
     cli_say(session, "intersecting  %zu pairs of faces, at most %zu in a frame\n",
             sum->intersections, sum->most_intersections);
     cli_say(session, "at the ends   %zu pairs in the first frame, %zu in the last\n", sum->ends[0],
@@ -552,6 +581,8 @@ static starg_status run(cli_session *session, void *data) {
         CLI_TRY(write_guards(session, v, &s, morph, &found.alone));
     if (v->pieces)
         CLI_TRY(write_pieces(session, v, &s, morph, found.pieces));
+    if (v->certificate != NULL)
+        CLI_TRY(write_certificate(session, v, morph));
     if (v->glb != NULL)
         CLI_TRY(write_animation(session, v, &s, morph));
     if (v->picture != NULL)
@@ -588,6 +619,10 @@ const cli_command cli_command_morph = {
                 "# with compatible star-shaped pieces\n"
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames --pieces\n"
                 "starguard verify horse_1.off frames/pieces_b.vtk frames/pieces_b.json\n"
+                "# without an inverted tetrahedron inside, at any time, and the proof\n"
+                "starguard morph horse_0.off horse_1.off --frames 21 -o frames --method solid \\\n"
+                "    --certificate horse.vtu\n"
+                "starguard verify horse_0.off horse_1.off horse.vtu\n"
                 "# two animals with a landmark map, and linear interpolation for comparison\n"
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json\n"
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o frames\n"

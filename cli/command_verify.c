@@ -176,7 +176,8 @@ static starg_status read_inputs(cli_session *session, inputs *given) {
             paired = true;
         } else {
             CLI_TRY(starg_result_read(session->context, session->operands[i], &given->results[i]));
-            paired = paired || given->results[i]->map != NULL;
+            paired =
+                paired || given->results[i]->map != NULL || given->results[i]->solid_map != NULL;
             if (given->results[i]->morph != NULL)
                 return cli_fail(session, STARG_ERROR_ARGUMENT,
                                 "'%.200s' is the report of a morph; name the folder that it is in",
@@ -346,6 +347,25 @@ done:
     return status;
 }
 
+/* B is missing if the map is to a ball or a cube. */
+static starg_status verify_solid_map(cli_session *session, const model *given, const inputs *from,
+                                     size_t operand, json_t *list) {
+    starg_status status = STARG_OK;
+    starg_verdict *verdict = NULL;
+    const starg_mesh *target = from->target;
+    const starg_solid_map *map = from->results[operand]->solid_map;
+    CLI_TRY(starg_verify_solid_map(session->context, given->mesh, target, map, &verdict));
+    json_t *entry = json_object();
+    if (target != NULL)
+        cli_put(session, entry, "target", cli_json_text(session->operands[1]));
+    cli_put(session, entry, "tetrahedra", json_integer((json_int_t)map->count));
+    cli_put(session, entry, "pieces", json_integer((json_int_t)map->piece_count));
+    tell_verdict(session, session->operands[operand], verdict, entry, list);
+done:
+    starg_verdict_free(session->context, verdict);
+    return status;
+}
+
 static void report(cli_session *session, const starg_mesh *mesh, json_t *results) {
     cli_report_head(session, "starguard-verify", session->operands[0], mesh);
     cli_put(session, session->report, "passed", json_boolean(session->outcome == CLI_EXIT_DONE));
@@ -371,6 +391,8 @@ static starg_status run(cli_session *session, void *data) {
             continue;
         else if (results[i]->map != NULL)
             CLI_TRY(verify_map(session, &given, &from, i, list));
+        else if (results[i]->solid_map != NULL)
+            CLI_TRY(verify_solid_map(session, &given, &from, i, list));
         else if (results[i]->guards != NULL)
             CLI_TRY(verify_guards(session, &given, i, results, list));
         else if (i == found.pieces)
@@ -408,7 +430,10 @@ const cli_command cli_command_verify = {
         "Results of two models A and B: MAP.json of 'starguard map', which must be a bijection by "
         "its directions or its overlay, exactly, and meet its landmarks; and the folder of "
         "'starguard morph', whose first and last frames must be A and B. With 'morph --report' "
-        "crossings, volumes and areas of all frames are checked as well.",
+        "crossings, volumes and areas of all frames are checked as well.\n"
+        "MAP.vtu of 'starguard map --solid', behind A and B: tetrahedra are positive in both and "
+        "fill "
+        "both, pieces are star-shaped in both, and no tetrahedron of a morph is ever inverted.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
                 "# and that no fewer guards would do, wherever they stand\n"
@@ -421,7 +446,9 @@ const cli_command cli_command_verify = {
                 "# a map and a morph\n"
                 "starguard map cat.off dog.off --overlay -o cat_dog.json\n"
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 5 -o frames --report\n"
-                "starguard verify cat.off dog.off cat_dog.json frames",
+                "starguard verify cat.off dog.off cat_dog.json frames\n"
+                "# a map between two solids\n"
+                "starguard verify a.off b.off map.vtu",
     CLI_OPERANDS(2, SIZE_MAX),
     .run = run,
 };

@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 layers="core:bits,context,export,fields,ranks,status,version geometry:
 mesh:check,mesh,repair,simplify,solid,space skeleton:skeleton visibility:visibility,kernel cover:cover
 guard:guard tetra:tetra sphere: star:decompose verify:verify sample:sample
-export:animation,page,picture,scene shape:database,descriptor,shape morph:morph"
+export:animation,page,picture,scene shape:database,descriptor,shape morph:morph,solidmap"
 above=""
 headers_above=""
 failed=0

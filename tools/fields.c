@@ -93,6 +93,7 @@ const call calls[] = {
     {"sample", "SampleOptions", starg_sample_options_fields, NULL},
     {"describe", "DescribeOptions", starg_descriptor_options_fields, NULL},
     {"morph", "MorphOptions", starg_morph_options_fields, NULL},
+    {"map", "SolidMapOptions", starg_solid_map_options_fields, NULL},
 };
 const size_t call_count = sizeof calls / sizeof *calls;
 

@@ -123,10 +123,11 @@ STARG_API void starg_landmarks_free(starg_context *context, uint32_t *pairs);
 /* ---- morphs ---- */
 
 typedef enum starg_morph_method {
-    STARG_MORPH_STAR = 0,     /* pieces with corresponding guards [YL11] */
-    STARG_MORPH_ARAP = 1,     /* as rigid as possible, about one centre [ACOL00, BBA08]     */
-    STARG_MORPH_LINEAR = 2,   /* straight vertex paths */
-    STARG_MORPH_SPHERICAL = 3 /* spherical coordinates about the guards [SR95]              */
+    STARG_MORPH_STAR = 0,      /* pieces with corresponding guards [YL11] */
+    STARG_MORPH_ARAP = 1,      /* as rigid as possible, about one centre [ACOL00, BBA08]     */
+    STARG_MORPH_LINEAR = 2,    /* straight vertex paths */
+    STARG_MORPH_SPHERICAL = 3, /* spherical coordinates about the guards [SR95] */
+    STARG_MORPH_SOLID = 4 /* tetrahedra that fill both, none of which is inverted at any time */
 } starg_morph_method;
 
 typedef struct starg_morph_options {
@@ -145,7 +146,8 @@ typedef struct starg_morph starg_morph;
 
 /* Prepares a morph from A to the images of A's vertices (vertex_count x 3); both are copied. A must
  * have faces. For star and spherical both ends must be closed surfaces that bound a solid
- * (self-intersections are allowed). `options` may be NULL. Errors: ARGUMENT, RANGE, MESH, SOLVER,
+ * (self-intersections are allowed); for solid, which needs TetGen, they
+ * must not intersect themselves. `options` may be NULL. Errors: ARGUMENT, RANGE, MESH, SOLVER,
  * MEMORY, CANCELLED. */
 STARG_API starg_status starg_morph_create(starg_context *context, const starg_mesh *a,
                                           const double *images, const starg_morph_options *options,
@@ -163,6 +165,11 @@ STARG_API const double *starg_morph_guards(const starg_morph *morph, int end);
 STARG_API const uint32_t *starg_morph_pieces(const starg_morph *morph);
 /* Number of faces that no candidate sees from their inner side at both ends. */
 STARG_API size_t starg_morph_unguarded(const starg_morph *morph);
+
+/* Method solid, else 0: tetrahedra inside, none of which is inverted at any time, and moments
+ * between which all vertices move on straight lines. */
+STARG_API size_t starg_morph_tetrahedron_count(const starg_morph *morph);
+STARG_API size_t starg_morph_key_count(const starg_morph *morph);
 
 /* The guards of one end (0: A, else the images) as a guarding result, in the order of
  * starg_morph_guards; its model has A's faces. `candidate_count`, `lower_bound` and `optimal` refer

@@ -26,6 +26,7 @@
 #include "simplify.h"
 #include "skeleton.h"
 #include "solid.h"
+#include "solidmap.h"
 #include "space.h"
 #include "status.h"
 #include "tetra.h"

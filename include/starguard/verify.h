@@ -205,6 +205,49 @@ STARG_API starg_status starg_verify_morph(starg_context *context, const starg_me
                                           size_t frame_count, const starg_morph_report *report,
                                           starg_verdict **out);
 
+/* ---- maps between solids ---- */
+
+/* A piecewise linear map from one solid to another: tetrahedra with their corners in A and in B.
+ * Made by starg_solid_map_create and the like (solidmap.h), which guarantee that all are positive
+ * in both, or read from MAP.vtu, without any guarantee. */
+typedef struct starg_solid_map {
+    size_t vertex_count, count;
+    double *vertices;     /* vertex_count x 3: in A */
+    double *images;       /* vertex_count x 3: in B */
+    uint32_t *tetrahedra; /* count x 4 */
+    /* Pieces that are star-shaped in A and in B, about a guard in each. */
+    int32_t *labels; /* count: the piece of each tetrahedron */
+    size_t piece_count;
+    double *guards, *guard_images; /* piece_count x 3 */
+    /* Largest over smallest singular value of a tetrahedron's map: the largest of all, the mean
+     * weighted by volume in A, and the share of that volume where it is above 10. */
+    double worst, mean, above_10;
+    /* Of a morph: where the vertices are at times between 0 and 1, key_count x vertex_count x 3.
+     * They move straight from A's places through these to B's, and every tetrahedron is positive at
+     * every time. */
+    size_t key_count;
+    double *times, *keys;
+} starg_solid_map;
+
+/* Reads MAP.vtu with a separate reader: a VTK XML unstructured grid of tetrahedra with numbers as
+ * text (docs/formats.md); `name` is used in messages. Errors: FORMAT (with the line), RANGE (with
+ * the vertex), MEMORY, CANCELLED. */
+STARG_API starg_status starg_solid_map_read_memory(starg_context *context, const void *bytes,
+                                                   size_t size, const char *name,
+                                                   starg_solid_map **out);
+STARG_API void starg_solid_map_free(starg_context *context, starg_solid_map *map);
+
+/* Checks that a map takes the solid A to the solid B: the tetrahedra are positive and conforming in
+ * both, their boundary is the surface of A there and that of B here, each covered once, so that
+ * they fill both without overlap and the map is a homeomorphism; the pieces are star-shaped about
+ * their guards in both, and the distortion is as stated. Models are taken as read (inward shells
+ * are reversed). B may be NULL: then nothing is claimed about the surface of the images but that it
+ * does not cross itself. Errors: ARGUMENT (an index out of range), RANGE, MESH (a model is not
+ * closed and oriented), MEMORY, CANCELLED; a false claim is not an error. */
+STARG_API starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
+                                              const starg_mesh *b, const starg_solid_map *map,
+                                              starg_verdict **out);
+
 /* ---- files of results ---- */
 
 /* One of these is set. */
@@ -215,11 +258,11 @@ typedef struct starg_result {
     starg_certificate *certificate;
     starg_map_file *map;
     starg_morph_report *morph;
+    starg_solid_map *solid_map;
 } starg_result;
 
-/* Reads GUARDS.json, a certificate, PIECES.vtk, PIECES.json, MAP.json or the report of a morph,
- * recognized by content. "-" is
- * standard input. Errors: READ, and those of the readers. */
+/* Reads GUARDS.json, a certificate, PIECES.vtk, PIECES.json, MAP.json, MAP.vtu or the report of a
+ * morph, recognized by content. "-" is standard input. Errors: READ, and those of the readers. */
 STARG_API starg_status starg_result_read(starg_context *context, const char *path,
                                          starg_result **out);
 STARG_API void starg_result_free(starg_context *context, starg_result *result);

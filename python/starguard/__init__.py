@@ -37,6 +37,7 @@ from .pieces import Decomposition, decompose
 from .catalogue import SampleInfo, sample, samples
 from .skeletons import Skeleton, skeleton
 from .solid import Scene, Solid
+from .solidmaps import SolidMap, map_of_morph, map_solid
 from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, is_tetrahedral, tetrahedralize
 from .verification import (Certificate, Claim, MapFile, MorphReport, PiecesMesh, PiecesReport, Verdict,
                            read_result, verify, verify_map, verify_morph)
@@ -50,12 +51,12 @@ __all__ = [
     "MorphReport", "NO_CLASS",
     "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",
     "RangeError", "ReadError", "Reconstruction", "RepairReport", "Retrieval", "SampleInfo",
-    "Scene", "Signature", "Skeleton", "Solid", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
+    "Scene", "Signature", "Skeleton", "Solid", "SolidMap", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
     "TetraReport", "TimeLimitError", "Verdict", "WriteError", "__version__", "animation_from_bytes",
     "as_mesh",
     "candidate_points", "cone_cosine", "cover", "current_version", "decompose", "defaults",
     "describe", "directions", "distances", "distinct_colors", "guard", "is_descriptor",
-    "is_tetrahedral", "kernel", "logger", "map_surface", "match", "page_available", "picture",
+    "is_tetrahedral", "kernel", "logger", "map_of_morph", "map_solid", "map_surface", "match", "page_available", "picture",
     "points_from_bytes", "read_animation", "read_landmarks", "read_points", "read_result", "retrieval", "sample", "samples", "signature",
     "signatures", "skeleton", "tetrahedralize", "unseen", "verify", "verify_map", "verify_morph", "visible", "visible_from_box",
     "write_animation", "write_chart", "write_matrix_picture", "write_page", "write_picture", "write_picture_sheet",

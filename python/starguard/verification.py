@@ -18,6 +18,7 @@ from .guards import Guards
 from .mesh import as_mesh
 from .pieces import OPTIONS, Decomposition
 from .solid import Scene
+from .solidmaps import SolidMap
 from .tetra import TetMesh, as_shape
 
 
@@ -153,9 +154,9 @@ Result = Union[Guards, Certificate, Decomposition, PiecesMesh, PiecesReport]
 
 
 def read_result(path: PathLike) -> (Guards | Certificate | PiecesMesh | PiecesReport | MapFile
-                                    | MorphReport):
-    """Reads GUARDS.json, a certificate, PIECES.vtk, PIECES.json, MAP.json or morph.json, recognized
-    by content.
+                                    | MorphReport | SolidMap):
+    """Reads GUARDS.json, a certificate, PIECES.vtk, PIECES.json, MAP.json, MAP.vtu or morph.json,
+    recognized by content.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -170,6 +171,8 @@ def read_result(path: PathLike) -> (Guards | Certificate | PiecesMesh | PiecesRe
         return Guards._of(result.guards, owner=result)
     if result.certificate:
         return Certificate(result.certificate, result)
+    if result.solid_map:
+        return SolidMap._of(result.solid_map, result)
     if result.pieces:
         return PiecesMesh._of(result.pieces, result)
     if result.map:
@@ -179,25 +182,32 @@ def read_result(path: PathLike) -> (Guards | Certificate | PiecesMesh | PiecesRe
     return PiecesReport._of(result.report, result)
 
 
-def verify_map(a: Any, b: Any, path: PathLike | MapFile, *, threads: int | None = None,
+def verify_map(a: Any, b: Any, given: MapFile | SolidMap | PathLike, *, threads: int | None = None,
                progress: Progress | None = None) -> Verdict:
-    """Checks MAP.json, a map from A to B: that it is a bijection, exactly, and meets its landmarks.
+    """Checks a map from A to B, exactly. MAP.json: it is a bijection of the surfaces, and meets its
+    landmarks. A SolidMap or a MAP.vtu: it maps the solids one to one; B may be None, then the surface of
+    the images is compared with nothing.
 
     >>> import starguard
     >>> ball, star = (starguard.sample(name, vertices=500) for name in ("sphere", "star"))
     >>> starguard.map_surface(ball, star).write("ball_star.json")
     >>> starguard.verify_map(ball, star, "ball_star.json").passed
     True
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
+    >>> starguard.verify_map(a, a, starguard.map_solid(a, b)).passed
+    False
     """
-    first, second = as_mesh(a), as_mesh(b)
-    file = path if isinstance(path, MapFile) else read_result(path)
-    if not isinstance(file, MapFile):
+    found = given if isinstance(given, (MapFile, SolidMap)) else read_result(given)
+    if not isinstance(found, (MapFile, SolidMap)):
         raise ArgumentError("this is no map of two models")
-    session = Session(threads)
+    if b is None and isinstance(found, MapFile):
+        raise ArgumentError("a map of surfaces needs B")
+    target = ffi.NULL if b is None else as_mesh(b)._handle
+    function = lib.starg_verify_map if isinstance(found, MapFile) else lib.starg_verify_solid_map
     claims: list[Claim] = []
     rest: list[str] = []
-    _judge(session, lib.starg_verify_map, first, second._handle, file._handle, claims=claims,
-           rest=rest, progress=progress)
+    _judge(Session(threads), function, as_mesh(a), target, found._handle, claims=claims, rest=rest,
+           progress=progress)
     return Verdict(all(claim.holds for claim in claims), claims, rest)
 
 
@@ -244,7 +254,7 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     given = [read_result(r) if isinstance(r, (str, bytes, os.PathLike)) else r for r in results]
     if not given:
         raise ArgumentError("give a result to verify")
-    if any(isinstance(result, (MapFile, MorphReport)) for result in given):
+    if any(isinstance(result, (MapFile, MorphReport, SolidMap)) for result in given):
         raise ArgumentError("maps and morphs are of two models: see verify_map and verify_morph")
     session = Session(threads, seed)
     claims: list[Claim] = []

@@ -47,6 +47,13 @@ int compare_incidence(const double a[3], const double b[3], const double c[3], c
 int compare_parallax(const double a[3], const double b[3], const double c[3], const double p[3],
                      const double q[3], double cosine);
 
+/* Is the tetrahedron of four points, each moving on a line at constant speed from `from` to `to`,
+ * positive at every time: det of the edges from the first corner > 0? True is a proof; false may
+ * also mean that the determinant comes within about 1e-14 of zero, relative to the terms of which
+ * it is the sum. */
+bool stays_positive(const double *const from[4], const double *const to[4])
+    STARG_PRIVATE(stays_positive);
+
 /* True when a, b, c lie on one line (or coincide). */
 bool collinear(const double a[3], const double b[3], const double c[3]);
 

@@ -3,8 +3,11 @@
 #ifndef STARG_GEOMETRY_SINGULAR_VALUES_H
 #define STARG_GEOMETRY_SINGULAR_VALUES_H
 
+#include "core/private.h"
+
 /* The singular values, descending, of the linear map that takes the columns of `from` to those of
  * `to`: from[i] and to[i] are vectors, and det(from) is not 0. Rounded. */
-void singular_values(double from[3][3], double to[3][3], double out[3]);
+void singular_values(double from[3][3], double to[3][3], double out[3])
+    STARG_PRIVATE(singular_values);
 
 #endif

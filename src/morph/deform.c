@@ -9,11 +9,14 @@
  * harmonic extension of the surface's displacement (one sparse factor for all steps); then the
  * vertices of inverted or thin tetrahedra are moved one by one to the point farthest from the
  * planes of the surrounding faces, a linear program [Freitag, Plassmann 2000], until none is
- * inverted. If some stay inverted, the step is halved; below a minimal step the deformation fails.
+ * inverted. If some stay inverted, the step is halved; short steps may also move all vertices
+ * together (unfold.c); below a minimal step the deformation fails. On a path a step must in
+ * addition keep every tetrahedron positive at every moment (stays_positive).
  *
- * Before the first step, interior edges with both ends on the surface are split (split.c), because
- * they leave no freedom where the surface bends. This has always sufficed if the surface did not
- * intersect itself on the way.
+ * Before the first step (deform_free_surface), interior edges with both ends on the surface are
+ * split (split.c), because they leave no freedom where the surface bends, and so are tetrahedra
+ * that have all corners on it. This has always sufficed if the surface did not intersect itself on
+ * the way.
  *
  * Invariant: after each step all tetrahedra are positive, exactly. Cost: per step one frame, three
  * solves and some sweeps over the tetrahedra. */
@@ -27,6 +30,7 @@
 #include "geometry/vec3.h"
 #include "morph/morph.h"
 #include "morph/triplets.h"
+#include "morph/unfold.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "deform tetrahedra";
@@ -34,9 +38,12 @@ static const char STAGE[] = "deform tetrahedra";
 enum {
     SWEEPS = 40,  /* per step, over affected vertices */
     PATIENCE = 4, /* sweeps without fewer inverted tetrahedra */
-    ROW = 5       /* of a linear program: normal, factor of room, offset */
+    UNFOLD_STEPS = 800,
+    ROW = 5 /* of a linear program: normal, factor of room, offset */
 };
 static const double LONGEST_STEP = 0x1p-3, SHORTEST_STEP = 0x1p-8;
+static const double LONGEST_PROVEN = 0x1p-5; /* on a path */
+static const double SHORT_STEP = 0x1p-6;     /* from here all vertices are moved together */
 static const double THIN =
     0.03; /* lower bound of least height over longest edge for tetrahedra left alone */
 static const double FAR = 4; /* largest move of a vertex, relative to its neighbourhood */
@@ -45,6 +52,7 @@ static const double FAR = 4; /* largest move of a vertex, relative to its neighb
 typedef struct walk {
     const starg_morph *m;
     deform_mesh *c;
+    deform_path *path;       /* or NULL */
     size_t inner;            /* vertices after the fixed ones */
     uint32_t *first, *about; /* tetrahedra at inner vertex i: about[first[i]] and on */
     sparse_factors *system;
@@ -320,37 +328,105 @@ done:
     return status;
 }
 
-static starg_status split_chords(const walk *w) {
+starg_status deform_free_surface(const starg_morph *m, deform_mesh *c) {
     starg_status status = STARG_OK;
+    const walk w = {.m = m, .c = c};
     edge_list surface = {0}, chords = {0};
-    STARG_TRY(find_surface_edges(w, &surface));
-    STARG_TRY(find_chords(w, &surface, &chords));
-    STARG_TRY(deform_split(w->c, chords.data, chords.count));
+    STARG_TRY(find_surface_edges(&w, &surface));
+    STARG_TRY(find_chords(&w, &surface, &chords));
+    STARG_TRY(deform_split(c, chords.data, chords.count));
+    STARG_TRY(deform_fill_flat(c));
 done:
-    STARG_ARRAY_FREE(w->c->context, &surface);
-    STARG_ARRAY_FREE(w->c->context, &chords);
+    STARG_ARRAY_FREE(c->context, &surface);
+    STARG_ARRAY_FREE(c->context, &chords);
+    return status;
+}
+
+/* ---- harmonic extension ---- */
+
+starg_status deform_harmonic(const starg_morph *m, deform_mesh *c) {
+    starg_status status = STARG_OK;
+    walk w = {.m = m, .c = c};
+    STARG_TRY(prepare(&w));
+    memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
+    STARG_TRY(predict(&w, 1));
+    memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);
+done:
+    walk_free(&w);
     return status;
 }
 
 /* ---- time steps ---- */
 
-starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, double *reached) {
+/* Number of tetrahedra that are not proven to be positive on the whole way to their next place. */
+static size_t count_unproven(const walk *w) {
+    const deform_mesh *c = w->c;
+    size_t count = 0;
+    for (size_t t = 0; t < tetrahedron_count(c); t++) {
+        const double *from[4], *to[4];
+        for (int k = 0; k < 4; k++) {
+            from[k] = corner_of(c, c->now.data, t, k);
+            to[k] = corner_of(c, w->next, t, k);
+        }
+        count += !stays_positive(from, to);
+    }
+    return count;
+}
+
+/* Moves inner vertices where single ones cannot be untangled. */
+static starg_status unfold_step(walk *w, size_t *inverted) {
+    const unfold_problem p = {.context = w->c->context,
+                              .vertex_count = w->c->rest.count / 3,
+                              .fixed = w->c->fixed,
+                              .count = tetrahedron_count(w->c),
+                              .tetrahedra = w->c->tetrahedra.data,
+                              .rest = w->c->rest.data,
+                              .now = w->next};
+    return unfold(&p, UNFOLD_STEPS, inverted);
+}
+
+static starg_status try_step(walk *w, double to, double step, size_t *inverted) {
     starg_status status = STARG_OK;
-    walk w = {.m = m, .c = c};
-    double step = LONGEST_STEP;
+    STARG_TRY(predict(w, to));
+    STARG_TRY(untangle(w, inverted));
+    if (*inverted > 0 && step <= SHORT_STEP)
+        STARG_TRY(unfold_step(w, inverted));
+    if (*inverted == 0 && w->path != NULL)
+        *inverted = count_unproven(w);
+done:
+    return status;
+}
+
+static starg_status take_step(walk *w, double to) {
+    starg_status status = STARG_OK;
+    starg_context *context = w->c->context;
+    memcpy(w->c->now.data, w->next, w->c->now.count * sizeof *w->next);
+    if (w->path == NULL)
+        return STARG_OK;
+    STARG_PUSH(context, STAGE, &w->path->times, to);
+    for (size_t i = 0; i < w->c->now.count; i++)
+        STARG_PUSH(context, STAGE, &w->path->places, w->next[i]);
+done:
+    return status;
+}
+
+starg_status deform(const starg_morph *m, deform_mesh *c, deform_path *path, size_t *inverted,
+                    double *reached) {
+    starg_status status = STARG_OK;
+    walk w = {.m = m, .c = c, .path = path};
+    double longest = path != NULL ? LONGEST_PROVEN : LONGEST_STEP, step = longest;
     *reached = 0;
-    STARG_TRY(split_chords(&w));
     STARG_TRY(prepare(&w));
     while (*reached < 1 && step >= SHORTEST_STEP) {
-        STARG_TRY(predict(&w, fmin(1, *reached + step)));
-        STARG_TRY(untangle(&w, inverted));
-        if (*inverted == 0) {
-            *reached = fmin(1, *reached + step);
-            memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);
-            step = fmin(LONGEST_STEP, 2 * step);
-        } else {
+        double to = fmin(1, *reached + step);
+        STARG_TRY(try_step(&w, to, step, inverted));
+        if (*inverted > 0) {
             step /= 2;
+            continue;
         }
+        STARG_TRY(take_step(&w, to));
+        *reached = to;
+        step = fmin(longest, 2 * step);
     }
 done:
     walk_free(&w);

@@ -36,10 +36,30 @@ void deform_edges_sort(deform_edge *list, size_t *count);
  * tetrahedra; skips edges where a part would have no volume in A (split.c). Errors: MEMORY. */
 starg_status deform_split(deform_mesh *c, const deform_edge *edges, size_t count);
 
+/* Inserts a vertex into the middle of every tetrahedron with all corners on the surface, unless a
+ * part would have no volume in A (split.c). Errors: MEMORY. */
+starg_status deform_fill_flat(deform_mesh *c);
+
+/* Splits what leaves no freedom where the surface bends: edges and tetrahedra inside whose corners
+ * are all on it. Errors: MEMORY. */
+starg_status deform_free_surface(const starg_morph *m, deform_mesh *c);
+
+/* Moves the surface to B and each inner vertex to the mean of its neighbours. Tetrahedra may be
+ * inverted. Errors: SOLVER, MEMORY, CANCELLED. */
+starg_status deform_harmonic(const starg_morph *m, deform_mesh *c);
+
+/* Where the vertices pass: straight from one row of places to the next. */
+typedef struct deform_path {
+    STARG_ARRAY(double) times;  /* ascending, above 0 */
+    STARG_ARRAY(double) places; /* x 3 per vertex, a row for each time */
+} deform_path;
+
 /* Moves the inner vertices of `c`, initially as in A, along with the morph to B. *inverted is 0, or
- * the number of tetrahedra that could not be kept positive near `*reached`. Errors: SOLVER, MEMORY,
- * CANCELLED. */
-starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, double *reached);
+ * the number of tetrahedra that could not be kept positive near `*reached`. With a path (or NULL),
+ * initially empty, steps are shorter, and every tetrahedron is proven to be positive at every
+ * moment of each. Errors: SOLVER, MEMORY, CANCELLED. */
+starg_status deform(const starg_morph *m, deform_mesh *c, deform_path *path, size_t *inverted,
+                    double *reached);
 
 static inline void deform_free(deform_mesh *c) {
     STARG_ARRAY_FREE(c->context, &c->rest);

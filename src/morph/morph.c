@@ -3,7 +3,8 @@
  *
  * Stages: check and scale both ends; for methods with guards, choose guards and pieces
  * (consistent.c); for the rigid ones, the paths of the faces (face_paths.c; flipped_faces.c for
- * star) and guards (guard_paths.c), the factorized system (rigid.c) and its residual (residual.c).
+ * star) and guards (guard_paths.c), the factorized system (rigid.c) and its residual (residual.c);
+ * for solid, the path of its tetrahedra (solid_path.c).
  * Frames are then independent of one another.
  *
  * All computations are relative to the centre of each end's box, in units that give closed ends
@@ -18,12 +19,13 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
+#include "morph/solid_path.h"
 
 static const char STAGE[] = "morph";
 enum { CANDIDATES = 1000, CANDIDATES_MOST = 100000 };
 static const double GROWTH_MOST = 1e6; /* largest ratio of volumes that is normalized */
 
-static const char *const METHODS[] = {"star", "arap", "linear", "spherical", NULL};
+static const char *const METHODS[] = {"star", "arap", "linear", "spherical", "solid", NULL};
 
 static const starg_field OPTIONS[] = {
     {.key = "method",
@@ -32,9 +34,10 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_morph_options, method),
      .words = METHODS,
      .initial = STARG_MORPH_STAR,
-     .value = "star|arap|linear|spherical",
+     .value = "star|arap|linear|spherical|solid",
      .help = "star: pieces about corresponding guards; arap: as rigid as possible, without guards; "
-             "linear: straight vertex paths; spherical: spherical coordinates about the guards."},
+             "linear: straight vertex paths; spherical: spherical coordinates about the guards; "
+             "solid: tetrahedra inside are never inverted, at any time (needs TetGen)."},
     {.key = "candidates",
      .option = "candidates",
      .kind = STARG_FIELD_COUNT,
@@ -172,14 +175,16 @@ starg_status starg_morph_create(starg_context *context, const starg_mesh *a, con
     STARG_TRY(take_ends(m, a, images));
     if (morph_has_guards(m))
         STARG_TRY(morph_guard(m, options->candidates));
-    if (m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_ARAP)
+    if (morph_is_rigid(m))
         STARG_TRY(morph_prepare_faces(m));
     if (m->method == STARG_MORPH_STAR) {
         STARG_TRY(morph_fill_flipped(m));
         STARG_TRY(morph_prepare_guards(m));
     }
-    if (m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_ARAP)
+    if (morph_is_rigid(m))
         STARG_TRY(morph_prepare_rigid(m));
+    if (m->method == STARG_MORPH_SOLID)
+        STARG_TRY(morph_prepare_solid(m));
     *out = m;
     m = NULL;
 done:
@@ -198,6 +203,7 @@ void starg_morph_free(starg_morph *m) {
                             m->flipped,       m->late};
     starg_mesh_free(m->mesh);
     sparse_free(m->system);
+    solid_path_free(m->context, m->solid);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(m->context, blocks[i]);
     starg_release(m->context, m);
@@ -227,6 +233,10 @@ starg_status starg_morph_frame(const starg_morph *m, double t, double *positions
     if (m->method == STARG_MORPH_LINEAR) {
         for (size_t i = 0; i < count; i++)
             positions[i] = (1 - t) * m->source[i] + t * m->target[i];
+        goto done;
+    }
+    if (m->method == STARG_MORPH_SOLID) {
+        morph_frame_solid(m, t, positions);
         goto done;
     }
     STARG_TRY(m->method == STARG_MORPH_SPHERICAL ? morph_frame_spherical(m, t, positions)

@@ -61,6 +61,7 @@ struct starg_morph {
     uint32_t *pieces;                    /* per face */
     uint8_t *guarded;                    /* per face: its guard sees it at both ends */
     guard_path *guard_paths;
+    struct solid_path *solid; /* NULL for other methods */
 };
 
 /* Chooses corresponding guards and pieces (consistent.c). */
@@ -99,6 +100,18 @@ starg_status morph_frame_rigid(const starg_morph *m, double t, double *out);
 starg_status morph_prepare_guards(starg_morph *m);
 /* Spherical coordinates about the guards (spherical.c). */
 starg_status morph_frame_spherical(const starg_morph *m, double t, double *out);
+
+/* The path of tetrahedra, along the frames of the rigid morph; shapes at t in (0, 1)
+ * (solid_path.c).
+ */
+starg_status morph_prepare_solid(starg_morph *m);
+void morph_frame_solid(const starg_morph *m, double t, double *out);
+
+/* Methods that solve for the paths of faces. */
+static inline bool morph_is_rigid(const starg_morph *m) {
+    return m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_ARAP ||
+           m->method == STARG_MORPH_SOLID;
+}
 
 static inline bool morph_has_guards(const starg_morph *m) {
     return m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_SPHERICAL;

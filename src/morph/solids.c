@@ -8,6 +8,7 @@
  *
  * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the
  * respective surface, so they fill both without overlap. Cost: that of its stages. */
+#include "morph/solids.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
@@ -17,7 +18,6 @@
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "consistent pieces";
-static const double DENSITY = 1; /* initial tetrahedra per vertex */
 
 /* ---- ends ---- */
 
@@ -70,13 +70,14 @@ done:
     return status;
 }
 
-static starg_status fill(const starg_morph *m, const starg_solid *solid, deform_mesh *c) {
+static starg_status fill(const starg_morph *m, const starg_solid *solid, double density,
+                         deform_mesh *c) {
     starg_status status = STARG_OK;
     starg_tetra_options options;
     starg_tetmesh *mesh = NULL;
     starg_tetra_options_default(&options);
     options.generator = STARG_TETRA_TETGEN;
-    options.density = DENSITY;
+    options.density = density;
     STARG_TRY(starg_tetmesh_from_solid(m->context, solid, &options, NULL, &mesh));
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
         STARG_PUSH(m->context, STAGE, &c->rest, mesh->vertices[i]);
@@ -89,10 +90,22 @@ done:
     return status;
 }
 
+starg_status solids_fill(const starg_morph *m, double density, deform_mesh *c, starg_solid **solid,
+                         uint32_t **surface) {
+    starg_status status = STARG_OK;
+    STARG_TRY(check_ends(m, solid));
+    STARG_TRY(list_surface(m, surface, &c->fixed));
+    c->surface = *surface;
+    STARG_TRY(fill(m, *solid, density, c));
+    STARG_TRY(deform_free_surface(m, c));
+done:
+    return status;
+}
+
 static starg_status deform_along(const starg_morph *m, deform_mesh *c) {
     size_t inverted;
     double reached;
-    starg_status status = deform(m, c, &inverted, &reached);
+    starg_status status = deform(m, c, NULL, &inverted, &reached);
     if (status == STARG_OK && reached < 1)
         status = starg_fail(m->context, STARG_ERROR_MESH, STAGE,
                             "%zu of %zu tetrahedra turn over near t = %.3g and cannot be mended: "
@@ -102,8 +115,7 @@ static starg_status deform_along(const starg_morph *m, deform_mesh *c) {
     return status;
 }
 
-/* The tetrahedra in one of the two places, known not to overlap. */
-static starg_status place(const deform_mesh *c, const double *places, starg_tetmesh **out) {
+starg_status solids_place(const deform_mesh *c, const double *places, starg_tetmesh **out) {
     starg_status status = STARG_OK;
     double *vertices = NULL;
     uint32_t *tetrahedra = NULL;
@@ -126,8 +138,8 @@ done:
 static starg_status cut(const starg_morph *m, const deform_mesh *c, starg_decomposition *out[2]) {
     starg_status status = STARG_OK;
     starg_tetmesh *meshes[2] = {NULL, NULL};
-    STARG_TRY(place(c, c->rest.data, &meshes[0]));
-    STARG_TRY(place(c, c->now.data, &meshes[1]));
+    STARG_TRY(solids_place(c, c->rest.data, &meshes[0]));
+    STARG_TRY(solids_place(c, c->now.data, &meshes[1]));
     STARG_TRY(compatible_decompose(m->context, meshes[0], meshes[1], out));
     for (int end = 0; end < 2; end++) {
         out[end]->model_vertices = m->mesh->vertex_count;
@@ -148,10 +160,7 @@ starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2
     uint32_t *surface = NULL;
     out[0] = out[1] = NULL;
     starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
-    STARG_TRY(check_ends(m, &solid));
-    STARG_TRY(list_surface(m, &surface, &c.fixed));
-    c.surface = surface;
-    STARG_TRY(fill(m, solid, &c));
+    STARG_TRY(solids_fill(m, SOLIDS_DENSITY, &c, &solid, &surface));
     STARG_TRY(deform_along(m, &c));
     STARG_TRY(cut(m, &c, out));
 done:

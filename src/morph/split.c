@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Splits edges of tetrahedra.
+/* Splits edges of tetrahedra, and tetrahedra.
  *
  * An edge is split with all its tetrahedra, so that they still fit together. In each round a
  * tetrahedron selects the longest of its edges to be split, and edges selected by all their
@@ -8,6 +8,7 @@
  *
  * Invariant: tetrahedra stay positive in A, exactly. Cost: O(tetrahedra) per round. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -200,5 +201,53 @@ done:
     starg_release(c->context, s.middle);
     starg_release(c->context, s.over);
     starg_release(c->context, s.choice);
+    return status;
+}
+
+/* ---- tetrahedra ---- */
+
+/* Would all four parts about the centre be positive? */
+static bool has_room(const deform_mesh *c, size_t t, const double centre[3]) {
+    const double *corners[4];
+    for (int own = 0; own < 4; own++) {
+        for (size_t k = 0; k < 4; k++)
+            corners[k] =
+                (int)k == own ? centre : c->rest.data + 3 * (size_t)c->tetrahedra.data[4 * t + k];
+        if (orient3d(corners[0], corners[1], corners[2], corners[3]) >= 0)
+            return false;
+    }
+    return true;
+}
+
+static bool is_on_surface(const deform_mesh *c, size_t t) {
+    for (size_t k = 0; k < 4; k++)
+        if (c->tetrahedra.data[4 * t + k] >= c->fixed)
+            return false;
+    return true;
+}
+
+starg_status deform_fill_flat(deform_mesh *c) {
+    starg_status status = STARG_OK;
+    size_t count = c->tetrahedra.count / 4;
+    for (size_t t = 0; t < count; t++) {
+        double centre[3] = {0, 0, 0};
+        uint32_t corners[4], middle = (uint32_t)(c->rest.count / 3);
+        if (!is_on_surface(c, t))
+            continue;
+        memcpy(corners, c->tetrahedra.data + 4 * t, sizeof corners);
+        for (size_t k = 0; k < 4; k++)
+            vec3_along(centre, 0.25, c->rest.data + 3 * (size_t)corners[k], centre);
+        if (!has_room(c, t, centre))
+            continue;
+        for (int k = 0; k < 3; k++) {
+            STARG_PUSH(c->context, STAGE, &c->rest, centre[k]);
+            STARG_PUSH(c->context, STAGE, &c->now, centre[k]);
+        }
+        c->tetrahedra.data[4 * t] = middle;
+        for (int own = 1; own < 4; own++)
+            for (int k = 0; k < 4; k++)
+                STARG_PUSH(c->context, STAGE, &c->tetrahedra, k == own ? middle : corners[k]);
+    }
+done:
     return status;
 }

@@ -2,22 +2,19 @@
 /* The claim that each piece is mapped to a ball: the guard to the origin, every other vertex to one
  * point at a distance of 1, and each tetrahedron to a positive one. The boundary of a piece that is
  * star-shaped (verify/claim_stars.c) is a sphere; one whose triangles are all positive, seen from
- * the origin, covers the sphere of directions once.
- *
- * The distortion is found again: the largest singular value of a map is the root of the largest
- * eigenvalue of its matrix times its transpose, and the smallest that of the inverse map. */
+ * the origin, covers the sphere of directions once. The distortion is found
+ * again (verify/distortion.c). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "verify/context.h"
+#include "verify/distortion.h"
 #include "verify/signs.h"
 
 static const char STAGE[] = "verify";
-static const double TOLERANCE = 1e-6; /* of distortions */
 static const double ROUNDING = 1e-12; /* of distances from the origin */
-static const double HIGH = 10;
 
 /* A corner of a tetrahedron, for sorting by piece and vertex. */
 typedef struct image {
@@ -99,84 +96,26 @@ static void claim_positive(const verify_context *own) {
 
 /* ---- distortion ---- */
 
-typedef double matrix[3][3];
-
-/* The edges of a tetrahedron from its last corner, in units of 2^scale. */
-static void edges(const double *const corners[4], int scale, matrix out) {
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            out[i][k] = ldexp(corners[i][k] - corners[3][k], -scale);
-}
-
-static double determinant(matrix m) {
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-}
-
-/* The square of the norm of the map that takes the rows of `from` to those of `to`, by the largest
- * root of the characteristic polynomial. */
-static double squared_norm(matrix from, matrix to) {
-    matrix map, s;
-    double d = determinant(from);
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) {
-            map[i][k] = 0;
-            for (int j = 0; j < 3; j++) {
-                int a = (i + 1) % 3, b = (i + 2) % 3, p = (j + 1) % 3, q = (j + 2) % 3;
-                map[i][k] += (from[p][a] * from[q][b] - from[p][b] * from[q][a]) / d * to[j][k];
-            }
-        }
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            s[i][k] = map[i][0] * map[k][0] + map[i][1] * map[k][1] + map[i][2] * map[k][2];
-    double mean = (s[0][0] + s[1][1] + s[2][2]) / 3, spread = 0;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            spread += (s[i][k] - (i == k ? mean : 0)) * (s[i][k] - (i == k ? mean : 0));
-    spread = sqrt(spread / 6);
-    if (!(spread > 0))
-        return mean;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            s[i][k] = (s[i][k] - (i == k ? mean : 0)) / spread;
-    double angle = acos(fmin(fmax(determinant(s) / 2, -1), 1)) / 3;
-    return mean + 2 * spread * cos(angle);
-}
-
-/* Rounding grows with the ratio, as tetrahedra get flatter. */
-static bool is_near(double claimed, double found) {
-    return fabs(claimed - found) <= (TOLERANCE + 1e-14 * found) * (1 + found);
-}
-
 static void claim_distortion(const verify_context *own) {
     const starg_pieces_mesh *mesh = own->mesh;
-    double worst = 0, sum = 0, above = 0, all = 0;
+    verify_distortion found = {0};
     for (size_t t = 0; t < mesh->count; t++) {
         const double *corners[4], *images[4];
-        matrix from, to;
         for (size_t k = 0; k < 4; k++) {
             corners[k] = verify_point(mesh, mesh->tetrahedra[4 * t + k]);
             images[k] = mesh->corners + 12 * t + 3 * k;
         }
-        edges(corners, own->pieces->scale, from);
-        edges(images, 0, to);
-        double ratio = sqrt(squared_norm(from, to)) * sqrt(squared_norm(to, from));
-        double volume = fabs(determinant(from));
-        worst = fmax(worst, ratio);
-        sum += volume * ratio;
-        above += ratio > HIGH ? volume : 0;
-        all += volume;
+        verify_add_distortion(&found, corners, own->pieces->scale, images, 0);
     }
     const starg_pieces_report *r = own->report;
-    verify_claim(own->verdict, is_near(r->ball_worst, worst),
+    verify_claim(own->verdict, verify_near_distortion(r->ball_worst, found.worst),
                  "maps to balls stretch by a ratio of %.9g at most (found: %.9g)", r->ball_worst,
-                 worst);
-    verify_claim(own->verdict, is_near(r->ball_mean, sum / all),
-                 "their mean ratio is %.9g (found: %.9g)", r->ball_mean, sum / all);
-    verify_claim(own->verdict, is_near(r->ball_above_10, above / all),
+                 found.worst);
+    verify_claim(own->verdict, verify_near_distortion(r->ball_mean, found.sum / found.all),
+                 "their mean ratio is %.9g (found: %.9g)", r->ball_mean, found.sum / found.all);
+    verify_claim(own->verdict, verify_near_distortion(r->ball_above_10, found.above / found.all),
                  "a share of %.9g of the volume has a ratio above 10 (found: %.9g)",
-                 r->ball_above_10, above / all);
+                 r->ball_above_10, found.above / found.all);
 }
 
 /* ---- all of it ---- */

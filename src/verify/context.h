@@ -24,6 +24,10 @@ starg_status verify_claim_tetrahedra(const verify_context *own);
 /* The boundary and the volume are those of the model. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_boundary(const verify_context *own);
 
+/* The boundary does not cross itself and winds around its inside once, so that positive tetrahedra
+ * do not overlap. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_once(const verify_context *own);
+
 /* The report's numbers. Requires valid labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_numbers(const verify_context *own);
 
@@ -37,6 +41,10 @@ starg_status verify_claim_angles(const verify_context *own);
 starg_status verify_claim_fewest(const verify_context *own);
 /* Maps of pieces to balls, if there are any. Errors: MEMORY. */
 starg_status verify_claim_balls(const verify_context *own);
+
+/* Between the keys of a map no tetrahedron is ever inverted. Errors: CANCELLED. */
+starg_status verify_claim_path(starg_context *context, const starg_solid_map *map,
+                               starg_verdict *verdict);
 
 /* ---- names of elements ---- */
 

@@ -70,6 +70,13 @@ void exact_sum_add_determinant(exact_sum *sum, const double a[3], const double b
     }
 }
 
+void exact_sum_add_sum(exact_sum *sum, const exact_sum *other) {
+    for (int i = 0; i < EXACT_SUM_WORDS; i++) {
+        add_at(sum->plus, i, other->plus[i]);
+        add_at(sum->minus, i, other->minus[i]);
+    }
+}
+
 int exact_sum_sign(const exact_sum *sum) {
     for (int i = EXACT_SUM_WORDS - 1; i >= 0; i--)
         if (sum->plus[i] != sum->minus[i])

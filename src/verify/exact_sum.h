@@ -27,6 +27,9 @@ void exact_sum_add(exact_sum *sum, double a, double b, double c);
 void exact_sum_add_determinant(exact_sum *sum, const double a[3], const double b[3],
                                const double c[3]);
 
+/* sum += other */
+void exact_sum_add_sum(exact_sum *sum, const exact_sum *other);
+
 /* -1, 0 or 1. */
 int exact_sum_sign(const exact_sum *sum);
 

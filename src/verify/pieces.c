@@ -50,7 +50,7 @@ static starg_status check_point(starg_context *context, starg_element element, s
                          element == STARG_ELEMENT_GUARD ? "guard" : "vertex", index);
 }
 
-static starg_status check_arrays(starg_context *context, const starg_pieces_mesh *mesh,
+starg_status verify_check_arrays(starg_context *context, const starg_pieces_mesh *mesh,
                                  const starg_pieces_report *report) {
     starg_status status = STARG_OK;
     STARG_TRY(check_tetrahedra(context, mesh));
@@ -74,7 +74,7 @@ static starg_status verify_against(starg_context *context, const verify_surface 
                           .report = report,
                           .model = model,
                           .certificate = certificate};
-    STARG_TRY(check_arrays(context, mesh, report));
+    STARG_TRY(verify_check_arrays(context, mesh, report));
     STARG_TRY(verify_pieces_create(context, mesh, report, &own.pieces));
     STARG_TRY(verify_verdict_create(context, &own.verdict));
     STARG_TRY(verify_claim_tetrahedra(&own));

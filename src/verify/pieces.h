@@ -33,6 +33,10 @@ typedef struct verify_pieces {
     size_t *wall_start;
 } verify_pieces;
 
+/* Are indices in range and coordinates finite? `report` may be NULL. Errors: ARGUMENT, RANGE. */
+starg_status verify_check_arrays(starg_context *context, const starg_pieces_mesh *mesh,
+                                 const starg_pieces_report *report);
+
 /* `report` may be NULL. Errors: MEMORY, CANCELLED. */
 starg_status verify_pieces_create(starg_context *context, const starg_pieces_mesh *mesh,
                                   const starg_pieces_report *report, verify_pieces **out);

@@ -29,6 +29,8 @@ static starg_status read_bytes(starg_context *context, const char *bytes, size_t
         return starg_certificate_read_memory(context, bytes, size, name, &result->certificate);
     if (begins_with(bytes, size, "# vtk"))
         return starg_pieces_mesh_read_memory(context, bytes, size, name, &result->pieces);
+    if (begins_with(bytes, size, "<?xml") || begins_with(bytes, size, "<VTKFile"))
+        return starg_solid_map_read_memory(context, bytes, size, name, &result->solid_map);
     if (has_format(bytes, size, "starguard-pieces"))
         return starg_pieces_report_read_memory(context, bytes, size, name, &result->report);
     if (has_format(bytes, size, "starguard-map"))
@@ -64,5 +66,6 @@ void starg_result_free(starg_context *context, starg_result *result) {
     starg_certificate_free(result->certificate);
     starg_map_file_free(result->map);
     starg_morph_report_free(result->morph);
+    starg_solid_map_free(context, result->solid_map);
     starg_release(context, result);
 }

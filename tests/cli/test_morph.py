@@ -23,6 +23,55 @@ class Morph(Case):
         count = int(words[1])
         return count, [float(w) for w in words[4:4 + 3 * count]], words[4 + 3 * count:]
 
+    @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
+    def test_solid(self):
+        """Maps of solids verify, carry points both ways, and are refuted when they are changed."""
+        self.run_text("sample", "cat", "--vertices", "500", "-o", "a.off")
+        self.run_text("sample", "cat", "--vertices", "500", "--pose", "1", "-o", "b.off")
+        report = self.run_json("map", "--solid", "a.off", "b.off", "-o", "map.vtu")
+        self.assertLess(report["distortion"]["mean"], 2)
+        self.run_text("verify", "a.off", "b.off", "map.vtu")
+        self.run_text("verify", "a.off", "b.off", "map.vtu", "a.off", status=2)
+        self.run_text("verify", "a.off", "a.off", "map.vtu", status=4)
+        corner = "%r %r %r" % tuple(self.vertices("a.off")[1][:3])
+        image = self.vertices("b.off")[1][:3]
+        self.write("points.txt", corner + "\n")
+        same = "map", "--solid", "a.off", "b.off", "--map", "map.vtu"
+        self.run_text(*same, "--points", "points.txt", "--carried", "there.txt")
+        self.assertEqual([float(w) for w in self.read("there.txt").split()], image)
+        self.run_text(*same, "--points", "there.txt", "--back", "--carried", "back.txt")
+        self.assertEqual([float(w) for w in self.read("back.txt").split()],
+                         [float(w) for w in corner.split()])
+        self.write("field.txt", corner + " 7\n")
+        self.run_text(*same, "--apply", "field.txt", "--carried", "field_b.txt")
+        self.assertEqual(float(self.read("field_b.txt").split()[3]), 7)
+        self.write("field.txt", corner + " 7\n" + corner + "\n")
+        self.run_text(*same, "--apply", "field.txt", "--carried", "none.txt", status=2)
+        self.write("points.txt", "1e6 0 0\n")
+        self.run_text(*same, "--points", "points.txt", "--carried", "none.txt", status=2)
+        self.assertNotIn("none.txt", self.names())
+        text = self.read("map.vtu").decode()
+        start = text.index(">", text.index('Name="image"')) + 2
+        self.write("forged.vtu", text[:start] + "9" + text[text.index(" ", start):])
+        self.run_text("verify", "a.off", "b.off", "forged.vtu", status=4)
+        self.write("cut.vtu", text[:start])
+        self.run_text("verify", "a.off", "b.off", "cut.vtu", status=2)
+        report = self.run_json("morph", "a.off", "b.off", "--frames", "3", "-o", "out", "--method",
+                               "solid", "--certificate", "path.vtu")
+        self.assertEqual(report["solid"]["inverted"], 0)
+        self.run_text("verify", "a.off", "b.off", "path.vtu")
+
+    def test_solid_usage(self):
+        both = "map", "--solid", "cat0.off", "cat1.off"
+        self.usage_error(*both, says="no output")
+        self.usage_error(*both, "-o", "m.vtu", "--points", "p.txt", says="--carried")
+        self.usage_error(*both, "-o", "m.vtu", "--back", says="--back needs")
+        self.usage_error(*both, "-o", "m.vtu", "--to", "ball", says="A only")
+        self.usage_error("map", "cat0.off", "cat1.off", "-o", "m.json", "--to", "ball", says="--solid")
+        self.usage_error("map", "cat0.off", "-o", "m.json", says="two models")
+        self.usage_error("morph", "cat0.off", "cat1.off", "--frames", "2", "-o", "out",
+                         "--certificate", "p.vtu", says="only method solid")
+
     def test_frames(self):
         for method in "star", "arap", "linear", "spherical":
             report = self.run_json("morph", "cat0.off", "cat1.off", "--frames", "3", "-o", method,

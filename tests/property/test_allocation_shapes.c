@@ -10,11 +10,13 @@
 
 #include "starguard/database.h"
 #include "starguard/shape.h"
+#include "starguard/solidmap.h"
 
 static failing_inputs in;
-static input_bytes descriptor_text, database_file, map_text, report_text;
+static input_bytes descriptor_text, database_file, map_text, report_text, solid_text;
 static starg_map_file *map_file;
 static starg_morph_report *morph_report;
+static starg_mesh *simplex; /* whose only map is the identity */
 
 /* ---- signatures ---- */
 
@@ -295,8 +297,66 @@ static starg_status morphs(starg_context *context) {
     return STARG_OK;
 }
 
+/* ---- maps between solids ---- */
+
+#define SOLID_MAP(NAME, VARIANT, ...)                                                              \
+    FAILING_MAKES(NAME, VARIANT, starg_solid_map, starg_solid_map_free(context, out), __VA_ARGS__)
+#define SAMPLES(NAME, VARIANT, ...)                                                                \
+    FAILING_MAKES(NAME, VARIANT, starg_samples, starg_samples_free(context, out), __VA_ARGS__)
+
+/* The identity of a tetrahedron, a piece of its own. */
+static double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, inside[] = {0.25, 0.25, 0.25};
+static double time_of_key[] = {0.5};
+static uint32_t one_tetrahedron[] = {0, 1, 2, 3};
+static int32_t one_label[] = {0};
+static const starg_solid_map identity = {.vertex_count = 4,
+                                         .count = 1,
+                                         .vertices = corners,
+                                         .images = corners,
+                                         .tetrahedra = one_tetrahedron,
+                                         .labels = one_label,
+                                         .piece_count = 1,
+                                         .guards = inside,
+                                         .guard_images = inside,
+                                         .worst = 1,
+                                         .mean = 1,
+                                         .key_count = 1,
+                                         .times = time_of_key,
+                                         .keys = corners};
+
+static starg_status solid_maps(starg_context *context) {
+    static double values[] = {1, 2, 3};
+    const starg_samples samples = {.count = 1, .width = 3, .points = inside, .values = values};
+    SOLID_MAP(starg_solid_map_read_memory, "", solid_text.data, solid_text.size, "map.vtu");
+    FAILING(starg_solid_map_write, "", &identity, failing_output("other.vtu"));
+    FAILING_MAKES(starg_verify_solid_map, "", starg_verdict, starg_verdict_free(context, out),
+                  simplex, simplex, &identity);
+    SAMPLES(starg_solid_map_carry, "", &identity, &samples, true);
+    SAMPLES(starg_samples_read, "", failing_input("samples.txt"));
+    FAILING(starg_samples_write, "", &samples, failing_output("samples.txt"));
+    return STARG_OK;
+}
+
+static starg_status solid_map_of_morph(starg_context *context) {
+    starg_morph *morph = NULL;
+    starg_solid_map *map = NULL;
+    failing_pause();
+    test_ok(context, starg_morph_create(context, in.cube, starg_mesh_vertices(in.box),
+                                        by(STARG_MORPH_SOLID), &morph));
+    failing_resume();
+    starg_status status = starg_morph_solid_map(morph, &map);
+    failing_result(status, map);
+    starg_solid_map_free(context, map);
+    starg_morph_free(morph);
+    return status;
+}
+
 static starg_status by_tetgen(starg_context *context) {
     FAILING_BY(starg_morph_solids, "", morph_solids(context));
+    MORPH(starg_morph_create, "solid", SOLID);
+    SOLID_MAP(starg_solid_map_create, "", in.cube, starg_mesh_vertices(in.box), NULL);
+    SOLID_MAP(starg_solid_map_to, "ball", in.cube, STARG_SOLID_BALL, NULL);
+    FAILING_BY(starg_morph_solid_map, "", solid_map_of_morph(context));
     return STARG_OK;
 }
 
@@ -306,6 +366,7 @@ FAILING_TEST(databases)
 FAILING_TEST(maps)
 FAILING_TEST(morphs)
 FAILING_TEST(verified_morphs)
+FAILING_TEST(solid_maps)
 
 static void test_tetgen(void **state) {
     (void)state;
@@ -331,8 +392,12 @@ static void read_claims(void) {
 
 static int set_up(void **state) {
     (void)state;
+    static const uint32_t faces[] = {1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1};
     failing_inputs_make(&in);
     read_claims();
+    test_ok(in.context, starg_mesh_create(in.context, corners, 4, faces, 4, &simplex));
+    test_ok(in.context, starg_solid_map_write(in.context, &identity, failing_input("map.vtu")));
+    solid_text = failing_input_bytes("map.vtu");
     descriptor_text = failing_input_bytes("descriptor.json");
     database_file = failing_input_bytes("shapes.db");
     return 0;
@@ -346,6 +411,8 @@ static int tear_down(void **state) {
     free(report_text.data);
     starg_map_file_free(map_file);
     starg_morph_report_free(morph_report);
+    free(solid_text.data);
+    starg_mesh_free(simplex);
     failing_inputs_free(&in);
     return 0;
 }
@@ -355,7 +422,7 @@ int main(void) {
         cmocka_unit_test(test_signatures), cmocka_unit_test(test_descriptors),
         cmocka_unit_test(test_databases),  cmocka_unit_test(test_maps),
         cmocka_unit_test(test_morphs),     cmocka_unit_test(test_verified_morphs),
-        cmocka_unit_test(test_tetgen),
+        cmocka_unit_test(test_tetgen),     cmocka_unit_test(test_solid_maps),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

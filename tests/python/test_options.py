@@ -9,7 +9,7 @@ import numpy as np
 
 import starguard
 from starguard import _library, catalogue, descriptors, guards, mesh, morphs, pieces, skeletons, tetra
-from starguard import visibility
+from starguard import solidmaps, visibility
 from support import Case, main
 
 lib = _library.lib
@@ -23,7 +23,8 @@ CALLS = [("guard", starguard.guard, guards._OPTIONS), ("visible", starguard.visi
          ("skeleton", starguard.skeleton, skeletons._OPTIONS),
          ("repair", starguard.Mesh.repair, mesh._REPAIR), ("sample", starguard.sample, catalogue._OPTIONS),
          ("describe", starguard.describe, descriptors._OPTIONS),
-         ("morph", starguard.Morph, morphs._OPTIONS)]
+         ("morph", starguard.Morph, morphs._OPTIONS),
+         ("map", starguard.map_solid, solidmaps._OPTIONS)]
 
 
 def random_value(field):

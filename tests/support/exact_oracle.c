@@ -120,6 +120,157 @@ static void normal(vector *n, const double a[3], const double b[3], const double
     vector_clear(&t);
 }
 
+/* ---- polynomials ---- */
+
+enum { DEGREE = 3 };
+
+typedef struct polynomial {
+    mpq_t c[DEGREE + 1]; /* ascending */
+} polynomial;
+
+static void polynomial_init(polynomial *p) {
+    for (int i = 0; i <= DEGREE; i++)
+        mpq_init(p->c[i]);
+}
+
+static void polynomial_clear(polynomial *p) {
+    for (int i = 0; i <= DEGREE; i++)
+        mpq_clear(p->c[i]);
+}
+
+static int degree_of(const polynomial *p) {
+    int degree = DEGREE;
+    while (degree >= 0 && mpq_sgn(p->c[degree]) == 0)
+        degree--;
+    return degree;
+}
+
+/* At 0 and at 1. */
+static int sign_at(const polynomial *p, int t) {
+    mpq_t sum;
+    mpq_init(sum);
+    for (int i = 0; i <= (t == 0 ? 0 : DEGREE); i++)
+        mpq_add(sum, sum, p->c[i]);
+    int sign = mpq_sgn(sum);
+    mpq_clear(sum);
+    return sign;
+}
+
+/* a = -(a mod b), for b of degree 0 or more */
+static void negative_remainder(polynomial *a, const polynomial *b) {
+    mpq_t factor, part;
+    mpq_inits(factor, part, (mpq_ptr)NULL);
+    int low = degree_of(b);
+    for (int high = degree_of(a); high >= low; high = degree_of(a)) {
+        mpq_div(factor, a->c[high], b->c[low]);
+        for (int i = 0; i <= low; i++) {
+            mpq_mul(part, factor, b->c[i]);
+            mpq_sub(a->c[high - low + i], a->c[high - low + i], part);
+        }
+    }
+    for (int i = 0; i <= DEGREE; i++)
+        mpq_neg(a->c[i], a->c[i]);
+    mpq_clears(factor, part, (mpq_ptr)NULL);
+}
+
+/* Changes of sign in Sturm's sequence at t. */
+static int changes_at(const polynomial *sequence, int count, int t) {
+    int changes = 0, last = 0;
+    for (int i = 0; i < count; i++) {
+        int sign = sign_at(&sequence[i], t);
+        changes += sign * last < 0;
+        last = sign != 0 ? sign : last;
+    }
+    return changes;
+}
+
+/* Sturm's theorem: the number of distinct roots between 0 and 1, where it does not vanish. */
+static int roots_between(const polynomial *p) {
+    polynomial sequence[DEGREE + 2];
+    int count = 2;
+    for (int i = 0; i < DEGREE + 2; i++)
+        polynomial_init(&sequence[i]);
+    mpq_t factor;
+    mpq_init(factor);
+    for (int i = 0; i <= DEGREE; i++)
+        mpq_set(sequence[0].c[i], p->c[i]);
+    for (int i = 1; i <= DEGREE; i++) {
+        mpq_set_si(factor, i, 1);
+        mpq_mul(sequence[1].c[i - 1], p->c[i], factor);
+    }
+    while (count < DEGREE + 2 && degree_of(&sequence[count - 1]) > 0) {
+        for (int i = 0; i <= DEGREE; i++)
+            mpq_set(sequence[count].c[i], sequence[count - 2].c[i]);
+        negative_remainder(&sequence[count], &sequence[count - 1]);
+        count++;
+    }
+    int roots = changes_at(sequence, count, 0) - changes_at(sequence, count, 1);
+    mpq_clear(factor);
+    for (int i = 0; i < DEGREE + 2; i++)
+        polynomial_clear(&sequence[i]);
+    return roots;
+}
+
+/* The determinant of edges at time t, an integer. */
+static void volume_at(mpq_t out, const double *const from[4], const double *const to[4], int t) {
+    vector edges[3], late[3];
+    mpq_t weights[2];
+    mpq_inits(weights[0], weights[1], (mpq_ptr)NULL);
+    mpq_set_si(weights[0], 1 - t, 1);
+    mpq_set_si(weights[1], t, 1);
+    for (int i = 0; i < 3; i++) {
+        vector_init(&edges[i]);
+        vector_init(&late[i]);
+        vector_difference(&edges[i], from[i + 1], from[0]);
+        vector_difference(&late[i], to[i + 1], to[0]);
+        for (int k = 0; k < 3; k++) {
+            mpq_mul(edges[i].x[k], edges[i].x[k], weights[0]);
+            mpq_mul(late[i].x[k], late[i].x[k], weights[1]);
+            mpq_add(edges[i].x[k], edges[i].x[k], late[i].x[k]);
+        }
+    }
+    determinant(out, &edges[0], &edges[1], &edges[2]);
+    for (int i = 0; i < 3; i++) {
+        vector_clear(&edges[i]);
+        vector_clear(&late[i]);
+    }
+    mpq_clears(weights[0], weights[1], (mpq_ptr)NULL);
+}
+
+/* The polynomial with given values at -1, 0, 1 and 2, by Lagrange's formula. */
+static void interpolate(polynomial *p, mpq_t values[4]) {
+    static const int NUMERATORS[4][4] = {
+        {0, -2, 3, -1}, {6, -3, -6, 3}, {0, 6, 3, -3}, {0, -1, 0, 1}};
+    mpq_t factor;
+    mpq_init(factor);
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k <= DEGREE; k++) {
+            mpq_set_si(factor, NUMERATORS[i][k], 6);
+            mpq_canonicalize(factor);
+            mpq_mul(factor, factor, values[i]);
+            mpq_add(p->c[k], p->c[k], factor);
+        }
+    mpq_clear(factor);
+}
+
+bool oracle_stays_positive(const double *const from[4], const double *const to[4]) {
+    polynomial p;
+    mpq_t values[4];
+    polynomial_init(&p);
+    for (int i = 0; i < 4; i++) {
+        mpq_init(values[i]);
+        volume_at(values[i], from, to, i - 1);
+    }
+    interpolate(&p, values);
+    bool positive = sign_at(&p, 0) > 0 && sign_at(&p, 1) > 0 && roots_between(&p) == 0;
+    for (int i = 0; i < 4; i++)
+        mpq_clear(values[i]);
+    polynomial_clear(&p);
+    return positive;
+}
+
+/* ---- predicates in the plane and about spheres ---- */
+
 int oracle_orient2d(const double a[3], const double b[3], const double c[3], int u, int v) {
     vector n;
     vector_init(&n);

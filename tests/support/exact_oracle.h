@@ -23,6 +23,9 @@ int oracle_compare_parallax(const double a[3], const double b[3], const double c
                             const double p[3], const double q[3], double cosine);
 bool oracle_collinear(const double a[3], const double b[3], const double c[3]);
 
+/* Is the tetrahedron of points that move straight positive at every time? */
+bool oracle_stays_positive(const double *const from[4], const double *const to[4]);
+
 /* The contracts of geometry/intersect.h. */
 bool oracle_segment_meets_triangle(const double p[3], const double q[3], const double a[3],
                                    const double b[3], const double c[3]);

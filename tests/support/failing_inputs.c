@@ -142,6 +142,7 @@ static void write_texts(void) {
     write_text("weights.txt", "0 2.5\n1\n");
     write_text("named.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 2 3\ng b\nf 1 3 4\n");
     write_text("points.txt", "0.5 0.5 0.5\nv 0.25 0.5 0.5 # a comment\n");
+    write_text("samples.txt", "0.5 0.5 0.5 1 2 3\n# a comment\n0 0 0 4 5 6\n");
     write_text("landmarks.txt", "0 1\n1 2\n# by position\n1 0 0 0 0 1\n");
     write_text("classes.txt", "room.off room\ncube.off cube\n");
     write_text("tets.mesh", "MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n"

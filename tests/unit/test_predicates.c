@@ -274,6 +274,66 @@ static void test_families_reach_every_sign(void **state) {
     }
 }
 
+/* ---- moving tetrahedra ---- */
+
+/* From four points to the same four displaced by a part of the way to four others: corners may pass
+ * through the opposite face and come back. */
+static void check_moving(point_family family, const double (*x)[3], size_t *counts) {
+    const double *from[4], *to[4];
+    double end[4][3];
+    static const double PARTS[4] = {1, 0.25, 0x1p-20, -0.5};
+    for (int part = 0; part < 4; part++) {
+        for (int i = 0; i < 4; i++) {
+            for (int k = 0; k < 3; k++)
+                end[i][k] = x[i][k] + PARTS[part] * (x[i + 4][k] - x[i][k]);
+            from[i] = x[i];
+            to[i] = end[i];
+        }
+        bool expected = oracle_stays_positive(from, to), found = stays_positive(from, to);
+        if (found && !expected)
+            fail_msg("stays_positive, %s, part %d: proven, but false", point_family_name(family),
+                     part);
+        counts[expected ? 1 : 0]++;
+        counts[2] += expected && !found;
+    }
+}
+
+static void test_stays_positive(void **state) {
+    (void)state;
+    size_t counts[3] = {0, 0, 0}, rounds = test_rounds(ROUNDS / 10, LONG_ROUNDS / 10);
+    for (int family = 0; family < POINT_FAMILIES; family++)
+        for (uint64_t round = 0; round < rounds; round++) {
+            starg_rng rng = starg_rng_make(12, (uint64_t)family, round);
+            double x[8][3];
+            adversarial_points(&rng, (point_family)family, x, 8);
+            check_moving((point_family)family, (const double(*)[3])x, counts);
+        }
+    assert_true(counts[0] > rounds && counts[1] > rounds);
+    assert_true(100 * counts[2] < counts[1]); /* so close to zero that it may be refused */
+}
+
+/* A determinant that touches zero at t = 1/2 only, and one that stays a little above. */
+static void test_touching_zero(void **state) {
+    (void)state;
+    static const double from[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const double flat[4][3] = {{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+    double above[4][3];
+    const double *a[4], *b[4], *c[4];
+    memcpy(above, flat, sizeof above);
+    above[1][1] = 0x1p-12; /* turns a little */
+    above[2][0] = -0x1p-12;
+    for (int i = 0; i < 4; i++) {
+        a[i] = from[i];
+        b[i] = flat[i];
+        c[i] = above[i];
+    }
+    assert_false(stays_positive(a, b));
+    assert_false(oracle_stays_positive(a, b));
+    assert_true(stays_positive(a, a));
+    assert_true(oracle_stays_positive(a, c));
+    assert_true(stays_positive(a, c));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_orient3d),
@@ -285,6 +345,8 @@ int main(void) {
         cmocka_unit_test(test_compare_incidence),
         cmocka_unit_test(test_compare_parallax),
         cmocka_unit_test(test_collinear),
+        cmocka_unit_test(test_stays_positive),
+        cmocka_unit_test(test_touching_zero),
         cmocka_unit_test(test_meaning),
         cmocka_unit_test(test_families_reach_every_sign),
     };

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The options of maps between solids, as a table (starguard/fields.h). */
+#include "core/fields.h"
+#include "morph/solids.h"
+#include "starguard/solidmap.h"
+
+enum { STEPS = 400, STEPS_MOST = 1000000 };
+#define DENSITY_MOST 1000.0
+
+static const starg_field OPTIONS[] = {
+    {.key = "steps",
+     .option = "steps",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_solid_map_options, steps),
+     .most = STEPS_MOST,
+     .initial = STEPS,
+     .value = "N",
+     .help = "With --solid: steps of descent in each solid that lower the distortion."},
+    {.key = "density",
+     .option = "density",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_solid_map_options, density),
+     .high = DENSITY_MOST,
+     .flags = STARG_FIELD_ABOVE,
+     .standard = SOLIDS_DENSITY,
+     .value = "T",
+     .help = "With --solid: tetrahedra per vertex of A to begin with."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "solid map options", .size = sizeof(starg_solid_map_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_solid_map_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
+void starg_solid_map_options_default(starg_solid_map_options *options) {
+    *options = (starg_solid_map_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
+}

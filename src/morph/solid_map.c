@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Maps between solids: the same tetrahedra in two places.
+ *
+ * Problem: the surface of B is given in A's connectivity. Find tetrahedra with that boundary that
+ * are positive in A and in B, for surfaces of any genus; so that the map that is linear on each is
+ * a homeomorphism of the solids.
+ *
+ * Stages: fill A (solids.c); let the tetrahedra follow an as-rigid-as-possible morph to B
+ * (deform.c), and where that ends too soon, put the surface into place and unfold (unfold.c); lower
+ * the distortion by moving inner vertices in B, then in A; find pieces that are star-shaped in both
+ * (star/strict/start/compatible.c); measure.
+ *
+ * Invariant: at the end all tetrahedra are positive in both, by exact signs. Both boundaries are
+ * embedded, which the first stage has checked; so the tetrahedra fill both. Cost: that of its
+ * stages. */
+#include "starguard/solidmap.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/fields.h"
+#include "core/memory.h"
+#include "geometry/singular_values.h"
+#include "geometry/vec3.h"
+#include "morph/morph.h"
+#include "morph/solid_map.h"
+#include "morph/solids.h"
+#include "morph/unfold.h"
+#include "star/strict/start/compatible.h"
+#include "tetra/tetmesh.h"
+
+static const char STAGE[] = "solid map";
+enum { UNFOLD_STEPS = 2000, ROUNDS = 8, FEW = 40 };
+/* Ratios of singular values: from where they count as high, and what stands for more. */
+static const double HIGH = 10, HIGHEST = 1e300;
+
+/* ---- tetrahedra in both places ---- */
+
+/* Inner vertices of one place (0: A, 1: B) are free, those of the other are the rest. */
+static unfold_problem problem_of(deform_mesh *c, int free_end) {
+    return (unfold_problem){.context = c->context,
+                            .vertex_count = c->rest.count / 3,
+                            .fixed = c->fixed,
+                            .count = c->tetrahedra.count / 4,
+                            .tetrahedra = c->tetrahedra.data,
+                            .rest = free_end == 1 ? c->rest.data : c->now.data,
+                            .now = free_end == 1 ? c->now.data : c->rest.data};
+}
+
+/* The edges of inverted tetrahedra that are not on the surface. */
+static starg_status split_inverted(deform_mesh *c) {
+    starg_status status = STARG_OK;
+    const unfold_problem p = problem_of(c, 1);
+    STARG_ARRAY(deform_edge) edges = {0};
+    for (size_t i = 0; i < 6 * p.count; i++) {
+        uint32_t a = p.tetrahedra[i / 6 * 4 + (size_t)DEFORM_EDGES[i % 6][0]];
+        uint32_t b = p.tetrahedra[i / 6 * 4 + (size_t)DEFORM_EDGES[i % 6][1]];
+        if ((a >= c->fixed || b >= c->fixed) && !unfold_is_positive(&p, i / 6))
+            STARG_PUSH(c->context, STAGE, &edges, deform_edge_of(a, b));
+    }
+    deform_edges_sort(edges.data, &edges.count);
+    STARG_TRY(deform_split(c, edges.data, edges.count));
+done:
+    STARG_ARRAY_FREE(c->context, &edges);
+    return status;
+}
+
+/* Puts the surface into place at once, and moves inner vertices until nothing is inverted. Where
+ * that does not do, there are more of them. */
+static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, double reached) {
+    starg_status status = STARG_OK;
+    size_t inverted = 0;
+    for (size_t v = 0; v < c->fixed; v++)
+        vec3_copy(m->target + 3 * (size_t)c->surface[v], c->now.data + 3 * v);
+    for (int round = 0; round < ROUNDS; round++) {
+        const unfold_problem p = problem_of(c, 1);
+        STARG_TRY(unfold(&p, UNFOLD_STEPS, &inverted));
+        if (inverted == 0)
+            goto done;
+        if (inverted > p.count / FEW) /* not a matter of single vertices */
+            break;
+        STARG_TRY(split_inverted(c));
+    }
+    status = starg_fail(c->context, STARG_ERROR_MESH, STAGE,
+                        "%zu of %zu tetrahedra stay inverted in B (the way there ended at t = "
+                        "%.3g): A's surface folds too much in B; a finer A (--density, or more "
+                        "vertices), another map of the surfaces or landmarks may do",
+                        inverted, c->tetrahedra.count / 4, reached);
+done:
+    return status;
+}
+
+/* Along a morph, or at once. */
+static starg_status spread(const starg_morph *m, const starg_solid_map_options *options,
+                           deform_mesh *c) {
+    starg_status status = STARG_OK;
+    size_t inverted;
+    double reached = 0;
+    if (m->method == STARG_MORPH_ARAP)
+        STARG_TRY(deform(m, c, NULL, &inverted, &reached));
+    else
+        STARG_TRY(deform_harmonic(m, c));
+    if (reached < 1)
+        STARG_TRY(unfold_at_end(m, c, reached));
+    for (int end = 1; end >= 0; end--) {
+        const unfold_problem p = problem_of(c, end);
+        STARG_TRY(unfold_relax(&p, options->steps));
+    }
+done:
+    return status;
+}
+
+/* ---- results ---- */
+
+static starg_status copy_guards(starg_context *context, const starg_decomposition *d,
+                                double **out) {
+    starg_status status = STARG_OK;
+    STARG_NEW(context, STAGE, *out, 3 * d->piece_count);
+    for (size_t p = 0; p < d->piece_count; p++)
+        vec3_copy(d->pieces[p].guard, *out + 3 * p);
+done:
+    return status;
+}
+
+/* The pieces' tetrahedra are the given ones, in their order. */
+static starg_status take_pieces(starg_context *context, const starg_decomposition *const pieces[2],
+                                starg_solid_map *map) {
+    starg_status status = STARG_OK;
+    const starg_tetmesh *a = pieces[0]->mesh, *b = pieces[1]->mesh;
+    map->vertex_count = a->vertex_count;
+    map->count = a->count;
+    map->piece_count = pieces[0]->piece_count;
+    STARG_NEW(context, STAGE, map->vertices, 3 * a->vertex_count);
+    STARG_NEW(context, STAGE, map->images, 3 * a->vertex_count);
+    STARG_NEW(context, STAGE, map->tetrahedra, 4 * a->count);
+    STARG_NEW(context, STAGE, map->labels, a->count);
+    memcpy(map->vertices, a->vertices, 3 * a->vertex_count * sizeof *map->vertices);
+    memcpy(map->images, b->vertices, 3 * a->vertex_count * sizeof *map->images);
+    memcpy(map->tetrahedra, a->tetrahedra, 4 * a->count * sizeof *map->tetrahedra);
+    memcpy(map->labels, pieces[0]->labels, a->count * sizeof *map->labels);
+    STARG_TRY(copy_guards(context, pieces[0], &map->guards));
+    STARG_TRY(copy_guards(context, pieces[1], &map->guard_images));
+done:
+    return status;
+}
+
+/* Edges from the last corner, in units of 2^exponent. */
+static void edges_of(const double *vertices, const uint32_t *corners, int exponent,
+                     double out[3][3]) {
+    const double *last = vertices + 3 * (size_t)corners[3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            out[i][k] = ldexp(vertices[3 * (size_t)corners[i] + (size_t)k] - last[k], -exponent);
+}
+
+static int exponent_of(const double *vertices, size_t count) {
+    double most = 0;
+    int exponent;
+    for (size_t i = 0; i < 3 * count; i++)
+        most = fmax(most, fabs(vertices[i] - vertices[i % 3]));
+    frexp(most, &exponent);
+    return exponent;
+}
+
+double solid_map_ratio(const starg_solid_map *map, size_t t, const int exponents[2],
+                       double *volume) {
+    double from[3][3], to[3][3], values[3];
+    edges_of(map->vertices, map->tetrahedra + 4 * t, exponents[0], from);
+    edges_of(map->images, map->tetrahedra + 4 * t, exponents[1], to);
+    singular_values(from, to, values);
+    *volume = fabs(vec3_triple(from[0], from[1], from[2]));
+    return values[2] > 0 ? fmin(values[0] / values[2], HIGHEST) : HIGHEST;
+}
+
+void solid_map_exponents(const starg_solid_map *map, int out[2]) {
+    out[0] = exponent_of(map->vertices, map->vertex_count);
+    out[1] = exponent_of(map->images, map->vertex_count);
+}
+
+static void measure(starg_solid_map *map) {
+    double all = 0, sum = 0, high = 0;
+    int exponents[2];
+    solid_map_exponents(map, exponents);
+    for (size_t t = 0; t < map->count; t++) {
+        double volume, ratio = solid_map_ratio(map, t, exponents, &volume);
+        map->worst = fmax(map->worst, ratio);
+        all += volume;
+        sum += volume * ratio;
+        high += ratio > HIGH ? volume : 0;
+    }
+    map->mean = sum / all;
+    map->above_10 = fmin(high / all, 1);
+}
+
+starg_status solid_map_finish(starg_context *context, const deform_mesh *c, starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    starg_tetmesh *places[2] = {NULL, NULL};
+    starg_decomposition *pieces[2] = {NULL, NULL};
+    starg_solid_map *map = NULL;
+    STARG_TRY(solids_place(c, c->rest.data, &places[0]));
+    STARG_TRY(solids_place(c, c->now.data, &places[1]));
+    STARG_TRY(compatible_decompose(context, places[0], places[1], pieces));
+    STARG_NEW_ZERO(context, STAGE, map, 1);
+    STARG_TRY(take_pieces(context, (const starg_decomposition *const *)pieces, map));
+    measure(map);
+    *out = map;
+    map = NULL;
+done:
+    starg_solid_map_free(context, map);
+    for (int end = 0; end < 2; end++) {
+        starg_tetmesh_free(places[end]);
+        starg_decomposition_free(context, pieces[end]);
+    }
+    return status;
+}
+
+/* ---- public functions ---- */
+
+static starg_status make_map(starg_context *context, const starg_mesh *a, const double *images,
+                             starg_morph_method method, const starg_solid_map_options *options,
+                             starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    starg_solid_map_options defaults;
+    starg_morph_options way;
+    starg_morph *m = NULL;
+    starg_solid *solid = NULL;
+    uint32_t *surface = NULL;
+    deform_mesh c = {.context = context};
+    starg_solid_map_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    STARG_TRY(fields_check(context, STAGE, starg_solid_map_options_fields(), options));
+    starg_morph_options_default(&way);
+    way.method = method;
+    STARG_TRY(starg_morph_create(context, a, images, &way, &m));
+    STARG_TRY(solids_fill(m, options->density, &c, &solid, &surface));
+    STARG_TRY(spread(m, options, &c));
+    STARG_TRY(solid_map_finish(context, &c, out));
+done:
+    deform_free(&c);
+    starg_solid_free(solid);
+    starg_release(context, surface);
+    starg_morph_free(m);
+    return status;
+}
+
+starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
+                                    const double *images, const starg_solid_map_options *options,
+                                    starg_solid_map **out) {
+    *out = NULL;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    starg_status status = make_map(context, a, images, STARG_MORPH_ARAP, options, out);
+    starg_time_end(context, former);
+    return status;
+}
+
+starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,
+                                starg_solid_shape shape, const starg_solid_map_options *options,
+                                starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    double *images = NULL;
+    *out = NULL;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    STARG_TRY(solid_map_shape(context, a, shape, &images));
+    STARG_TRY(make_map(context, a, images, STARG_MORPH_LINEAR, options, out));
+done:
+    starg_time_end(context, former);
+    starg_release(context, images);
+    return status;
+}

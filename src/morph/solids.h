@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Tetrahedra that fill both ends of a morph. */
+#ifndef STARG_MORPH_SOLIDS_H
+#define STARG_MORPH_SOLIDS_H
+
+#include "morph/deform.h"
+#include "starguard/solid.h"
+
+/* Initial tetrahedra per vertex, unless others are asked for. */
+#define SOLIDS_DENSITY 1.0
+
+/* Checks that both ends bound a solid without self-intersections, and fills A with tetrahedra that
+ * keep its surface. `c` is empty but for its context; *surface, to which it refers, and *solid are
+ * the caller's, also on failure. Errors: MESH, SOLVER (no TetGen), MEMORY, CANCELLED. */
+starg_status solids_fill(const starg_morph *m, double density, deform_mesh *c, starg_solid **solid,
+                         uint32_t **surface);
+
+/* One of the two places of tetrahedra that are known not to overlap: a copy. Errors: MEMORY. */
+starg_status solids_place(const deform_mesh *c, const double *places, starg_tetmesh **out);
+
+#endif

@@ -1,0 +1,471 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Maps of tetrahedra without inversions [Garanzha, Kaporin, Kudryavtseva, Protais, Desobry,
+ * Sokolov: Foldover-free maps in 50 lines of code, 2021], and with little distortion.
+ *
+ * Problem: the vertices of a boundary are given; place the others such that every tetrahedron is
+ * positive, and the maps from its rest place distort little.
+ *
+ * Method: with J the Jacobian of a tetrahedron's map and D its determinant, minimise the sum over
+ * tetrahedra (relaxation: weighted by rest volume) of
+ *
+ *     tr(J^T J) / X(D)^(2/3) + THETA (D^2 + 1) / X(D),    X(D) = (D + sqrt(e^2 + D^2)) / 2,
+ *
+ * by limited-memory BFGS. For e = 0 this is an elastic energy that is infinite at inversions; e > 0
+ * makes it finite there, and is lowered by the rule of the paper, after which the number of
+ * inversions becomes zero in finitely many rounds if descent makes progress. Rest places are scaled
+ * by how much the surface grows nearby, so that tetrahedra are small where there is little room.
+ *
+ * Stages: unfold: rounds of descent with falling e, until no tetrahedron is inverted.
+ * unfold_relax: descent with e = 0, in which steps to places with an inverted tetrahedron are
+ * halved.
+ *
+ * Invariant of relaxation: all tetrahedra are positive by exact signs, after every step. Cost: a
+ * step is a few passes over the tetrahedra. */
+#include "morph/unfold.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+
+static const char STAGE[] = "unfold";
+
+enum {
+    MEMORY = 8, /* pairs of the approximation to the Hessian */
+    ROUND = 40, /* steps with one e */
+    GROWTH_SWEEPS = 200,
+    HALVINGS = 30,   /* of a step, at most */
+    ROUNDS_IDLE = 12 /* with no fewer inversions, until it is given up */
+};
+static const double THETA = 1.0 / 128;
+static const double ARMIJO = 1e-4;
+static const double LEAST_GAIN = 1e-7; /* of a round of relaxation, relative to its energy */
+static const double FIRST_MOVE = 0.1;  /* the first step's largest move, relative to the extent */
+
+typedef double matrix[3][3];
+
+typedef struct descent {
+    const unfold_problem *p;
+    double epsilon;
+    bool by_volume;    /* weights are shares of the rest volume; else all are the same */
+    matrix *gradients; /* of the barycentric coordinates of corners 1 to 3 */
+    double *weights;
+    double extent;
+    double lowest;                /* the least determinant at the last evaluation */
+    size_t size;                  /* unknowns */
+    double *trial;                /* vertex_count x 3 */
+    double *slope, *former, *way; /* by unknown */
+    double *moves[MEMORY], *bends[MEMORY], scales[MEMORY];
+    size_t pairs; /* made so far */
+} descent;
+
+static void descent_free(descent *d) {
+    starg_context *context = d->p->context;
+    void *const blocks[] = {d->gradients, d->weights, d->trial, d->slope, d->former, d->way};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+        starg_release(context, blocks[i]);
+    for (int i = 0; i < MEMORY; i++) {
+        starg_release(context, d->moves[i]);
+        starg_release(context, d->bends[i]);
+    }
+}
+
+static const double *corner(const unfold_problem *p, const double *places, size_t t, size_t k) {
+    return places + 3 * (size_t)p->tetrahedra[4 * t + k];
+}
+
+static bool is_positive(const unfold_problem *p, const double *places, size_t t) {
+    return orient3d(corner(p, places, t, 0), corner(p, places, t, 1), corner(p, places, t, 2),
+                    corner(p, places, t, 3)) < 0;
+}
+
+static size_t count_inverted(const unfold_problem *p, const double *places) {
+    size_t inverted = 0;
+    for (size_t t = 0; t < p->count; t++)
+        inverted += !is_positive(p, places, t);
+    return inverted;
+}
+
+bool unfold_is_positive(const unfold_problem *p, size_t tetrahedron) {
+    return is_positive(p, p->now, tetrahedron);
+}
+
+size_t unfold_count(const unfold_problem *p) {
+    return count_inverted(p, p->now);
+}
+
+/* ---- preparation ---- */
+
+static void edges_of(const unfold_problem *p, const double *places, size_t t, matrix out) {
+    for (size_t k = 0; k < 3; k++)
+        vec3_subtract(corner(p, places, t, k + 1), corner(p, places, t, 0), out[k]);
+}
+
+/* The volume enclosed by the tetrahedra: that of their boundary, wherever inner vertices are. */
+static double volume_of(const unfold_problem *p, const double *places) {
+    double sum = 0;
+    for (size_t t = 0; t < p->count; t++) {
+        matrix e;
+        edges_of(p, places, t, e);
+        sum += vec3_triple(e[0], e[1], e[2]) / 6;
+    }
+    return sum;
+}
+
+static double extent_of(const unfold_problem *p) {
+    double extent = 0;
+    for (size_t k = 0; k < 3; k++) {
+        double lower = p->now[k], upper = p->now[k];
+        for (size_t v = 1; v < p->vertex_count; v++) {
+            lower = fmin(lower, p->now[3 * v + k]);
+            upper = fmax(upper, p->now[3 * v + k]);
+        }
+        extent = fmax(extent, upper - lower);
+    }
+    return extent;
+}
+
+/* The logarithm of how much the surface grows about each of its vertices, in length. */
+static starg_status find_growth_outside(const unfold_problem *p, double *growth) {
+    starg_status status = STARG_OK;
+    double *areas[2] = {NULL, NULL};
+    for (int end = 0; end < 2; end++)
+        STARG_NEW_ZERO(p->context, STAGE, areas[end], p->vertex_count);
+    for (size_t i = 0; i < 4 * p->count; i++) {
+        const uint32_t *corners = p->tetrahedra + i / 4 * 4;
+        uint32_t v[3];
+        for (size_t k = 0; k < 3; k++)
+            v[k] = corners[(i + k + 1) % 4];
+        if (v[0] >= p->fixed || v[1] >= p->fixed || v[2] >= p->fixed)
+            continue;
+        for (int end = 0; end < 2; end++) {
+            const double *at = end == 0 ? p->rest : p->now;
+            double area = vec3_triangle_area(at + 3 * (size_t)v[0], at + 3 * (size_t)v[1],
+                                             at + 3 * (size_t)v[2]);
+            for (int k = 0; k < 3; k++)
+                areas[end][v[k]] += area;
+        }
+    }
+    for (size_t v = 0; v < p->fixed; v++)
+        if (areas[0][v] > 0 && areas[1][v] > 0)
+            growth[v] = log(areas[1][v] / areas[0][v]) / 2;
+done:
+    for (int end = 0; end < 2; end++)
+        starg_release(p->context, areas[end]);
+    return status;
+}
+
+/* Extends it to the inside: each vertex takes the mean over its tetrahedra. */
+static starg_status find_growth(const unfold_problem *p, double **out) {
+    starg_status status = STARG_OK;
+    double *sums = NULL, *growth = NULL;
+    uint32_t *counts = NULL;
+    STARG_NEW_ZERO(p->context, STAGE, *out, p->vertex_count);
+    growth = *out;
+    STARG_NEW(p->context, STAGE, sums, p->vertex_count);
+    STARG_NEW(p->context, STAGE, counts, p->vertex_count);
+    STARG_TRY(find_growth_outside(p, growth));
+    for (int sweep = 0; sweep < GROWTH_SWEEPS; sweep++) {
+        memset(sums, 0, p->vertex_count * sizeof *sums);
+        memset(counts, 0, p->vertex_count * sizeof *counts);
+        for (size_t i = 0; i < 4 * p->count; i++) {
+            const uint32_t *corners = p->tetrahedra + i / 4 * 4;
+            for (size_t k = 0; k < 4; k++)
+                sums[corners[i % 4]] += growth[corners[k]];
+            counts[corners[i % 4]] += 4;
+        }
+        for (size_t v = p->fixed; v < p->vertex_count; v++)
+            if (counts[v] > 0)
+                growth[v] = sums[v] / counts[v];
+    }
+done:
+    starg_release(p->context, sums);
+    starg_release(p->context, counts);
+    return status;
+}
+
+/* Rest places are scaled by the growth, so that determinants are about 1. */
+static starg_status prepare_tetrahedra(descent *d) {
+    starg_status status = STARG_OK;
+    const unfold_problem *p = d->p;
+    double rest = volume_of(p, p->rest), *growth = NULL;
+    STARG_TRY(find_growth(p, &growth));
+    for (size_t t = 0; t < p->count; t++) {
+        const uint32_t *corners = p->tetrahedra + 4 * t;
+        matrix e;
+        edges_of(p, p->rest, t, e);
+        double six = vec3_triple(e[0], e[1], e[2]);
+        double scale = exp(
+            -(growth[corners[0]] + growth[corners[1]] + growth[corners[2]] + growth[corners[3]]) /
+            4);
+        for (int k = 0; k < 3; k++) {
+            vec3_cross(e[(k + 1) % 3], e[(k + 2) % 3], d->gradients[t][k]);
+            for (int i = 0; i < 3; i++)
+                d->gradients[t][k][i] *= scale / six;
+        }
+        d->weights[t] = d->by_volume ? six / 6 / rest : 1 / (double)p->count;
+    }
+done:
+    starg_release(p->context, growth);
+    return status;
+}
+
+static starg_status prepare(descent *d) {
+    starg_status status = STARG_OK;
+    const unfold_problem *p = d->p;
+    d->size = 3 * (p->vertex_count - p->fixed);
+    d->extent = extent_of(p);
+    STARG_NEW(p->context, STAGE, d->gradients, p->count);
+    STARG_NEW(p->context, STAGE, d->weights, p->count);
+    STARG_NEW(p->context, STAGE, d->trial, 3 * p->vertex_count);
+    STARG_NEW(p->context, STAGE, d->slope, d->size);
+    STARG_NEW(p->context, STAGE, d->former, d->size);
+    STARG_NEW(p->context, STAGE, d->way, d->size);
+    for (int i = 0; i < MEMORY; i++) {
+        STARG_NEW(p->context, STAGE, d->moves[i], d->size);
+        STARG_NEW(p->context, STAGE, d->bends[i], d->size);
+    }
+    STARG_TRY(prepare_tetrahedra(d));
+    memcpy(d->trial, p->now, 3 * p->vertex_count * sizeof *d->trial);
+done:
+    return status;
+}
+
+/* ---- energy ---- */
+
+/* The Jacobian's columns: images of the axes. */
+static void jacobian_of(const descent *d, const double *places, size_t t, matrix out) {
+    matrix e;
+    edges_of(d->p, places, t, e);
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < 3; i++)
+            out[axis][i] = e[0][i] * d->gradients[t][0][axis] + e[1][i] * d->gradients[t][1][axis] +
+                           e[2][i] * d->gradients[t][2][axis];
+}
+
+/* The energy of a tetrahedron; adds its derivatives to `slope`, if that is not NULL. */
+static double energy_of(const descent *d, const double *places, size_t t, double *determinant,
+                        double *slope) {
+    const unfold_problem *p = d->p;
+    matrix j, cofactor;
+    jacobian_of(d, places, t, j);
+    for (int k = 0; k < 3; k++)
+        vec3_cross(j[(k + 1) % 3], j[(k + 2) % 3], cofactor[k]);
+    double D = vec3_dot(j[0], cofactor[0]), root = sqrt(d->epsilon * d->epsilon + D * D);
+    double x = (D + root) / 2, part = root > 0 ? (1 + D / root) / 2 : 0;
+    *determinant = D;
+    if (D < 0) { /* without cancellation */
+        x = d->epsilon * d->epsilon / (2 * (root - D));
+        part = root > 0 ? x / root : 0;
+    }
+    if (!(x > 0))
+        return INFINITY;
+    double third = cbrt(x), square = third * third;
+    double trace = vec3_dot(j[0], j[0]) + vec3_dot(j[1], j[1]) + vec3_dot(j[2], j[2]);
+    double shape = trace / square, size = (D * D + 1) / x;
+    if (slope == NULL)
+        return d->weights[t] * (shape + THETA * size);
+    double along = -2.0 / 3 * shape / x * part + THETA * (2 * D - size * part) / x;
+    double first[3] = {0, 0, 0};
+    for (size_t k = 0; k < 3; k++) {
+        double g[3];
+        const double *b = d->gradients[t][k];
+        for (int i = 0; i < 3; i++) {
+            g[i] = 0;
+            for (int axis = 0; axis < 3; axis++)
+                g[i] += b[axis] * (2 / square * j[axis][i] + along * cofactor[axis][i]);
+            g[i] *= d->weights[t];
+            first[i] -= g[i];
+        }
+        size_t v = p->tetrahedra[4 * t + k + 1];
+        if (v >= p->fixed)
+            vec3_along(slope + 3 * (v - p->fixed), 1, g, slope + 3 * (v - p->fixed));
+    }
+    size_t v = p->tetrahedra[4 * t];
+    if (v >= p->fixed)
+        vec3_along(slope + 3 * (v - p->fixed), 1, first, slope + 3 * (v - p->fixed));
+    return d->weights[t] * (shape + THETA * size);
+}
+
+/* The energy of all, and its slope if that is not NULL. */
+static double evaluate(descent *d, const double *places, double *slope) {
+    double sum = 0;
+    d->lowest = INFINITY;
+    if (slope != NULL)
+        memset(slope, 0, d->size * sizeof *slope);
+    for (size_t t = 0; t < d->p->count; t++) {
+        double determinant;
+        sum += energy_of(d, places, t, &determinant, slope);
+        d->lowest = fmin(d->lowest, determinant);
+    }
+    return sum;
+}
+
+/* ---- descent ---- */
+
+static double dot(const double *a, const double *b, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static void add(double *a, double factor, const double *b, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        a[i] += factor * b[i];
+}
+
+/* The direction of limited-memory BFGS. */
+static void choose_way(descent *d) {
+    double factors[MEMORY];
+    size_t kept = d->pairs < MEMORY ? d->pairs : MEMORY;
+    for (size_t i = 0; i < d->size; i++)
+        d->way[i] = -d->slope[i];
+    for (size_t i = 0; i < kept; i++) {
+        size_t at = (d->pairs - 1 - i) % MEMORY;
+        factors[at] = d->scales[at] * dot(d->moves[at], d->way, d->size);
+        add(d->way, -factors[at], d->bends[at], d->size);
+    }
+    if (kept > 0) {
+        size_t at = (d->pairs - 1) % MEMORY;
+        double unit = 1 / (d->scales[at] * dot(d->bends[at], d->bends[at], d->size));
+        for (size_t i = 0; i < d->size; i++)
+            d->way[i] *= unit;
+    }
+    for (size_t i = kept; i-- > 0;) {
+        size_t at = (d->pairs - 1 - i) % MEMORY;
+        double back = d->scales[at] * dot(d->bends[at], d->way, d->size);
+        add(d->way, factors[at] - back, d->moves[at], d->size);
+    }
+}
+
+/* The first step is not longer than a part of the extent. */
+static double first_length(const descent *d) {
+    double most = 0;
+    if (d->pairs > 0)
+        return 1;
+    for (size_t i = 0; i < d->size; i++)
+        most = fmax(most, fabs(d->way[i]));
+    return most > 0 ? fmin(1, FIRST_MOVE * d->extent / most) : 1;
+}
+
+/* Remembers the change of the slope along the step that was made. */
+static void remember(descent *d, double length) {
+    size_t at = d->pairs % MEMORY;
+    for (size_t i = 0; i < d->size; i++) {
+        d->moves[at][i] = length * d->way[i];
+        d->bends[at][i] = d->slope[i] - d->former[i];
+    }
+    double curvature = dot(d->moves[at], d->bends[at], d->size);
+    if (curvature > 1e-12 * sqrt(dot(d->moves[at], d->moves[at], d->size) *
+                                 dot(d->bends[at], d->bends[at], d->size))) {
+        d->scales[at] = 1 / curvature;
+        d->pairs++;
+    }
+}
+
+/* One step; false if there is none that lowers the energy. */
+static bool make_step(descent *d, double *energy) {
+    const unfold_problem *p = d->p;
+    double *own = p->now + 3 * p->fixed, *trial = d->trial + 3 * p->fixed;
+    choose_way(d);
+    double fall = dot(d->slope, d->way, d->size);
+    if (!(fall < 0)) {
+        if (d->pairs == 0)
+            return false;
+        d->pairs = 0;
+        choose_way(d);
+        fall = dot(d->slope, d->way, d->size);
+    }
+    double length = first_length(d);
+    for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
+        for (size_t i = 0; i < d->size; i++)
+            trial[i] = own[i] + length * d->way[i];
+        double found = evaluate(d, d->trial, NULL);
+        if (!(found <= *energy + ARMIJO * length * fall) ||
+            (d->epsilon == 0 && count_inverted(p, d->trial) > 0))
+            continue;
+        memcpy(own, trial, d->size * sizeof *own);
+        memcpy(d->former, d->slope, d->size * sizeof *d->slope);
+        *energy = evaluate(d, p->now, d->slope);
+        remember(d, length);
+        return true;
+    }
+    return false;
+}
+
+/* Up to `steps` steps with the same epsilon. */
+static starg_status go_down(descent *d, size_t steps, double *energy) {
+    starg_status status = STARG_OK;
+    d->pairs = 0;
+    *energy = evaluate(d, d->p->now, d->slope);
+    for (size_t i = 0; i < steps; i++) {
+        STARG_TRY(starg_check_cancel(d->p->context, STAGE));
+        if (!make_step(d, energy))
+            break;
+    }
+done:
+    return status;
+}
+
+/* ---- public functions ---- */
+
+/* X as in the head. */
+static double regular(double epsilon, double D) {
+    double root = sqrt(epsilon * epsilon + D * D);
+    return D < 0 ? epsilon * epsilon / (2 * (root - D)) : (D + root) / 2;
+}
+
+/* The next epsilon, from the energies before and after a round (equation 5 of the paper). */
+static double lowered(descent *d, double before) {
+    double after = evaluate(d, d->p->now, NULL);
+    double share = fmax(0.1, 1 - after / before), lowest = d->lowest;
+    double wanted = (1 - share) * regular(d->epsilon, lowest);
+    return wanted > lowest ? 2 * sqrt(wanted * (wanted - lowest)) : 1e-10;
+}
+
+starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
+    starg_status status = STARG_OK;
+    descent d = {.p = p};
+    size_t least = SIZE_MAX;
+    int idle = 0;
+    *inverted = unfold_count(p);
+    if (*inverted == 0 || p->fixed >= p->vertex_count)
+        return STARG_OK;
+    STARG_TRY(prepare(&d));
+    evaluate(&d, p->now, NULL);
+    d.epsilon = fmax(1e-3, sqrt(1e-6 + 0.04 * d.lowest * d.lowest));
+    for (size_t done_steps = 0; done_steps<steps && * inverted> 0 && idle < ROUNDS_IDLE;
+         done_steps += ROUND) {
+        double before = evaluate(&d, p->now, NULL), after;
+        STARG_TRY(go_down(&d, ROUND, &after));
+        *inverted = unfold_count(p);
+        d.epsilon = lowered(&d, before);
+        idle = *inverted < least ? 0 : idle + 1;
+        least = *inverted < least ? *inverted : least;
+    }
+done:
+    descent_free(&d);
+    return status;
+}
+
+starg_status unfold_relax(const unfold_problem *p, size_t steps) {
+    starg_status status = STARG_OK;
+    descent d = {.p = p, .by_volume = true};
+    double before, after = INFINITY;
+    if (p->fixed >= p->vertex_count || steps == 0)
+        return STARG_OK;
+    STARG_TRY(prepare(&d));
+    for (size_t made = 0; made < steps; made += ROUND) {
+        before = after;
+        STARG_TRY(go_down(&d, steps - made < ROUND ? steps - made : ROUND, &after));
+        if (!(after < before * (1 - LEAST_GAIN)))
+            break;
+    }
+done:
+    descent_free(&d);
+    return status;
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Maps of tetrahedra without inversions, and with little distortion. */
+#ifndef STARG_MORPH_UNFOLD_H
+#define STARG_MORPH_UNFOLD_H
+
+#include "core/context.h"
+
+/* Tetrahedra in two places. All arrays are the caller's. */
+typedef struct unfold_problem {
+    starg_context *context;
+    size_t vertex_count, fixed; /* the first `fixed` vertices do not move */
+    size_t count;
+    const uint32_t *tetrahedra; /* count x 4 */
+    const double *rest;         /* vertex_count x 3: all tetrahedra are positive there */
+    double *now;                /* vertex_count x 3: to be moved */
+} unfold_problem;
+
+/* Is a tetrahedron positive where it is now, exactly? */
+bool unfold_is_positive(const unfold_problem *p, size_t tetrahedron);
+
+/* Number of tetrahedra that are not positive where they are now, exactly. */
+size_t unfold_count(const unfold_problem *p);
+
+/* Moves vertices until all tetrahedra are positive, or for so many steps of descent; *inverted is
+ * the number of those left. Errors: MEMORY, CANCELLED. */
+starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted);
+
+/* Lowers the distortion of tetrahedra that are all positive, and stay so, in at most so many steps
+ * of descent. Errors: MEMORY, CANCELLED. */
+starg_status unfold_relax(const unfold_problem *p, size_t steps);
+
+#endif

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Verification of a map between solids. Nothing is shared with what makes maps.
+ *
+ * The map is taken apart into two sets of labelled tetrahedra, in A and in B, and both are checked
+ * as a decomposition is (verify/pieces.c): tetrahedra are positive and conforming, and their
+ * boundary is the model's surface, covered once. In addition that boundary does not cross itself
+ * and winds once around its inside. So the tetrahedra fill either solid without overlap; the map is
+ * linear on each and the same on common faces: a piecewise linear homeomorphism. Labels are shared,
+ * so that a piece corresponds to itself, and its two guards prove it star-shaped in both.
+ *
+ * Cost: twice that of a decomposition. */
+#include <stdio.h>
+
+#include "core/memory.h"
+#include "verify/context.h"
+#include "verify/distortion.h"
+
+static const char STAGE[] = "verify";
+
+/* A map seen from one of its ends. */
+typedef struct end {
+    const char *name;
+    const starg_mesh *model; /* or NULL */
+    starg_pieces_mesh mesh;
+    starg_pieces_report report; /* only guards */
+    verify_context own;
+} end;
+
+/* ---- parts ---- */
+
+/* Coordinates of keys are checked as those of the ends. */
+static starg_status check_keys(starg_context *context, const starg_solid_map *map) {
+    starg_status status = STARG_OK;
+    starg_pieces_mesh mesh = {
+        .vertex_count = map->vertex_count, .count = map->count, .tetrahedra = map->tetrahedra};
+    for (size_t key = 0; key < map->key_count && status == STARG_OK; key++) {
+        mesh.vertices = map->keys + 3 * key * map->vertex_count;
+        status = verify_check_arrays(context, &mesh, NULL);
+    }
+    return status;
+}
+
+static starg_status take_end(starg_context *context, const starg_solid_map *map, end *e, int side) {
+    starg_status status = STARG_OK;
+    const double *guards = side == 0 ? map->guards : map->guard_images;
+    e->name = side == 0 ? "in A" : "in B";
+    e->mesh = (starg_pieces_mesh){.vertex_count = map->vertex_count,
+                                  .count = map->count,
+                                  .vertices = side == 0 ? map->vertices : map->images,
+                                  .tetrahedra = map->tetrahedra,
+                                  .labels = map->labels};
+    e->report.tetrahedra = map->count;
+    e->report.piece_count = map->piece_count;
+    STARG_NEW_ZERO(context, STAGE, e->report.pieces, map->piece_count);
+    for (size_t p = 0; p < map->piece_count; p++)
+        for (int k = 0; k < 3; k++)
+            e->report.pieces[p].guard[k] = guards[3 * p + (size_t)k];
+    STARG_TRY(verify_check_arrays(context, &e->mesh, &e->report));
+    e->own = (verify_context){.context = context, .mesh = &e->mesh, .report = NULL};
+    STARG_TRY(verify_pieces_create(context, &e->mesh, &e->report, &e->own.pieces));
+done:
+    return status;
+}
+
+static void free_end(starg_context *context, end *e) {
+    verify_pieces_free(e->own.pieces);
+    starg_verdict_free(context, e->own.verdict);
+    starg_release(context, e->report.pieces);
+}
+
+/* ---- claims ---- */
+
+static starg_status claim_pieces(const end *e) {
+    starg_status status = STARG_OK;
+    verify_certificate *certificates = NULL;
+    size_t count = e->report.piece_count, proven = 0, first = 0;
+    STARG_NEW(e->own.context, STAGE, certificates, count);
+    STARG_TRY(verify_certify(e->own.pieces, &e->report, certificates));
+    for (size_t p = count; p-- > 0;)
+        if (certificates[p].proof == VERIFY_PROVEN)
+            proven++;
+        else
+            first = p;
+    if (proven == count)
+        verify_claim(e->own.verdict, true, "all %zu pieces are star-shaped about their guards",
+                     count);
+    else
+        verify_claim(e->own.verdict, false,
+                     "all %zu pieces are star-shaped about their guards: %zu are not, first piece "
+                     "%zu",
+                     count, count - proven, first);
+done:
+    starg_release(e->own.context, certificates);
+    return status;
+}
+
+/* Without a model the boundary is compared with nothing. */
+static starg_status claim_surface(end *e) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    STARG_TRY(verify_claim_once(&e->own));
+    if (e->model == NULL) {
+        verify_leave(e->own.verdict, "the surface: there is no model");
+        goto done;
+    }
+    STARG_TRY(verify_surface_create(e->own.context, e->model, &surface));
+    e->own.model = surface;
+    STARG_TRY(verify_claim_boundary(&e->own));
+    e->own.model = NULL;
+done:
+    verify_surface_free(surface);
+    return status;
+}
+
+/* Moves an end's claims to the verdict on the map. */
+static void merge(starg_verdict *verdict, const end *e) {
+    const starg_verdict *own = e->own.verdict;
+    for (size_t i = 0; i < own->count; i++)
+        verify_claim(verdict, own->claims[i].holds, "%s %s", e->name, own->claims[i].text);
+    for (size_t i = 0; i < own->not_checked_count; i++)
+        verify_leave(verdict, "%s %s", e->name, own->not_checked[i].text);
+}
+
+static starg_status claim_end(end *e, starg_verdict *verdict) {
+    starg_status status = STARG_OK;
+    STARG_TRY(verify_verdict_create(e->own.context, &e->own.verdict));
+    STARG_TRY(verify_claim_tetrahedra(&e->own));
+    STARG_TRY(claim_surface(e));
+    if (e->own.pieces->labels.good)
+        STARG_TRY(claim_pieces(e));
+    merge(verdict, e);
+done:
+    return status;
+}
+
+static void claim_distortion(starg_verdict *verdict, const starg_solid_map *map,
+                             const end ends[2]) {
+    verify_distortion found = {0};
+    for (size_t t = 0; t < map->count; t++) {
+        const double *from[4], *to[4];
+        for (size_t k = 0; k < 4; k++) {
+            from[k] = verify_point(&ends[0].mesh, map->tetrahedra[4 * t + k]);
+            to[k] = verify_point(&ends[1].mesh, map->tetrahedra[4 * t + k]);
+        }
+        verify_add_distortion(&found, from, ends[0].own.pieces->scale, to,
+                              ends[1].own.pieces->scale);
+    }
+    double mean = found.sum / found.all, above = found.above / found.all;
+    verify_claim(verdict, verify_near_distortion(map->worst, found.worst),
+                 "tetrahedra are stretched by a ratio of %.9g at most (found: %.9g)", map->worst,
+                 found.worst);
+    verify_claim(verdict, verify_near_distortion(map->mean, mean),
+                 "their mean ratio is %.9g (found: %.9g)", map->mean, mean);
+    verify_claim(verdict, verify_near_distortion(map->above_10, above),
+                 "a share of %.9g of A's volume has a ratio above 10 (found: %.9g)", map->above_10,
+                 above);
+}
+
+/* ---- all of it ---- */
+
+starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
+                                    const starg_mesh *b, const starg_solid_map *map,
+                                    starg_verdict **out) {
+    starg_status status = STARG_OK;
+    starg_verdict *verdict = NULL;
+    end ends[2] = {{.model = a}, {.model = b}};
+    *out = NULL;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    for (int side = 0; side < 2; side++)
+        STARG_TRY(take_end(context, map, &ends[side], side));
+    STARG_TRY(check_keys(context, map));
+    STARG_TRY(verify_verdict_create(context, &verdict));
+    for (int side = 0; side < 2; side++)
+        STARG_TRY(claim_end(&ends[side], verdict));
+    claim_distortion(verdict, map, ends);
+    STARG_TRY(verify_claim_path(context, map, verdict));
+    *out = verdict;
+    verdict = NULL;
+done:
+    starg_time_end(context, former);
+    for (int side = 0; side < 2; side++)
+        free_end(context, &ends[side]);
+    starg_verdict_free(context, verdict);
+    return status;
+}

@@ -1,0 +1,499 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Maps between solids: checks the guarantees on the results alone, in rationals; that the verifier
+ * refutes maps that are a little wrong; files; points and fields. */
+#include "support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "exact_oracle.h"
+#include "models.h"
+#include "starguard/solidmap.h"
+#include "starguard/tetra.h"
+
+enum { VERTICES = 500 };
+
+/* Few steps of descent. */
+static const starg_solid_map_options QUICK = {.steps = 30, .density = 1};
+
+static bool has_tetgen(void) {
+    bool found = system("command -v tetgen >/dev/null 2>&1") == 0;
+    if (!found)
+        printf("skipped: the program tetgen is not installed\n");
+    return found;
+}
+
+/* ---- oracles ---- */
+
+static void check_positive(const starg_solid_map *map, const double *places) {
+    for (size_t t = 0; t < map->count; t++) {
+        const double *c[4];
+        for (size_t k = 0; k < 4; k++)
+            c[k] = places + 3 * (size_t)map->tetrahedra[4 * t + k];
+        if (oracle_orient3d(c[0], c[1], c[2], c[3]) != -1)
+            fail_msg("tetrahedron %zu is not positive", t);
+    }
+}
+
+/* The boundary has the given positions, in order, and as many faces. */
+static void check_boundary(starg_context *context, const starg_solid_map *map, const double *places,
+                           const starg_mesh *a, const double *positions) {
+    starg_tetmesh *mesh;
+    starg_mesh *surface;
+    test_ok(context, starg_tetmesh_create(context, places, map->vertex_count, map->tetrahedra,
+                                          map->count, NULL, &mesh));
+    assert_int_equal(starg_tetmesh_turned(mesh), 0);
+    test_ok(context, starg_tetmesh_surface(context, mesh, &surface, NULL));
+    assert_int_equal(starg_mesh_face_count(surface), starg_mesh_face_count(a));
+    assert_int_equal(starg_mesh_vertex_count(surface), starg_mesh_vertex_count(a));
+    assert_memory_equal(starg_mesh_vertices(surface), positions,
+                        3 * starg_mesh_vertex_count(a) * sizeof *positions);
+    starg_mesh_free(surface);
+    starg_tetmesh_free(mesh);
+}
+
+/* A guard sees every face of its piece from inside: no sign of a boundary face is wrong. */
+static void check_pieces(const starg_solid_map *map, const double *places, const double *guards) {
+    static const int OPPOSITE[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    for (size_t t = 0; t < map->count; t += 9) { /* all take long */
+        assert_in_range(map->labels[t], 0, map->piece_count - 1);
+        for (size_t u = 0; u < 4; u++) {
+            const double *c[3];
+            for (int k = 0; k < 3; k++)
+                c[k] = places + 3 * (size_t)map->tetrahedra[4 * t + (size_t)OPPOSITE[u][k]];
+            const double *guard = guards + 3 * (size_t)map->labels[t];
+            if (oracle_orient3d(c[0], c[1], c[2], guard) == 1)
+                continue; /* else another tetrahedron of the piece must be behind the face */
+            bool found = false;
+            for (size_t s = 0; s < map->count && !found; s++) {
+                int shared = 0;
+                for (int k = 0; k < 3; k++)
+                    for (size_t j = 0; j < 4; j++)
+                        shared += map->tetrahedra[4 * s + j] ==
+                                  map->tetrahedra[4 * t + (size_t)OPPOSITE[u][k]];
+                found = s != t && shared == 3 && map->labels[s] == map->labels[t];
+            }
+            assert_true(found);
+        }
+    }
+}
+
+static bool is_verified(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                        const starg_solid_map *map, bool told) {
+    starg_verdict *verdict;
+    test_ok(context, starg_verify_solid_map(context, a, b, map, &verdict));
+    bool passed = verdict->passed;
+    for (size_t i = 0; told && i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            print_error("%s\n", verdict->claims[i].text);
+    starg_verdict_free(context, verdict);
+    return passed;
+}
+
+static starg_mesh *moved(starg_context *context, const starg_mesh *a, const double *positions) {
+    starg_mesh *mesh;
+    test_ok(context, starg_mesh_create(context, positions, starg_mesh_vertex_count(a),
+                                       starg_mesh_faces(a), starg_mesh_face_count(a), &mesh));
+    return mesh;
+}
+
+static void check(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                  const starg_solid_map *map) {
+    check_positive(map, map->vertices);
+    check_positive(map, map->images);
+    check_boundary(context, map, map->vertices, a, starg_mesh_vertices(a));
+    check_boundary(context, map, map->images, a, starg_mesh_vertices(b));
+    check_pieces(map, map->vertices, map->guards);
+    check_pieces(map, map->images, map->guard_images);
+    assert_true(map->mean >= 1 && map->mean <= map->worst);
+    assert_true(is_verified(context, a, b, map, true));
+}
+
+/* ---- maps ---- */
+
+static void check_pair(starg_mesh *a, starg_mesh *b) {
+    starg_context *one = test_context(1), *many = test_context(3);
+    starg_solid_map *map, *same;
+    test_ok(one, starg_solid_map_create(one, a, starg_mesh_vertices(b), &QUICK, &map));
+    test_ok(many, starg_solid_map_create(many, a, starg_mesh_vertices(b), &QUICK, &same));
+    check(one, a, b, map);
+    assert_int_equal(map->count, same->count);
+    assert_memory_equal(map->images, same->images, 3 * map->vertex_count * sizeof *map->images);
+    assert_memory_equal(map->labels, same->labels, map->count * sizeof *map->labels);
+    starg_solid_map_free(one, map);
+    starg_solid_map_free(many, same);
+    test_context_free(one);
+    test_context_free(many);
+}
+
+static void test_poses(void **state) {
+    (void)state;
+    static const char *const names[] = {"cat"};
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_mesh *a = test_pose(context, names[i], 0, VERTICES),
+                   *b = test_pose(context, names[i], 1 + (int)i, VERTICES);
+        check_pair(a, b);
+        starg_mesh_free(a);
+        starg_mesh_free(b);
+    }
+    test_context_free(context);
+}
+
+/* Genus 1 and 6, twisted. */
+static void test_handles(void **state) {
+    (void)state;
+    static const char *const names[] = {"torus", "plate"};
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_mesh *a = test_sample_mesh(context, names[i], VERTICES);
+        size_t size = 3 * starg_mesh_vertex_count(a);
+        double *images = malloc(size * sizeof *images);
+        assert_non_null(images);
+        for (size_t v = 0; v < size; v += 3) {
+            const double *p = starg_mesh_vertices(a) + v;
+            double angle = 0.6 * p[0];
+            images[v] = 1.3 * p[0];
+            images[v + 1] = cos(angle) * p[1] - sin(angle) * p[2];
+            images[v + 2] = sin(angle) * p[1] + cos(angle) * p[2];
+        }
+        starg_mesh *b = moved(context, a, images);
+        check_pair(a, b);
+        starg_mesh_free(a);
+        starg_mesh_free(b);
+        free(images);
+    }
+    test_context_free(context);
+}
+
+/* Steps of descent lower the mean distortion. */
+static void test_descent(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_pose(context, "dog", 0, VERTICES),
+               *b = test_pose(context, "dog", 2, VERTICES);
+    double means[2];
+    for (size_t i = 0; i < 2; i++) {
+        starg_solid_map_options options;
+        starg_solid_map *map;
+        starg_solid_map_options_default(&options);
+        options.steps = 60 * i;
+        test_ok(context,
+                starg_solid_map_create(context, a, starg_mesh_vertices(b), &options, &map));
+        check(context, a, b, map);
+        means[i] = map->mean;
+        starg_solid_map_free(context, map);
+    }
+    assert_true(means[1] < means[0]);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    test_context_free(context);
+}
+
+static void test_shapes(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_pose(context, "cat", 0, VERTICES), *b;
+    for (int goal = 0; goal < 2; goal++) {
+        starg_solid_map *map;
+        test_ok(context, starg_solid_map_to(context, a, (starg_solid_shape)goal, &QUICK, &map));
+        for (size_t v = 0; v < starg_mesh_vertex_count(a); v++) {
+            const double *p = map->images + 3 * v;
+            double ball = hypot(hypot(p[0], p[1]), p[2]);
+            double cube = fmax(fmax(fabs(p[0]), fabs(p[1])), fabs(p[2]));
+            assert_true(goal == STARG_SOLID_BALL ? fabs(ball - 1) < 1e-12 : cube == 1);
+        }
+        b = moved(context, a, map->images);
+        check(context, a, b, map);
+        assert_true(is_verified(context, a, NULL, map, true));
+        starg_mesh_free(b);
+        starg_solid_map_free(context, map);
+    }
+    starg_mesh_free(a);
+    a = test_sample_mesh(context, "torus", VERTICES);
+    starg_solid_map *none;
+    assert_int_equal(starg_solid_map_to(context, a, STARG_SOLID_BALL, NULL, &none),
+                     STARG_ERROR_MESH);
+    assert_null(none);
+    starg_mesh_free(a);
+    test_context_free(context);
+}
+
+/* ---- morphs ---- */
+
+/* The tetrahedra move straight between keys: positive by Sturm's theorem. */
+static void check_steps(const starg_solid_map *map) {
+    for (size_t step = 0; step <= map->key_count; step++) {
+        const double *rows[2];
+        for (size_t end = 0; end < 2; end++) {
+            size_t key = step + end;
+            rows[end] = key == 0               ? map->vertices
+                        : key > map->key_count ? map->images
+                                               : map->keys + 3 * (key - 1) * map->vertex_count;
+        }
+        for (size_t t = step % 23; t < map->count; t += 23) { /* all of them take minutes */
+            const double *from[4], *to[4];
+            for (size_t k = 0; k < 4; k++) {
+                from[k] = rows[0] + 3 * (size_t)map->tetrahedra[4 * t + k];
+                to[k] = rows[1] + 3 * (size_t)map->tetrahedra[4 * t + k];
+            }
+            if (!oracle_stays_positive(from, to))
+                fail_msg("tetrahedron %zu is inverted after key %zu", t, step);
+        }
+    }
+}
+
+static void test_morph_solid(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_pose(context, "cat", 0, VERTICES),
+               *b = test_pose(context, "cat", 2, VERTICES);
+    starg_morph *morph = test_morph(context, a, starg_mesh_vertices(b), STARG_MORPH_SOLID);
+    starg_solid_map *map;
+    test_ok(context, starg_morph_solid_map(morph, &map));
+    assert_true(map->key_count > 0);
+    assert_int_equal(starg_morph_key_count(morph), map->key_count + 2);
+    assert_int_equal(starg_morph_tetrahedron_count(morph), map->count);
+    check(context, a, b, map);
+    check_steps(map);
+    /* frames at keys are the keys */
+    size_t size = 3 * starg_mesh_vertex_count(a);
+    double *frame = malloc(size * sizeof *frame);
+    assert_non_null(frame);
+    test_ok(context, starg_morph_frame(morph, map->times[3], frame));
+    assert_memory_equal(frame, map->keys + 3 * (3 * map->vertex_count), size * sizeof *frame);
+    /* a key that turns a tetrahedron over is found */
+    uint32_t moved_vertex = map->tetrahedra[0];
+    for (size_t k = 0; k < 3; k++)
+        map->keys[3 * (map->vertex_count + moved_vertex) + k] += 5;
+    assert_false(is_verified(context, a, b, map, false));
+    free(frame);
+    starg_solid_map_free(context, map);
+    starg_morph_free(morph);
+    morph = test_morph(context, a, starg_mesh_vertices(b), STARG_MORPH_LINEAR);
+    assert_int_equal(starg_morph_solid_map(morph, &map), STARG_ERROR_ARGUMENT);
+    starg_morph_free(morph);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    test_context_free(context);
+}
+
+/* ---- forgeries ---- */
+
+static void test_forged(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_pose(context, "cat", 0, VERTICES),
+               *b = test_pose(context, "cat", 1, VERTICES);
+    starg_solid_map *map;
+    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
+    size_t last = 3 * map->vertex_count - 1;
+    assert_true(map->vertex_count > starg_mesh_vertex_count(a));
+    double before = map->images[last];
+    map->images[last] += 10; /* an inner vertex far outside */
+    assert_false(is_verified(context, a, b, map, false));
+    map->images[last] = before;
+    before = map->images[0];
+    map->images[0] += 1e-4; /* off B's surface */
+    assert_false(is_verified(context, a, b, map, false));
+    map->images[0] = before;
+    before = map->mean;
+    map->mean *= 1.01;
+    assert_false(is_verified(context, a, b, map, false));
+    map->mean = before;
+    assert_true(is_verified(context, a, b, map, true));
+    before = map->guard_images[0];
+    map->guard_images[0] += 10;
+    assert_false(is_verified(context, a, b, map, false));
+    map->guard_images[0] = before;
+    map->count--; /* a hole */
+    assert_false(is_verified(context, a, b, map, false));
+    map->count++;
+    assert_false(is_verified(context, a, a, map, false)); /* another target */
+    starg_solid_map_free(context, map);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    test_context_free(context);
+}
+
+/* ---- bad ends ---- */
+
+static void test_refused(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    shape s = shape_cube(3);
+    starg_mesh *a = test_mesh_of(context, &s);
+    size_t size = 3 * starg_mesh_vertex_count(a);
+    double *images = malloc(size * sizeof *images);
+    starg_solid_map *map;
+    assert_non_null(images);
+    for (size_t i = 0; i < size; i++) /* mirrored */
+        images[i] = starg_mesh_vertices(a)[i] * (i % 3 == 0 ? -1 : 1);
+    assert_int_equal(starg_solid_map_create(context, a, images, NULL, &map), STARG_ERROR_MESH);
+    assert_null(map);
+    memcpy(images, starg_mesh_vertices(a), size * sizeof *images);
+    for (size_t k = 0; k < 3; k++) /* a vertex through the other side */
+        images[k] = 4 + 0.3 * (double)k;
+    assert_int_equal(starg_solid_map_create(context, a, images, NULL, &map), STARG_ERROR_MESH);
+    images[0] = NAN;
+    assert_int_equal(starg_solid_map_create(context, a, images, NULL, &map), STARG_ERROR_RANGE);
+    starg_mesh_free(a);
+    shape_free(&s);
+    free(images);
+    test_context_free(context);
+}
+
+/* ---- points and files ---- */
+
+static char *whole_file(const char *path, size_t *size) {
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(*size + 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *size, file), *size);
+    fclose(file);
+    return bytes;
+}
+
+static void check_files(starg_context *context, const starg_solid_map *map) {
+    const char *path = "test_solid_map.vtu";
+    starg_solid_map *read;
+    size_t size;
+    test_ok(context, starg_solid_map_write(context, map, path));
+    char *bytes = whole_file(path, &size);
+    test_ok(context, starg_solid_map_read_memory(context, bytes, size, path, &read));
+    assert_int_equal(read->count, map->count);
+    assert_int_equal(read->vertex_count, map->vertex_count);
+    assert_int_equal(read->piece_count, map->piece_count);
+    assert_memory_equal(read->images, map->images, 3 * map->vertex_count * sizeof(double));
+    assert_memory_equal(read->vertices, map->vertices, 3 * map->vertex_count * sizeof(double));
+    assert_memory_equal(read->tetrahedra, map->tetrahedra, 4 * map->count * sizeof(uint32_t));
+    assert_true(read->mean == map->mean && read->worst == map->worst);
+    starg_solid_map_free(context, read);
+    for (size_t cut = 0; cut < size; cut += size / 97 + 1) /* every truncation is refused */
+        if (cut + 40 < size)
+            assert_int_not_equal(starg_solid_map_read_memory(context, bytes, cut, path, &read),
+                                 STARG_OK);
+    free(bytes);
+    remove(path);
+}
+
+/* Corners and centroids of tetrahedra go to those of their images, and back. */
+static void check_points(starg_context *context, const starg_solid_map *map) {
+    size_t count = map->vertex_count + map->count;
+    double *points = calloc(3 * count, sizeof *points), *ends = calloc(3 * count, sizeof *ends);
+    double *vectors = calloc(3 * count, sizeof *vectors);
+    assert_true(points != NULL && ends != NULL && vectors != NULL);
+    memcpy(points, map->vertices, 3 * map->vertex_count * sizeof *points);
+    memcpy(ends, map->images, 3 * map->vertex_count * sizeof *ends);
+    for (size_t t = 0; t < map->count; t++)
+        for (size_t i = 0; i < 12; i++) {
+            size_t v = map->tetrahedra[4 * t + i / 3], at = 3 * (map->vertex_count + t) + i % 3;
+            points[at] += map->vertices[3 * v + i % 3] / 4;
+            ends[at] += map->images[3 * v + i % 3] / 4;
+            if (i / 3 < 2) { /* the edge from corner 0 to corner 1 */
+                double sign = i / 3 == 0 ? -1 : 1;
+                vectors[at] += sign * map->vertices[3 * v + i % 3];
+            }
+        }
+    starg_samples *there, *back,
+        samples = {.count = count, .width = 3, .points = points, .values = vectors};
+    test_ok(context, starg_solid_map_carry(context, map, &samples, false, &there));
+    test_ok(context, starg_solid_map_carry(context, map, there, true, &back));
+    for (size_t i = 0; i < 3 * count; i++) {
+        assert_true(fabs(there->points[i] - ends[i]) < 1e-9);
+        assert_true(fabs(back->points[i] - points[i]) < 1e-9);
+    }
+    for (size_t t = 0; t < map->count; t++)
+        for (size_t k = 0; k < 3; k++) {
+            size_t at = 3 * (map->vertex_count + t) + k;
+            double edge = map->images[3 * map->tetrahedra[4 * t + 1] + k] -
+                          map->images[3 * map->tetrahedra[4 * t] + k];
+            assert_true(fabs(there->values[at] - edge) < 1e-9);
+        }
+    starg_samples_free(context, there);
+    starg_samples_free(context, back);
+    points[3 * (count - 1)] += 100;
+    assert_int_equal(starg_solid_map_carry(context, map, &samples, false, &there),
+                     STARG_ERROR_MESH);
+    assert_null(there);
+    assert_int_equal(starg_context_error(context)->indices[0], count - 1);
+    free(points);
+    free(ends);
+    free(vectors);
+}
+
+static void test_points(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_pose(context, "dog", 0, VERTICES),
+               *b = test_pose(context, "dog", 1, VERTICES);
+    starg_solid_map *map;
+    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
+    check_files(context, map);
+    check_points(context, map);
+    starg_solid_map_free(context, map);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    test_context_free(context);
+}
+
+static void test_samples(void **state) {
+    (void)state;
+    static const char *const bad[] = {"1 2\n",       "1 2 3\n1 2 3 4\n", "1 2 x\n",
+                                      "# nothing\n", "1 2 3 4 5\n",      "1 2 1e200\n"};
+    starg_context *context = test_context(1);
+    const char *path = "test_samples.txt";
+    starg_samples *samples;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fputs(bad[i], file);
+        fclose(file);
+        assert_int_equal(starg_samples_read(context, path, &samples), STARG_ERROR_FORMAT);
+        assert_null(samples);
+    }
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("# a field\n1 2 3 0.5\n\n4 5 6 -7 # here\n", file);
+    fclose(file);
+    test_ok(context, starg_samples_read(context, path, &samples));
+    assert_int_equal(samples->count, 2);
+    assert_int_equal(samples->width, 1);
+    assert_true(samples->points[5] == 6 && samples->values[1] == -7);
+    starg_samples_free(context, samples);
+    remove(path);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_poses),   cmocka_unit_test(test_handles),
+        cmocka_unit_test(test_descent), cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_forged),  cmocka_unit_test(test_morph_solid),
+        cmocka_unit_test(test_refused), cmocka_unit_test(test_points),
+        cmocka_unit_test(test_samples),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
