@@ -448,7 +448,8 @@ const cli_command cli_command_verify = {
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 5 -o frames --report\n"
                 "starguard verify cat.off dog.off cat_dog.json frames\n"
                 "# a map between two solids\n"
-                "starguard verify a.off b.off map.vtu",
+                "starguard map --solid horse_0.off horse_1.off -o horse.vtu\n"
+                "starguard verify horse_0.off horse_1.off horse.vtu",
     CLI_OPERANDS(2, SIZE_MAX),
     .run = run,
 };

@@ -23,7 +23,7 @@ SECTIONS = {
     "Pieces": ["pieces", "tetra"],
     "Verification": ["verification"],
     "Comparing shapes": ["descriptors", "databases"],
-    "Maps and morphs": ["morphs"],
+    "Maps and morphs": ["morphs", "solidmaps"],
     "Pictures, pages, files for others": ["pictures", "views"],
     "Errors": ["errors"],
 }

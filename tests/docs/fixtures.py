@@ -81,6 +81,8 @@ class Fixtures:
         self.open_surface("scan.off", ["scan.stl", "scan.ply"])
         self.write("solid.msh", CUBE)
         self.write("cat_dog.txt", self.landmarks("cat.off", "dog.off"))
+        self.write("field.txt", "".join(f"{x} {y} {z} {x}\n" for x, y, z in
+                                        self.numbers("horse_0.off")[:20]))
         self.write("places.txt", "1 1 1\n5 1 1\n1 1 5\n")
         # Slow to make, and wanted more than once.
         for animal in ["cat", "dog"]:
