@@ -267,7 +267,7 @@ class Morph(Case):
 
     def test_usage(self):
         self.usage_error("map", "cat0.off", "ball.off", says="-o MAP.json")
-        self.usage_error("map", "cat0.off", "-o", "m.json", says="too few")
+        self.usage_error("map", "cat0.off", "-o", "m.json", says="two models are needed")
         self.usage_error("morph", "cat0.off", "cat1.off", says="-o DIR")
         self.usage_error("morph", "cat0.off", "cat1.off", "-o", "-", says="folder")
         self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--guards", "--method", "arap",
