@@ -124,8 +124,7 @@ wheel: deps
 # All that is published, in dist/ (docs/versions.md); with the web page, where that can be built.
 release:
 	@scripts/release.sh check
-	@$(MAKE) --no-print-directory wheel package
-	@! $(MAKE) -n web >/dev/null 2>&1 || $(MAKE) --no-print-directory web
+	@$(MAKE) --no-print-directory wheel package web
 	@scripts/release.sh collect $(BUILD) dist
 
 deps:
