@@ -7,11 +7,10 @@
  *   - Its outside: ambient 1 and all faces reversed.
  *   - A closed obstacle: its faces, reversed, follow those of the model; the winding number within
  *     it is one less.
- *   - An open obstacle, or a soup: each of its triangles stands twice, front and back. A triangle
- * with its back is a closed surface about nothing: it blocks the view and is wound around nowhere.
- * So the exact engines see a closed mesh in any case. What they win by an embedded boundary, of
- * which no face has free space on its outer side, they may win where the whole mesh is such a one;
- * that is found out by examining it once more.
+ *   - An open obstacle, or a soup: each triangle twice, front and back. Such a pair is a closed
+ *     surface that encloses nothing: it blocks the view, and its winding number is zero everywhere.
+ * So the exact engines always get a closed mesh. Shortcuts for an embedded boundary, whose faces
+ * have no free space on their outer sides, apply only if the whole mesh is one, which is tested.
  *
  * Cost: that of the examinations. */
 #include <math.h>
