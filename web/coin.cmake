@@ -9,9 +9,10 @@ set(cbc ${STARGUARD_SOURCES}/coinor-cbc/Cbc/src)
 
 file(GLOB sources ${utils}/*.cpp ${osi}/*.cpp ${clp}/*.cpp ${clp}/OsiClp/*.cpp ${cgl}/*.cpp
     ${cgl}/*/*.cpp ${cbc}/*.cpp)
-# Left out: programs, tests, the parallel simplex method, and interfaces to other libraries.
+# Left out: programs, tests, the parallel simplex method, interfaces to other libraries, and what
+# CbcCbcParam.cpp includes as a whole.
 set(unwanted
-    ClpMain CoinSolve ClpSolver Clp_ampl "My[A-Z].*" "CbcGen[A-Z].*" CbcGeneric
+    ClpMain CoinSolve ClpSolver Clp_ampl CbcOrClpParam "My[A-Z].*" "CbcGen[A-Z].*" CbcGeneric
     "[A-Za-z0-9]+Test"
     "Abc.*" "CoinAbc.*"
     "ClpCholesky(Mumps|Pardiso|Taucs|Ufl|Wssmp.*)")
