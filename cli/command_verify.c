@@ -312,15 +312,21 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
     return STARG_OK;
 }
 
+/* A verdict on a result of two models; B is missing if a solid was mapped to a ball or a cube. */
+static json_t *entry_of_pair(cli_session *session, const inputs *from) {
+    json_t *entry = json_object();
+    if (from->target != NULL)
+        cli_put(session, entry, "target", cli_json_text(session->operands[1]));
+    return entry;
+}
+
 static starg_status verify_map(cli_session *session, const model *given, const inputs *from,
                                size_t operand, json_t *list) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     CLI_TRY(starg_verify_map(session->context, given->mesh, from->target,
                              from->results[operand]->map, &verdict));
-    json_t *entry = json_object();
-    cli_put(session, entry, "target", cli_json_text(session->operands[1]));
-    tell_verdict(session, session->operands[operand], verdict, entry, list);
+    tell_verdict(session, session->operands[operand], verdict, entry_of_pair(session, from), list);
 done:
     starg_verdict_free(session->context, verdict);
     return status;
@@ -338,8 +344,7 @@ static starg_status verify_morph(cli_session *session, const model *given, const
     CLI_TRY(starg_verify_morph(session->context, given->mesh, from->target,
                                (const starg_mesh *const *)own->frames, own->count,
                                own->report != NULL ? own->report->morph : NULL, &verdict));
-    json_t *entry = json_object();
-    cli_put(session, entry, "target", cli_json_text(session->operands[1]));
+    json_t *entry = entry_of_pair(session, from);
     cli_put(session, entry, "frames", json_integer((json_int_t)own->count));
     tell_verdict(session, session->operands[operand], verdict, entry, list);
 done:
@@ -347,17 +352,13 @@ done:
     return status;
 }
 
-/* B is missing if the map is to a ball or a cube. */
 static starg_status verify_solid_map(cli_session *session, const model *given, const inputs *from,
                                      size_t operand, json_t *list) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
-    const starg_mesh *target = from->target;
     const starg_solid_map *map = from->results[operand]->solid_map;
-    CLI_TRY(starg_verify_solid_map(session->context, given->mesh, target, map, &verdict));
-    json_t *entry = json_object();
-    if (target != NULL)
-        cli_put(session, entry, "target", cli_json_text(session->operands[1]));
+    CLI_TRY(starg_verify_solid_map(session->context, given->mesh, from->target, map, &verdict));
+    json_t *entry = entry_of_pair(session, from);
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)map->count));
     cli_put(session, entry, "pieces", json_integer((json_int_t)map->piece_count));
     tell_verdict(session, session->operands[operand], verdict, entry, list);

@@ -9,6 +9,7 @@
 #include "geometry/vec3.h"
 #include "mesh/formats/io.h"
 #include "mesh/mesh.h"
+#include "morph/parse_numbers.h"
 #include "starguard/morph.h"
 
 static const char STAGE[] = "landmarks";
@@ -21,23 +22,6 @@ static starg_status fail_line(starg_context *context, const char *path, size_t l
                          "'%.200s' line %zu %s; a landmark is a vertex of A and one of B (numbered "
                          "from 0), or a point near A and one near B (six coordinates)",
                          path, line, what);
-}
-
-/* The numbers of a line; VALUES_MOST + 1 if it contains anything else. */
-static size_t parse_line(char *line, double values[VALUES_MOST]) {
-    size_t count = 0;
-    char *comment = strchr(line, '#'), *end;
-    if (comment != NULL)
-        *comment = '\0';
-    for (char *at = line;; at = end) {
-        at += strspn(at, " \t\r,");
-        if (*at == '\0')
-            return count;
-        double value = strtod(at, &end);
-        if (end == at || count == VALUES_MOST || !isfinite(value))
-            return VALUES_MOST + 1;
-        values[count++] = value;
-    }
 }
 
 static bool to_vertex(double value, size_t count, uint32_t *vertex) {
@@ -92,7 +76,7 @@ starg_status starg_landmarks_read(starg_context *context, const char *path, cons
         if (next != NULL)
             *next++ = '\0';
         number++;
-        size_t found = parse_line(line, values);
+        size_t found = parse_numbers(line, values, VALUES_MOST);
         if (found == 0)
             continue;
         if (list.count == 2 * (size_t)STARG_LANDMARKS_MOST)

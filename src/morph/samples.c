@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "mesh/formats/io.h"
+#include "morph/parse_numbers.h"
 #include "starguard/solidmap.h"
 
 static const char STAGE[] = "points file";
@@ -30,27 +31,10 @@ static starg_status fail_line(const reader *r, const char *what) {
                          r->path, r->line, what);
 }
 
-/* The numbers of a line; VALUES_MOST + 1 if it contains anything else. */
-static size_t parse_line(char *line, double values[VALUES_MOST]) {
-    size_t count = 0;
-    char *comment = strchr(line, '#'), *end;
-    if (comment != NULL)
-        *comment = '\0';
-    for (char *at = line;; at = end) {
-        at += strspn(at, " \t\r,");
-        if (*at == '\0')
-            return count;
-        double value = strtod(at, &end);
-        if (end == at || count == VALUES_MOST || !isfinite(value))
-            return VALUES_MOST + 1;
-        values[count++] = value;
-    }
-}
-
 static starg_status take_line(reader *r, char *line) {
     starg_status status = STARG_OK;
     double values[VALUES_MOST] = {0};
-    size_t found = parse_line(line, values);
+    size_t found = parse_numbers(line, values, VALUES_MOST);
     r->line++;
     if (found == 0)
         return STARG_OK;
