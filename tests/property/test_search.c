@@ -308,6 +308,24 @@ static void test_more_work(void **state) {
     test_context_free(context);
 }
 
+/* About reflex edges boxes see more than any point, however small they are. If small ones did not
+ * count as points in the prices, boxes would be split there until the work is used up, and one
+ * guard less would be proven. */
+static void test_limits_of_sight(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    static const char *const names[] = {"labyrinth", "gallery"};
+    for (size_t i = 0; i < 2; i++) {
+        starg_solid *solid = test_sample(context, names[i], 500);
+        starg_guard_options options = proving(1500000);
+        starg_guards *guards = test_guard(context, solid, &options);
+        assert_true(guards->lower_bound_everywhere >= 3 + i);
+        starg_guards_free(context, guards);
+        starg_solid_free(solid);
+    }
+    test_context_free(context);
+}
+
 /* One guard in the kernel is enough, with or without the search, and is reported as such. */
 static void test_star_shaped(void **state) {
     (void)state;
@@ -594,6 +612,7 @@ int main(void) {
         cmocka_unit_test(test_cells_hold_their_points),
         cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_more_work),
+        cmocka_unit_test(test_limits_of_sight),
         cmocka_unit_test(test_star_shaped),
         cmocka_unit_test(test_number_given),
         cmocka_unit_test(test_part_of_the_area),
