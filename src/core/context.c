@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/workers.h"
 #include "starguard/version.h"
 
 #define TEXT_(X) #X
@@ -106,6 +107,7 @@ starg_status starg_context_create(const starg_context_options *options, starg_co
 void starg_context_free(starg_context *context) {
     if (context == NULL)
         return;
+    workers_free(context);
     starg_allocator allocator = context->allocator;
     allocator.release(allocator.user, context);
 }

@@ -13,6 +13,8 @@
 #include "starguard/context.h"
 #include "starguard/ranks.h"
 
+typedef struct starg_workers starg_workers; /* core/workers.c */
+
 /* Effect of the time limit on running code. */
 typedef enum starg_time_rule {
     STARG_TIME_SHORTENS, /* searches check the clock and return their best result */
@@ -42,6 +44,7 @@ typedef struct starg_progress {
 struct starg_context {
     starg_allocator allocator;
     int threads;
+    starg_workers *workers; /* NULL: none started yet */
     uint64_t seed;
     starg_log_fn *log;
     void *log_user;

@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 
 #include "core/worker_group.h"
+#include "core/workers.h"
 
 void worker_group_fail(worker_group *group, size_t item, starg_status status) {
     atomic_store(&group->stop, true);
@@ -79,9 +80,8 @@ static void work(worker_group *group, bool calling) {
         loop->free_scratch(group->context, scratch);
 }
 
-static int helper_main(void *argument) {
-    work(argument, false);
-    return 0;
+static void help(void *group) {
+    work(group, false);
 }
 
 static starg_status explain(starg_context *context, const char *stage, starg_status status) {
@@ -99,19 +99,17 @@ static starg_status explain(starg_context *context, const char *stage, starg_sta
     }
 }
 
-/* Number of threads to start besides the calling one. */
+/* Number of threads that work besides the calling one. */
 static size_t count_threads(const worker_group *group, bool shared) {
     size_t threads = (size_t)group->context->threads - !shared, count = group->loop->count;
     size_t most = shared || count == 0 ? count : count - 1;
     return threads < most ? threads : most;
 }
 
-static starg_status prepare(worker_group *group, size_t helpers, thrd_t **threads) {
+static starg_status prepare(worker_group *group) {
     starg_status status = STARG_OK;
     starg_context *context = group->context;
     const char *stage = group->loop->stage;
-    if (helpers > 0)
-        STARG_NEW(context, stage, *threads, helpers);
     if (group->loop->advance != NULL)
         STARG_NEW_ZERO(context, stage, group->is_finished, group->loop->count);
     if (mtx_init(&group->lock, mtx_plain) != thrd_success)
@@ -124,21 +122,21 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
     starg_status status = STARG_OK;
     worker_group group = {.context = context, .loop = loop};
     bool shared = loop->remote != NULL && context->ranks != NULL && loop->count > 1;
-    size_t helpers = count_threads(&group, shared), started = 0;
-    thrd_t *threads = NULL;
+    size_t helpers = count_threads(&group, shared);
+    bool helped = false;
     if (!loop->silent)
         starg_progress_begin_part(context, loop->stage, loop->share);
-    STARG_TRY(prepare(&group, helpers, &threads));
+    STARG_TRY(prepare(&group));
 
     /* If a thread cannot be started, the others do its share. */
-    while (started < helpers && thrd_create(&threads[started], helper_main, &group) == thrd_success)
-        started++;
+    if (helpers > 0 && workers_begin(context, helpers, help, &group, &helped) != STARG_OK)
+        worker_group_fail(&group, 0, STARG_ERROR_MEMORY);
     if (shared)
         worker_group_distribute(&group);
     else
         work(&group, true);
-    for (size_t i = 0; i < started; i++)
-        thrd_join(threads[i], NULL);
+    if (helped)
+        workers_end(context);
     if (loop->advance != NULL)
         advance(&group);
 
@@ -149,7 +147,6 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
 done:
     if (!loop->silent)
         starg_progress_end(context);
-    starg_release(context, threads);
     starg_release(context, group.is_finished);
     return status;
 }

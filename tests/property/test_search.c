@@ -162,7 +162,7 @@ static void test_questions(void **state) {
     shape s = shape_columns();
     starg_solid *solid = test_solid_of(context, &s);
     for (int question = 0; question < 4; question++) {
-        starg_guard_options options = proving(400000);
+        starg_guard_options options = proving(100000);
         if (question == 0)
             options.visibility.target = STARG_TARGET_VERTICES;
         else if (question == 1)

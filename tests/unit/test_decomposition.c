@@ -370,6 +370,7 @@ static void test_solids(void **state) {
     starg_decompose_options_default(&options);
     assert_int_equal(options.mode, STARG_DECOMPOSE_STRICT);
     options.tetra.density = 4;
+    options.effort = 200;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         starg_solid *solid = solid_of(context, &shapes[i]);
         for (int generator = 0; generator < 2; generator++) {
