@@ -401,7 +401,8 @@ static void test_arguments(void **state) {
     starg_decompose_options options;
     starg_decompose_options_default(&options);
     starg_decomposition *d = NULL;
-    test_ok(context, starg_decompose_tetmesh(context, mesh, NULL, &d));
+    options.effort = 50;
+    test_ok(context, starg_decompose_tetmesh(context, mesh, &options, &d));
     assert_int_equal(d->model_tetrahedra, starg_tetmesh_count(mesh));
     assert_int_equal(d->model_vertices, 10);
     assert_true(d->tetra.surface_kept);
