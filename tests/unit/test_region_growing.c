@@ -194,6 +194,45 @@ static void test_hints(void **state) {
     test_context_free(many);
 }
 
+/* Regions that are kept stay as they are; the rest is divided, in another way each time. */
+static void test_again(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_tetmesh *mesh = sample_tetmesh(context, "octopus", 1500);
+    grown_regions first, former;
+    uint8_t dropped[1000];
+    size_t different = 0;
+    test_ok(context, grow_compatible_regions(context, mesh, mesh, &first));
+    former = first;
+    for (uint64_t round = 1; round <= 12; round++) {
+        starg_rng rng = starg_rng_make(round, 5, 0);
+        grown_regions c;
+        size_t kept = 0;
+        assert_in_range(former.count, 2, sizeof dropped);
+        for (size_t p = 0; p < former.count; p++)
+            dropped[p] = starg_rng_below(&rng, 3) == 0;
+        test_ok(context, grow_compatible_again(context, mesh, mesh, &former, dropped, round, &c));
+        check_regions(mesh, &c);
+        for (uint32_t p = 0; p < former.count; p++) {
+            if (dropped[p])
+                continue;
+            assert_memory_equal(c.guards.data + 3 * kept, former.guards.data + 3 * (size_t)p, 24);
+            for (size_t t = 0; t < mesh->count; t++)
+                assert_int_equal(former.labels[t] == p, c.labels[t] == kept);
+            kept++;
+        }
+        different += memcmp(first.labels, c.labels, mesh->count * sizeof *c.labels) != 0;
+        if (round > 1)
+            grown_regions_free(context, &former);
+        former = c;
+    }
+    assert_true(different > 6); /* of 12 */
+    grown_regions_free(context, &first);
+    grown_regions_free(context, &former);
+    starg_tetmesh_free(mesh);
+    test_context_free(context);
+}
+
 /* ---- failures ---- */
 
 /* No double lies between one coordinate and the next: a tetrahedron without room for a guard. */
@@ -260,7 +299,7 @@ int main(void) {
         cmocka_unit_test(test_random),   cmocka_unit_test(test_samples),
         cmocka_unit_test(test_whole),    cmocka_unit_test(test_hints),
         cmocka_unit_test(test_too_thin), cmocka_unit_test(test_cancelled),
-        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_memory),   cmocka_unit_test(test_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

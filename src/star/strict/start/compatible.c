@@ -7,21 +7,25 @@
  *
  * Stages: regions grown about pairs of guards (region_growing.c); then two neighbours at a time
  * whose union has a kernel with an interior in both places become one, those that touch over the
- * largest area first, until no two can be joined; then every guard goes to the middle of its
- * kernel.
+ * largest area first, until no two can be joined. Then a random group of pieces that hang together
+ * is given up, its tetrahedra are grown and joined anew, and the outcome stays if there are no more
+ * pieces than before (ruin and recreate: Schrimpf et al. 2000), until that has long saved nothing;
+ * then every guard goes to the middle of its kernel.
  *
  * Invariants: after each stage every set is proven to be star-shaped in both, by exact signs.
  * Planes cannot help here as they do for one solid (repartition.c): what is plane in one place is
  * not in the other. So pieces consist of the tetrahedra that were given.
  *
- * Cost: that of the region growing, and two linear programs for each pair of neighbours that is
- * tried; a pair is tried again only when one of the two has changed. */
+ * Cost: that of the region growing, for the whole and for WORK_MOST tetrahedra of groups, and two
+ * linear programs for each pair of neighbours that is tried; a pair is tried again only when one of
+ * the two has changed. */
 #include "star/strict/start/compatible.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/rng.h"
 #include "geometry/vec3.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
@@ -29,6 +33,13 @@
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "join";
+
+enum {
+    GROUP_MOST = 6,     /* pieces grown anew at a time, from 2 on                           */
+    IDLE_MOST = 60,     /* groups in a row that saved nothing: then no more                 */
+    WORK_MOST = 200000, /* tetrahedra of all groups, about 6 seconds                        */
+    PASSES = 40         /* as many tetrahedra looked at once take as long as one of a group */
+};
 
 #define LAST UINT32_MAX /* ends a list */
 
@@ -246,8 +257,6 @@ done:
     return status;
 }
 
-/* ---- the result ---- */
-
 /* Numbers without gaps. */
 static void renumber(compatible *w) {
     uint32_t count = 0;
@@ -260,10 +269,93 @@ static void renumber(compatible *w) {
                   w->pieces.guards.data + 3 * (size_t)count);
         vec3_copy(w->pieces.counterparts.data + 3 * (size_t)piece,
                   w->pieces.counterparts.data + 3 * (size_t)count);
+        w->heads[count] = w->heads[piece];
+        w->tails[count] = w->tails[piece];
         count++;
     }
     w->pieces.count = count;
 }
+
+/* ---- some anew ---- */
+
+/* Drops `wanted` pieces that hang together, from a random one on; says how many tetrahedra they
+ * have. */
+static starg_status drop_group(const compatible *w, size_t wanted, starg_rng *rng, uint8_t *dropped,
+                               size_t *tetrahedra) {
+    starg_status status = STARG_OK;
+    const starg_tetmesh *mesh = w->meshes[0];
+    const uint32_t *labels = w->pieces.labels;
+    STARG_ARRAY(uint32_t) beside = {0}; /* the pieces at the group, as often as faces touch */
+    memset(dropped, 0, w->pieces.count);
+    dropped[starg_rng_below(rng, w->pieces.count)] = 1;
+    for (size_t chosen = 1; chosen < wanted; chosen++) {
+        beside.count = 0;
+        for (size_t face = 0; face < 4 * mesh->count; face++) {
+            uint32_t u = mesh->neighbours[face];
+            if (u != STARG_TETMESH_NONE && dropped[labels[face / 4]] && !dropped[labels[u]])
+                STARG_PUSH(w->context, STAGE, &beside, labels[u]);
+        }
+        if (beside.count == 0)
+            break;
+        dropped[beside.data[starg_rng_below(rng, beside.count)]] = 1;
+    }
+    *tetrahedra = 0;
+    for (size_t t = 0; t < mesh->count; t++)
+        *tetrahedra += dropped[labels[t]];
+done:
+    STARG_ARRAY_FREE(w->context, &beside);
+    return status;
+}
+
+/* The pieces without those dropped, and what is grown in their stead. */
+static starg_status replace_group(const compatible *w, const uint8_t *dropped, uint64_t round,
+                                  compatible *out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(grow_compatible_again(w->context, w->meshes[0], w->meshes[1], &w->pieces, dropped,
+                                    round, &out->pieces));
+    STARG_TRY(list_pieces(out));
+    for (size_t p = 0, kept = 0; p < w->pieces.count; p++)
+        if (!dropped[p])
+            out->fresh[kept++] = 0;
+    STARG_TRY(join_all(out));
+    renumber(out);
+done:
+    return status;
+}
+
+/* Groups of pieces grown anew stay if they are no more than before. */
+static starg_status renew_groups(compatible *w) {
+    starg_status status = STARG_OK;
+    starg_context *context = w->context;
+    compatible next = {.context = context};
+    uint8_t *dropped = NULL;
+    starg_progress_begin(context, STAGE);
+    STARG_NEW(context, STAGE, dropped, w->pieces.count);
+    size_t idle = 0, work = 0;
+    for (uint64_t round = 1; idle < IDLE_MOST && work < WORK_MOST && w->pieces.count > 1; round++) {
+        starg_rng rng = starg_rng_make(context->seed, 0, round);
+        size_t group = 0;
+        STARG_TRY(drop_group(w, 2 + starg_rng_below(&rng, GROUP_MOST - 1), &rng, dropped, &group));
+        compatible_free(&next);
+        next = (compatible){.context = context, .meshes = {w->meshes[0], w->meshes[1]}};
+        STARG_TRY(replace_group(w, dropped, round, &next));
+        work += group + w->meshes[0]->count / PASSES;
+        idle = next.pieces.count < w->pieces.count ? 0 : idle + 1;
+        if (next.pieces.count <= w->pieces.count) {
+            compatible former = *w;
+            *w = next;
+            next = former;
+        }
+        starg_progress_step(context, work, WORK_MOST);
+    }
+done:
+    starg_progress_end(context);
+    compatible_free(&next);
+    starg_release(context, dropped);
+    return status;
+}
+
+/* ---- the result ---- */
 
 static starg_status finish(const compatible *w, int place, starg_decomposition **out) {
     starg_status status = STARG_OK;
@@ -292,8 +384,9 @@ starg_status compatible_decompose(starg_context *context, const starg_tetmesh *m
     STARG_TRY(grow_compatible_regions(context, mesh, image, &w.pieces));
     STARG_TRY(list_pieces(&w));
     STARG_TRY(join_all(&w));
-    STARG_TRY(center_guards(&w));
     renumber(&w);
+    STARG_TRY(renew_groups(&w));
+    STARG_TRY(center_guards(&w));
     for (int i = 0; i < 2; i++)
         STARG_TRY(finish(&w, i, &out[i]));
 done:

@@ -69,9 +69,10 @@ typedef struct growing {
     starg_context *context;
     const starg_tetmesh *mesh, *image; /* no image: NULL */
     double *volumes;
-    uint32_t *labels;   /* finished regions; UNASSIGNED */
-    uint32_t *region;   /* per tetrahedron: the component that it belonged to last */
-    uint32_t regions;   /* numbered so far */
+    uint32_t *labels; /* finished regions; UNASSIGNED */
+    uint32_t *region; /* per tetrahedron: the component that it belonged to last */
+    uint32_t regions; /* numbered so far */
+    uint64_t round;
     size_t assigned;    /* tetrahedra */
     index_list members; /* of the component at hand */
     double *running;    /* volumes of the members, added up */
@@ -252,7 +253,7 @@ static starg_status climb(starg_context *context, void *shared, void *scratch, s
     growing *c = shared;
     grower *grow = scratch;
     climber best = {.volume = 0};
-    starg_rng rng = starg_rng_make(c->context->seed, c->regions, item);
+    starg_rng rng = starg_rng_make(c->context->seed + starg_hash64(c->round), c->regions, item);
     if (!start(c, item, &rng, &best))
         goto done;
     STARG_TRY(grow_region(c, grow, best.at, &best.guard, &best.volume));
@@ -446,7 +447,32 @@ static void locate_hints(growing *c) {
     }
 }
 
-static starg_status run(growing *c, grown_regions *out) {
+/* The regions of `former` that are kept, in their order. */
+static starg_status keep(growing *c, const grown_regions *former, const uint8_t *dropped,
+                         grown_regions *out) {
+    starg_status status = STARG_OK;
+    uint32_t *numbers = NULL;
+    STARG_NEW(c->context, STAGE, numbers, former->count);
+    for (size_t p = 0; p < former->count; p++) {
+        numbers[p] = dropped[p] ? UNASSIGNED : (uint32_t)out->count;
+        out->count += !dropped[p];
+        for (size_t k = 3 * p; k < 3 * p + 3 && !dropped[p]; k++) {
+            STARG_PUSH(c->context, STAGE, &out->guards, former->guards.data[k]);
+            STARG_PUSH(c->context, STAGE, &out->counterparts, former->counterparts.data[k]);
+        }
+    }
+    for (size_t t = 0; t < c->mesh->count; t++) {
+        c->labels[t] = numbers[former->labels[t]];
+        c->assigned += c->labels[t] != UNASSIGNED;
+    }
+done:
+    starg_release(c->context, numbers);
+    return status;
+}
+
+/* Of `former`, NULL or regions without those dropped. */
+static starg_status run(growing *c, const grown_regions *former, const uint8_t *dropped,
+                        grown_regions *out) {
     starg_status status = STARG_OK;
     starg_context *context = c->context;
     size_t count = c->mesh->count;
@@ -459,6 +485,8 @@ static starg_status run(growing *c, grown_regions *out) {
     STARG_NEW(context, STAGE, c->hint_at, c->hint_count);
     STARG_NEW(context, STAGE, c->labels, count);
     memset(c->labels, 0xff, count * sizeof *c->labels);
+    if (former != NULL)
+        STARG_TRY(keep(c, former, dropped, out));
     STARG_TRY(make_grower(context, c, &scratch));
     measure(c);
     locate_hints(c);
@@ -488,13 +516,20 @@ done:
 starg_status grow_regions(starg_context *context, const starg_tetmesh *mesh, const double *hints,
                           size_t hint_count, grown_regions *out) {
     growing c = {.context = context, .mesh = mesh, .hints = hints, .hint_count = hint_count};
-    return run(&c, out);
+    return run(&c, NULL, NULL, out);
 }
 
 starg_status grow_compatible_regions(starg_context *context, const starg_tetmesh *mesh,
                                      const starg_tetmesh *image, grown_regions *out) {
     growing c = {.context = context, .mesh = mesh, .image = image};
-    return run(&c, out);
+    return run(&c, NULL, NULL, out);
+}
+
+starg_status grow_compatible_again(starg_context *context, const starg_tetmesh *mesh,
+                                   const starg_tetmesh *image, const grown_regions *former,
+                                   const uint8_t *dropped, uint64_t round, grown_regions *out) {
+    growing c = {.context = context, .mesh = mesh, .image = image, .round = round};
+    return run(&c, former, dropped, out);
 }
 
 void grown_regions_free(starg_context *context, grown_regions *regions) {

@@ -25,6 +25,12 @@ starg_status grow_regions(starg_context *context, const starg_tetmesh *mesh, con
  * star-shaped in both. Errors: as above. */
 starg_status grow_compatible_regions(starg_context *context, const starg_tetmesh *mesh,
                                      const starg_tetmesh *image, grown_regions *out);
+
+/* The same, where the regions of `former` stay that are not dropped (a byte each), as the first in
+ * their order; the rest is grown anew, in another way for each round. */
+starg_status grow_compatible_again(starg_context *context, const starg_tetmesh *mesh,
+                                   const starg_tetmesh *image, const grown_regions *former,
+                                   const uint8_t *dropped, uint64_t round, grown_regions *out);
 void grown_regions_free(starg_context *context, grown_regions *regions);
 
 #endif
