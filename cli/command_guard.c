@@ -203,6 +203,7 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     picture.face_colors = colors;
     picture.points = g->positions;
     picture.point_count = g->count;
+    picture.point_numbers = true;
     starg_status status = starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
                                               cli_outputs_place(&session->outputs, name));
     free(colors);

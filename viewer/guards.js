@@ -298,7 +298,8 @@ function coneRays(direction, angle) {
     const d = direction.map((x) => x / length);
     const least = d.map(Math.abs).indexOf(Math.min(...d.map(Math.abs)));
     const axis = [0, 1, 2].map((k) => Number(k === least));
-    const cross = (a, b) => [0, 1, 2].map((k) => a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    const cross = (a, b) =>
+        [0, 1, 2].map((k) => a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
     const side = cross(d, axis);
     const size = Math.hypot(...side);
     const u = side.map((x) => x / size),
@@ -307,7 +308,8 @@ function coneRays(direction, angle) {
     return Array.from({ length: CONE_RIM }, (_, r) => {
         const t = (2 * Math.PI * r) / CONE_RIM;
         return d.map(
-            (x, k) => Math.cos(half) * x + Math.sin(half) * (Math.cos(t) * u[k] + Math.sin(t) * v[k]),
+            (x, k) =>
+                Math.cos(half) * x + Math.sin(half) * (Math.cos(t) * u[k] + Math.sin(t) * v[k]),
         );
     });
 }
