@@ -21,6 +21,7 @@ typedef struct cli_show {
     double *radii;
     bool from_animation; /* frames come from starg_animation_read */
     size_t frame_count;
+    char *command;   /* that makes the guards again */
     char *title;     /* of a morph that tells its shapes; else NULL */
     cli_table table; /* of a database */
     double *distances;

@@ -5,7 +5,18 @@ import { BufferAttribute, BufferGeometry, Color, LineBasicMaterial, LineSegments
 import page, { bytes, floats, indices } from "./data.js";
 import { coverageCurve } from "./curve.js";
 import { Labels } from "./labels.js";
-import { check, element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
+import {
+    check,
+    commandLine,
+    element,
+    facts,
+    heading,
+    note,
+    pickList,
+    say,
+    slider,
+    swatch,
+} from "./panel.js";
 import { PickPoints } from "./points.js";
 import { Proof } from "./proof.js";
 import { amount, count, percent, point } from "./text.js";
@@ -137,6 +148,7 @@ export class GuardsView extends View {
                     `${amount(told.uncovered.length, "face is", "faces are")} seen by no guard: striped in red.`,
                 ),
             );
+        if (told.command) node.append(heading("The same guards again"), commandLine(told.command));
         return node;
     }
 

@@ -33,6 +33,7 @@ typedef struct starg_page {
     const starg_mesh *model;
     const char *model_name;
     const starg_guards *guards;
+    const char *command;    /* line that makes the guards again, or NULL */
     const starg_bits *seen; /* with guards and model: one row per guard, one column per face */
     const starg_certificate_outline *proof; /* of the guards' bound, with guards and model */
     const starg_pieces_mesh *pieces;

@@ -385,6 +385,8 @@ static json_t *guards_json(book *b) {
         put(b, guards, "cone", json_real(g->options.visibility.cone));
     if (b->page->proof != NULL)
         put(b, guards, "proof", proof_json(b));
+    if (b->page->command != NULL)
+        put(b, guards, "command", json_string(b->page->command));
     return guards;
 }
 

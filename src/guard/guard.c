@@ -37,7 +37,7 @@ static void set_defaults(starg_guard_options *o, size_t vertices) {
     if (o->max_nodes == STARG_DEFAULT_NODES)
         o->max_nodes = o->method == STARG_GUARD_PILP && !chooses_exactly(o) ? 30 : 100000;
     if (o->step == STARG_DEFAULT_STEP)
-        o->step = proxy_step(vertices, o->coarsest);
+        o->step = starg_guard_default_step(vertices, o->coarsest);
 }
 
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
@@ -379,6 +379,8 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     STARG_TRY(baseline_guards(&problem, &outcome.pool, &outcome.selection));
     STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
+    if (options != NULL) /* as asked for: the file names it only then */
+        (*out)->options.max_nodes = options->max_nodes;
     warn_of_shells(&problem, *out);
 done:
     outcome_free(context, &outcome);

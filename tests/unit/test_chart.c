@@ -256,11 +256,9 @@ static void chart_has_its_curves(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(matrix_shows_ranks),
-                                       cmocka_unit_test(matrix_has_names),
-                                       cmocka_unit_test(letters_differ_and_turn),
-                                       cmocka_unit_test(letters_may_leave_the_canvas),
-                                       cmocka_unit_test(matrix_refuses),
-                                       cmocka_unit_test(chart_has_its_curves)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(matrix_shows_ranks),      cmocka_unit_test(matrix_has_names),
+        cmocka_unit_test(letters_differ_and_turn), cmocka_unit_test(letters_may_leave_the_canvas),
+        cmocka_unit_test(matrix_refuses),          cmocka_unit_test(chart_has_its_curves)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
