@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Vertices within matter. */
+#ifndef STARG_MESH_BURIED_H
+#define STARG_MESH_BURIED_H
+
+#include "mesh/solid.h"
+
+/* True proves that no free space touches the vertex, so that nothing there is ever seen. False may
+ * mean unknown: where other faces touch it, or a fold of its own ones does. */
+bool solid_buries(const starg_solid *solid, uint32_t vertex);
+
+#endif
