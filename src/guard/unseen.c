@@ -4,7 +4,8 @@
  *
  * Stages:
  *   1. Candidates, and points above the faces that these do not see (guard/augment.c): what one of
- *      them sees is seen. A face with a corner within matter is invisible (mesh/buried.c).
+ *      them sees is seen. A face within matter, or with matter before it, is invisible
+ * (mesh/buried.c).
  *   2. For the other faces, the free space is cut into boxes. A test finds what is certainly hidden
  *      from a box (visibility/box.h); a child is tested only for what its parent leaves open, and a
  *      box with nothing open is not cut. The open faces are also tested from the centre of each
@@ -44,7 +45,7 @@ typedef struct unseen_search {
     box_scene *boxes;
     uint32_t *rank_of;
     STARG_ARRAY(uint32_t) list;   /* faces that no candidate sees */
-    STARG_ARRAY(uint32_t) buried; /* those with a corner within matter, which are not in the list */
+    STARG_ARRAY(uint32_t) buried; /* those within matter, which are not in the list */
     uint64_t *open;               /* bits of the list: not seen yet */
     STARG_ARRAY(unseen_box) leaves;
     unseen_box *parts; /* of a batch: two for each leaf that is cut */
@@ -60,11 +61,6 @@ static size_t words_of(const unseen_search *s) {
 
 /* ---- looking from points ---- */
 
-static bool has_buried_corner(const starg_solid *solid, uint32_t face) {
-    const uint32_t *c = solid->mesh->faces + 3 * (size_t)face;
-    return solid_buries(solid, c[0]) || solid_buries(solid, c[1]) || solid_buries(solid, c[2]);
-}
-
 static starg_status look_from_candidates(unseen_search *s, const starg_guard_options *options) {
     starg_status status = STARG_OK;
     guard_pool pool = {0};
@@ -76,10 +72,15 @@ static starg_status look_from_candidates(unseen_search *s, const starg_guard_opt
     STARG_TRY(candidates_find(s->context, &shape, STARG_CANDIDATES_INTERIOR, CANDIDATES, &points));
     STARG_TRY(pool_add(&pool, &points));
     STARG_TRY(pool_augment(&pool, &weights));
+    if (candidates_count(&points) == 0 && pool_count(&pool) == 0)
+        status = starg_fail(s->context, STARG_ERROR_MESH, STAGE,
+                            "no place was found where anybody may stand; try wider limits (box, "
+                            "distances, clearance)");
+    STARG_TRY(status);
     for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++) {
         if (!solid_is_target(s->solid, false, f) || starg_bit_test(pool.coverable, f))
             continue;
-        if (has_buried_corner(s->solid, f))
+        if (solid_hides(s->solid, f))
             STARG_PUSH(s->context, STAGE, &s->buried, f);
         else
             STARG_PUSH(s->context, STAGE, &s->list, f);

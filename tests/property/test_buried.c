@@ -4,6 +4,7 @@
 #include "core/rng.h"
 #include "mesh/buried.h"
 #include "starguard/space.h"
+#include "starguard/visibility.h"
 #include "support.h"
 
 enum { MOST = 4, ROUNDS = 1500 };
@@ -86,11 +87,37 @@ static void compare(const crowd *c, const starg_solid *scene, bool room, size_t 
         }
 }
 
+/* No face that is called hidden is seen from any of many places around it. */
+static size_t look_around(starg_context *context, const starg_solid *scene, starg_rng *rng,
+                          double width) {
+    enum { PLACES = 60 };
+    double places[3 * PLACES];
+    size_t count = 0, hidden = 0;
+    starg_bits *seen = NULL;
+    for (int i = 0; i < PLACES; i++) {
+        double *p = places + 3 * count;
+        for (int k = 0; k < 3; k++)
+            p[k] = width * (1.6 * starg_rng_unit(rng) - 0.3);
+        count += starg_space_admits(scene, p);
+    }
+    if (count > 0)
+        test_ok(context, starg_visibility(context, scene, places, count, NULL, &seen));
+    for (uint32_t f = 0; f < starg_space_model_faces(scene); f++) {
+        if (!solid_hides(scene, f))
+            continue;
+        hidden++;
+        for (size_t i = 0; i < count; i++)
+            assert_false(starg_bits_test(seen, i, f));
+    }
+    starg_bits_free(seen);
+    return hidden;
+}
+
 static void vertices_in_matter(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     starg_rng rng = starg_rng_make(29, 0, 0);
-    size_t counts[2][2] = {{0}};
+    size_t counts[2][2] = {{0}}, hidden = 0;
     for (int round = 0; round < ROUNDS; round++) {
         crowd c;
         starg_space_options options;
@@ -106,15 +133,17 @@ static void vertices_in_matter(void **state) {
         options.standoff_most = room ? 0 : 10;
         starg_status status = starg_space_create(context, model, (const starg_mesh *const *)others,
                                                  room ? (size_t)c.count - 1 : 0, &options, &scene);
-        if (status == STARG_OK)
+        if (status == STARG_OK) {
             compare(&c, scene, room, counts[room]);
-        else
+            hidden += look_around(context, scene, &rng, round % 4 < 2 ? 5 : 40);
+        } else
             assert_true(room && status == STARG_ERROR_ARGUMENT); /* obstacles beyond the room */
         starg_solid_free(scene);
         starg_mesh_free(model);
         for (int i = 0; i < MOST; i++)
             starg_mesh_free(others[i]);
     }
+    assert_true(hidden > 100);
     for (int i = 0; i < 4; i++)
         assert_true(counts[i / 2][i % 2] > 50);
     test_context_free(context);
