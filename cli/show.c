@@ -355,6 +355,8 @@ void cli_show_free(cli_session *session, cli_show *show) {
     free_frames(context, show);
     cli_show_free_shapes(session, show);
     free(show->radii);
+    for (int end = 0; end < 2; end++)
+        starg_guards_free(session->context, show->ends[end]);
     free(show->command);
     free(show->title);
     starg_skeleton_free(context, show->skeleton);

@@ -41,6 +41,7 @@ typedef struct starg_page {
     const starg_skeleton *skeleton;    /* uses positions, edges and radii; radii may be NULL */
     const starg_mesh *const *frames;   /* of a morph: 2 or more meshes with the same faces */
     size_t frame_count;
+    const starg_guards *ends[2]; /* corresponding guards of its first and last frame, or NULL */
     const starg_page_shape *shapes;
     size_t shape_count;
     const double *distances; /* shape_count x shape_count */

@@ -69,6 +69,23 @@ class View(Case):
             bits = sum(bin(byte).count("1") for byte in seen[i * row:(i + 1) * row])
             self.assertEqual(bits, guard["faces"])
 
+    def test_a_morph_has_its_guards(self):
+        self.sample("l-room", 500, "a.off")
+        self.run_text("morph", "a.off", "a.off", "--frames", "2", "--guards", "-o", "frames")
+        self.run_text("view", "frames", "-o", "page.html")
+        page = self.read("page.html")
+        count = len(json.loads(self.read("frames/guards_a.json"))["guards"])
+        self.assertEqual(data_of(page)["morph"]["guards"], count)
+        for end in "01":
+            self.assertEqual(len(block_of(page, f"morph-guards-{end}")), 12 * count)
+        self.write("frames/guards_b.json", self.read("frames/guards_a.json").replace(
+            b'"guards": [', b'"guards": [\n    {"position": [1, 1, 1], "faces": 1, "level": 0},', 1))
+        _, err = self.run_text("view", "frames", "-o", "page.html", status=2)
+        self.assertIn("guards", err)
+        os.remove(self.path("frames/guards_b.json"))
+        self.run_text("view", "frames", "-o", "page.html")
+        self.assertEqual(data_of(self.read("page.html"))["morph"]["guards"], 0)
+
     def command_of(self, result):
         """The words of the command in the page of a result."""
         self.run_text("view", result, "-o", "page.html")
