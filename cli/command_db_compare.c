@@ -28,7 +28,8 @@ static const cli_option matrix_options[] = {
     CLI_OUTPUT_OPTION("FILE.csv", "Distance matrix, one row and column per model, sorted by file "
                                   "name; '-' writes to standard output."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
-                    "Matrix as a picture: black is similar, white is different."),
+                    "Matrix as a picture with the names of up to 120 models: black is similar, "
+                    "white is different."),
     CLI_DISTANCE_OPTION,
 };
 
@@ -63,14 +64,26 @@ static starg_status write_matrix(cli_session *session, const char *name, const c
     return cli_csv_close(&csv);
 }
 
+static starg_status draw_matrix(cli_session *session, const char *name, const cli_table *t) {
+    size_t count = t->models->count;
+    const char **names = malloc(count * sizeof *names);
+    if (names == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < count; i++)
+        names[i] = t->models->items[i].name;
+    starg_status status = starg_matrix_picture_write(session->context, t->distances, count, names,
+                                                     cli_outputs_place(&session->outputs, name));
+    free(names);
+    return status;
+}
+
 static starg_status run_matrix(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     cli_table t = {0};
     CLI_TRY(cli_table_make(session, session->operands[0], v->distance, &t));
     if (v->picture != NULL)
-        CLI_TRY(starg_matrix_picture_write(session->context, t.distances, t.models->count,
-                                           cli_outputs_place(&session->outputs, v->picture)));
+        CLI_TRY(draw_matrix(session, v->picture, &t));
     if (v->output != NULL)
         CLI_TRY(write_matrix(session, v->output, &t));
     cli_say(session, "%s, %s distances\n", cli_count_of(t.models->count, "model", "models").text,

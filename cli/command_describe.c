@@ -98,6 +98,7 @@ static starg_status draw(cli_session *session, const starg_descriptor *d, const 
         memcpy(guards + 3 * i, d->guards[i].position, 3 * sizeof *guards);
     picture.points = guards;
     picture.point_count = d->guard_count;
+    picture.point_numbers = true;
     starg_status status = starg_picture_write(session->context, session->mesh, &picture,
                                               cli_outputs_place(&session->outputs, name));
     free(guards);

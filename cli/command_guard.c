@@ -203,6 +203,7 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     picture.face_colors = colors;
     picture.points = g->positions;
     picture.point_count = g->count;
+    picture.point_numbers = true;
     starg_status status = starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
                                               cli_outputs_place(&session->outputs, name));
     free(colors);
@@ -277,6 +278,52 @@ static starg_status run(cli_session *session, void *data) {
 done:
     starg_text_free(session->context, why);
     starg_guards_free(session->context, guards);
+    return status;
+}
+
+/* ---- the command of a result ---- */
+
+static starg_status recall(cli_session *session, const starg_guards *g, values *v,
+                           cli_common *common) {
+    size_t vertices = g->vertex_count;
+    for (size_t i = 0; i < g->obstacle_count; i++)
+        vertices += g->obstacles[i].vertex_count;
+    v->wanted = g->options;
+    if (v->wanted.step == starg_guard_default_step(vertices, v->wanted.coarsest))
+        v->wanted.step = STARG_DEFAULT_STEP;
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
+        if (g->options.candidates == sources[i].source && i > 0)
+            v->candidates = sources[i].word;
+    if (g->options.candidates == STARG_CANDIDATES_GIVEN)
+        v->candidates = "CANDIDATES";
+    common->seed = g->seed;
+    return cli_scene_recall(session, g, &v->scene);
+}
+
+starg_status cli_guard_command(cli_session *session, const starg_guards *g, const char *output,
+                               char **line) {
+    starg_status status = STARG_OK;
+    values v = {0};
+    cli_common common = {0};
+    cli_group groups[CLI_GROUPS];
+    size_t size;
+    FILE *stream = open_memstream(line, &size);
+    if (stream == NULL)
+        return cli_fail_memory(session);
+    cli_command_groups(&cli_command_guard, &v, &common, groups);
+    for (int i = 0; i < CLI_GROUPS; i++)
+        cli_options_default(&groups[i]);
+    CLI_TRY(recall(session, g, &v, &common));
+    fputs("starguard guard ", stream);
+    cli_word_print(g->file != NULL ? g->file : "MODEL", stream);
+    fputs(" -o ", stream);
+    cli_word_print(output, stream);
+    for (int i = 0; i < CLI_GROUPS; i++)
+        cli_options_print(&groups[i], stream);
+done:
+    cli_scene_forget(&v.scene);
+    if (fclose(stream) != 0 && status == STARG_OK)
+        status = cli_fail_memory(session);
     return status;
 }
 

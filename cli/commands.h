@@ -57,6 +57,11 @@ enum { CLI_OWN, CLI_FROM_LIBRARY, CLI_COMMON, CLI_GROUPS };
 void cli_command_groups(const cli_command *command, void *values, void *common,
                         cli_group groups[CLI_GROUPS]);
 
+/* The command that makes a result again: on the heap, also on failure. Errors: MEMORY. */
+struct starg_guards;
+starg_status cli_guard_command(cli_session *session, const struct starg_guards *guards,
+                               const char *output, char **line);
+
 extern const cli_command cli_command_sample;
 extern const cli_command cli_command_check;
 extern const cli_command cli_command_repair;

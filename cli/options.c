@@ -287,6 +287,86 @@ const char *cli_option_next_word(const char **at, size_t *size) {
     return NULL;
 }
 
+/* ---- printing ---- */
+
+void cli_word_print(const char *word, FILE *stream) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "_-+=./,:@%";
+    if (*word != '\0' && word[strspn(word, plain)] == '\0') {
+        fputs(word, stream);
+        return;
+    }
+    fputc('\'', stream);
+    for (; *word != '\0'; word++)
+        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, stream);
+    fputc('\'', stream);
+}
+
+/* With as few digits as name the number. */
+static void print_real(double value, FILE *stream) {
+    char text[32];
+    for (int digits = 15; digits <= 17; digits++) {
+        double read;
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (cli_number_real(text, &read) && read == value)
+            break;
+    }
+    fputs(text, stream);
+}
+
+static void print_reals(const double *values, size_t count, FILE *stream) {
+    for (size_t i = 0; i < count; i++) {
+        fputs(i > 0 ? "," : "", stream);
+        print_real(values[i], stream);
+    }
+}
+
+/* One occurrence of an option; PLACES and TEXTS: number `i`. */
+static void print_option(const cli_option *o, const void *values, size_t i, FILE *stream) {
+    const void *at = (const char *)values + o->offset;
+    fprintf(stream, " --%s", o->option);
+    if (o->kind == STARG_FIELD_FLAG)
+        return;
+    fputc(' ', stream);
+    if (o->kind == STARG_FIELD_COUNT)
+        fprintf(stream, "%llu", (unsigned long long)starg_field_count(o, values));
+    else if (o->kind == STARG_FIELD_CHOICE)
+        fputs(o->words[starg_field_count(o, values)], stream);
+    else if (o->kind == STARG_FIELD_REAL)
+        print_reals(at, 1, stream);
+    else if (o->kind == STARG_FIELD_NUMBERS)
+        print_reals(at, o->length, stream);
+    else if (o->kind == STARG_FIELD_PLACES)
+        print_reals(((const starg_places *)at)->values + i * o->length, o->length, stream);
+    else if (o->kind == STARG_FIELD_TEXTS)
+        cli_word_print(((const starg_texts *)at)->values[i], stream);
+    else
+        cli_word_print(*(const char *const *)at, stream);
+}
+
+static bool is_default(const cli_option *o, const void *at) {
+    double standard[8] = {0}; /* room for any member */
+    starg_field own = *o;
+    const starg_fields table = {.fields = &own, .count = 1};
+    own.offset = 0;
+    starg_fields_default(&table, standard);
+    return memcmp(at, standard, o->size) == 0;
+}
+
+void cli_options_print(const cli_group *group, FILE *stream) {
+    for (size_t k = 0; k < group->count; k++) {
+        const cli_option *o = &group->options[k];
+        const void *at = (const char *)group->values + o->offset;
+        if (o->option == NULL || is_default(o, at))
+            continue;
+        size_t count = o->kind == STARG_FIELD_PLACES  ? ((const starg_places *)at)->count
+                       : o->kind == STARG_FIELD_TEXTS ? ((const starg_texts *)at)->count
+                                                      : 1;
+        for (size_t i = 0; i < count; i++)
+            print_option(o, group->values, i, stream);
+    }
+}
+
 void cli_options_free(const cli_group *group) {
     for (size_t i = 0; i < group->count; i++) {
         void *member = (char *)group->values + group->options[i].offset;

@@ -9,6 +9,8 @@
 #ifndef STARGUARD_CLI_OPTIONS_H
 #define STARGUARD_CLI_OPTIONS_H
 
+#include <stdio.h>
+
 #include "starguard/fields.h"
 
 /* Rows with a NULL `option` are not options. */
@@ -77,6 +79,12 @@ void cli_options_default(const cli_group *group);
 /* The next lower-case word in the value form of a TEXT option, searching from *at, which starts as
  * `value`; NULL after the last. */
 const char *cli_option_next_word(const char **at, size_t *size);
+
+/* Writes the options whose values are not the defaults, as a shell takes them: " --name value". */
+void cli_options_print(const cli_group *group, FILE *stream);
+
+/* Writes a word for a shell, in quotes if it needs them. */
+void cli_word_print(const char *word, FILE *stream);
 
 /* Frees what parsing allocated. */
 void cli_options_free(const cli_group *group);

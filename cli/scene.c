@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -97,6 +98,95 @@ void cli_scene_free_obstacles(starg_mesh **obstacles, size_t count) {
     for (size_t i = 0; obstacles != NULL && i < count; i++)
         starg_mesh_free(obstacles[i]);
     free(obstacles);
+}
+
+/* ---- of a result ---- */
+
+/* Ascending numbers as ranges, such as 0-11,40; NULL: out of memory. */
+static char *ranges_of(const uint32_t *list, size_t count) {
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL)
+        return NULL;
+    for (size_t i = 0, last; i < count; i = last + 1) {
+        for (last = i; last + 1 < count && list[last + 1] == list[last] + 1;)
+            last++;
+        fprintf(stream, "%s%u", i > 0 ? "," : "", (unsigned)list[i]);
+        if (last > i)
+            fprintf(stream, "-%u", (unsigned)list[last]);
+    }
+    if (fclose(stream) == 0)
+        return text;
+    free(text);
+    return NULL;
+}
+
+static bool recall_faces(const uint32_t *list, size_t count, char **text, const char **word) {
+    *text = count > 0 ? ranges_of(list, count) : NULL;
+    *word = *text;
+    return count == 0 || *text != NULL;
+}
+
+/* Are the faces to be seen alike? Then numbers tell them. */
+static bool are_alike(const starg_guards *g) {
+    for (size_t i = 0; i < g->target_count; i++)
+        if (g->importance[i] != 1)
+            return false;
+    return true;
+}
+
+static bool recall_place(starg_places *places, const double *values, size_t count) {
+    places->values = malloc(count * sizeof *values);
+    if (places->values == NULL)
+        return false;
+    memcpy(places->values, values, count * sizeof *values);
+    places->count = 1;
+    return true;
+}
+
+static bool is_box(const double box[6]) {
+    return box[0] < box[3] || box[1] < box[4] || box[2] < box[5];
+}
+
+starg_status cli_scene_recall(cli_session *session, const starg_guards *g, cli_scene *scene) {
+    const starg_space_options *s = &g->space;
+    const double standoff[2] = {s->standoff_least, s->standoff_most};
+    bool done = true;
+    scene->orientation = s->orientation;
+    scene->outside = s->outside;
+    scene->soup = s->soup;
+    scene->two_sided = s->two_sided;
+    scene->height = s->height;
+    scene->cell = s->cell;
+    if (s->cell > 0)
+        done = done && recall_place(&scene->from, s->from, 3);
+    if (standoff[0] > 0 || standoff[1] > 0)
+        done = done && recall_place(&scene->standoff, standoff, 2);
+    if (is_box(s->within))
+        done = done && recall_place(&scene->within, s->within, 6);
+    done = done && recall_faces(s->over, s->over_count, &scene->recalled[0], &scene->over);
+    done = done && recall_faces(s->mount, s->mount_count, &scene->recalled[1], &scene->mount);
+    if (are_alike(g))
+        done = done && recall_faces(g->targets, g->target_count, &scene->recalled[2], &scene->see);
+    else
+        scene->weights = "WEIGHTS";
+    scene->obstacles.values = calloc(g->obstacle_count + 1, sizeof *scene->obstacles.values);
+    done = done && scene->obstacles.values != NULL;
+    for (size_t i = 0; i < g->obstacle_count && done; i++)
+        scene->obstacles.values[scene->obstacles.count++] =
+            g->obstacles[i].file != NULL ? g->obstacles[i].file : "OBSTACLE";
+    return done ? STARG_OK : cli_fail_memory(session);
+}
+
+void cli_scene_forget(cli_scene *scene) {
+    free(scene->from.values);
+    free(scene->standoff.values);
+    free(scene->within.values);
+    free((void *)scene->obstacles.values);
+    for (int i = 0; i < 3; i++)
+        free(scene->recalled[i]);
+    *scene = (cli_scene){0};
 }
 
 /* ---- faces ---- */

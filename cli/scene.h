@@ -16,8 +16,9 @@ typedef struct cli_scene {
     starg_places standoff, within;
     const char *see, *ignore, *weights, *over, *mount;
     double height;
-    double clearance; /* of guards from where they are mounted, and what is up: from the other */
-    double up[3];     /* options of `guard` */
+    double clearance;  /* of guards from where they are mounted, and what is up: from the other */
+    double up[3];      /* options of `guard` */
+    char *recalled[3]; /* texts above that cli_scene_recall made */
 } cli_scene;
 
 extern const char *const cli_orientation_words[];
@@ -80,6 +81,11 @@ extern const char *const cli_orientation_words[];
 
 /* Names the files that it reads. */
 starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene);
+
+/* The options that ask for the scene of a result. Files that it does not tell become words in
+ * capitals. Free with cli_scene_forget. Errors: MEMORY. */
+starg_status cli_scene_recall(cli_session *session, const starg_guards *guards, cli_scene *scene);
+void cli_scene_forget(cli_scene *scene);
 
 /* Makes session->solid of session->mesh, which is given back. */
 starg_status cli_scene_make(cli_session *session, const cli_scene *scene);

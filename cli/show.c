@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "show.h"
+#include "commands.h"
 #include "scene.h"
 
 #include <stdlib.h>
@@ -259,6 +260,9 @@ static starg_status see(cli_session *session, cli_show *show) {
                                g, &show->solid));
     CLI_TRY(starg_guards_see(session->context, show->solid, g, &show->seen));
     show->page.seen = show->seen;
+    if (!g->time_limited) /* what a clock has stopped does not come again */
+        CLI_TRY(cli_guard_command(session, g, base_of(show->guards_file), &show->command));
+    show->page.command = show->command;
     for (size_t i = 0; i < g->count; i++)
         if (starg_bits_count(show->seen, i) != g->seen_faces[i]) {
             cli_warn(session,
@@ -351,6 +355,9 @@ void cli_show_free(cli_session *session, cli_show *show) {
     free_frames(context, show);
     cli_show_free_shapes(session, show);
     free(show->radii);
+    for (int end = 0; end < 2; end++)
+        starg_guards_free(session->context, show->ends[end]);
+    free(show->command);
     free(show->title);
     starg_skeleton_free(context, show->skeleton);
     starg_bits_free(show->seen);

@@ -19,8 +19,10 @@ typedef struct cli_show {
     starg_result **results;             /* one per operand, or NULL */
     starg_skeleton *skeleton, measured; /* as read; with radii */
     double *radii;
-    bool from_animation; /* frames come from starg_animation_read */
+    starg_guards *ends[2]; /* of a morph */
+    bool from_animation;   /* frames come from starg_animation_read */
     size_t frame_count;
+    char *command;   /* that makes the guards again */
     char *title;     /* of a morph that tells its shapes; else NULL */
     cli_table table; /* of a database */
     double *distances;

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "show.h"
 #include "starguard/animation.h"
@@ -96,6 +97,21 @@ static bool title_morph(const char *folder, cli_show *show) {
     return !known || show->title != NULL;
 }
 
+/* The guards of both ends, if the folder has them (morph --guards). */
+static starg_status read_ends(cli_session *session, const char *folder, cli_show *show) {
+    starg_status status = STARG_OK;
+    for (int end = 0; end < 2 && status == STARG_OK; end++) {
+        char path[4096];
+        int size = snprintf(path, sizeof path, "%s/guards_%c.json", folder, "ab"[end]);
+        if (size >= (int)sizeof path || access(path, F_OK) != 0)
+            break;
+        status = starg_guards_read(session->context, path, &show->ends[end]);
+    }
+    for (int end = 0; end < 2 && show->ends[1] != NULL; end++)
+        show->page.ends[end] = show->ends[end];
+    return status;
+}
+
 starg_status cli_show_frames(cli_session *session, const char *folder, cli_show *show) {
     starg_status status = STARG_OK;
     name_list list = {0};
@@ -110,6 +126,7 @@ starg_status cli_show_frames(cli_session *session, const char *folder, cli_show 
         CLI_TRY(starg_mesh_read(session->context, list.items[i], &show->frames[i]));
         show->frame_count++;
     }
+    CLI_TRY(read_ends(session, folder, show));
     if (!title_morph(folder, show))
         status = cli_fail_memory(session);
 done:

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Draws the pictures of docs/ that show single results: what one guard sees, a morph by three methods,
-# distances of shapes. All from samples. Needs ImageMagick. Usage: doc-pictures.sh STARGUARD
+# Draws the pictures of docs/ that show results of the command line: guards of four samples, what one guard
+# sees, a morph by three methods, distances of shapes. All from samples. Needs ImageMagick. Usage: doc-pictures.sh STARGUARD
 set -eu
 starguard=$(readlink -f "$1")
 pictures=$(cd "$(dirname "$0")/../docs/pictures" && pwd)
@@ -9,10 +9,17 @@ scratch=$(mktemp -d "${TMPDIR:-/tmp}/starguard-pictures.XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-# A few colours are enough and halve the size.
 keep() {
-    convert "$1" -trim +repage -bordercolor white -border 12 -resize "$2" -colors 64 "PNG8:$pictures/$1"
+    convert "$1" -trim +repage -bordercolor white -border 12 -resize "$2" -depth 8 "PNG24:$pictures/$1"
 }
+
+for name in horse human octopus gallery; do
+    "$starguard" sample $name -o $name.off
+    "$starguard" guard $name.off -o $name.json --picture $name.png
+done
+montage horse.png human.png octopus.png gallery.png -trim +repage -resize 800x600 -tile 2x2 \
+    -geometry 800x600+12+12 -background white guards.png
+keep guards.png 1200x
 
 "$starguard" sample gallery --vertices 3000 -o gallery.off
 "$starguard" guard gallery.off --max-guards 1 -o guard.json --picture visibility.png

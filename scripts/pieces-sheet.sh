@@ -18,4 +18,5 @@ for name in horse dog cat giraffe dinosaur bird human octopus knot plate l-room 
     set -- "$@" -label "$name: $pieces" "$work/$name.png"
 done
 montage "$@" -trim +repage -resize 400x300 -tile 4x -geometry 400x300+6+6 -background white \
+    -font "$(fc-match -f "%{file}" sans-serif)" \
     -pointsize 20 -depth 8 "PNG24:$sheet"

@@ -5,7 +5,18 @@ import { BufferAttribute, BufferGeometry, Color, LineBasicMaterial, LineSegments
 import page, { bytes, floats, indices } from "./data.js";
 import { coverageCurve } from "./curve.js";
 import { Labels } from "./labels.js";
-import { check, element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
+import {
+    check,
+    commandLine,
+    element,
+    facts,
+    heading,
+    note,
+    pickList,
+    say,
+    slider,
+    swatch,
+} from "./panel.js";
 import { PickPoints } from "./points.js";
 import { Proof } from "./proof.js";
 import { amount, count, percent, point } from "./text.js";
@@ -137,6 +148,7 @@ export class GuardsView extends View {
                     `${amount(told.uncovered.length, "face is", "faces are")} seen by no guard: striped in red.`,
                 ),
             );
+        if (told.command) node.append(heading("The same guards again"), commandLine(told.command));
         return node;
     }
 
@@ -298,7 +310,8 @@ function coneRays(direction, angle) {
     const d = direction.map((x) => x / length);
     const least = d.map(Math.abs).indexOf(Math.min(...d.map(Math.abs)));
     const axis = [0, 1, 2].map((k) => Number(k === least));
-    const cross = (a, b) => [0, 1, 2].map((k) => a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    const cross = (a, b) =>
+        [0, 1, 2].map((k) => a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
     const side = cross(d, axis);
     const size = Math.hypot(...side);
     const u = side.map((x) => x / size),
@@ -307,7 +320,8 @@ function coneRays(direction, angle) {
     return Array.from({ length: CONE_RIM }, (_, r) => {
         const t = (2 * Math.PI * r) / CONE_RIM;
         return d.map(
-            (x, k) => Math.cos(half) * x + Math.sin(half) * (Math.cos(t) * u[k] + Math.sin(t) * v[k]),
+            (x, k) =>
+                Math.cos(half) * x + Math.sin(half) * (Math.cos(t) * u[k] + Math.sin(t) * v[k]),
         );
     });
 }

@@ -56,7 +56,9 @@ export class Labels {
         for (const { span, spot } of spots) {
             const free =
                 spot !== null &&
-                taken.every((t) => Math.abs(t.x - spot.x) > APART.x || Math.abs(t.y - spot.y) > APART.y);
+                taken.every(
+                    (t) => Math.abs(t.x - spot.x) > APART.x || Math.abs(t.y - spot.y) > APART.y,
+                );
             span.hidden = !free;
             if (!free) continue;
             taken.push(spot);

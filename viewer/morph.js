@@ -4,7 +4,9 @@ import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, smoothNormals } from "./geometry.js";
 import { setCutOpen, shared, surfaceMaterial } from "./materials.js";
+import { Labels } from "./labels.js";
 import { element, facts, note, say, slider } from "./panel.js";
+import { PickPoints } from "./points.js";
 import { themeColor } from "./theme.js";
 import { normalAttribute } from "./surface.js";
 import { count } from "./text.js";
@@ -25,7 +27,8 @@ export class MorphView extends View {
         this.normals = [];
         this.ball = ballOf(...this.frames);
         this.build();
-        this.objects = [this.object];
+        this.ends = page.morph.guards > 0 ? [0, 1].map((end) => this.makeEnd(end)) : [];
+        this.objects = [this.object, ...this.ends.map(({ points }) => points.object)];
         this.playing = false;
         this.node = this.makePanel();
         this.applyTheme();
@@ -39,6 +42,12 @@ export class MorphView extends View {
         this.material = surfaceMaterial({ defines: { MOVING: "", SOLID: "" } });
         this.object = new Mesh(geometry, this.material);
         this.object.frustumCulled = false;
+    }
+
+    /** The guards of the first or the last shape, with their numbers. */
+    makeEnd(end) {
+        const points = new PickPoints(floats(`morph-guards-${end}`), page.colors);
+        return { points, labels: new Labels(this.stage, points) };
     }
 
     normalsOf(i) {
@@ -70,6 +79,7 @@ export class MorphView extends View {
                 ["Frames", count(frames)],
                 ["Vertices", count(vertices)],
                 ["Faces", count(faces)],
+                ...(this.ends.length > 0 ? [["Guards", count(page.morph.guards)]] : []),
             ]),
             this.time.node,
             element(
@@ -79,6 +89,9 @@ export class MorphView extends View {
                 element("span", { className: "number" }, "Space"),
             ),
             note("0 is the first shape, 1 the last one."),
+            ...(this.ends.length > 0
+                ? [note("At either end its guards; those of one number correspond.")]
+                : []),
         );
     }
 
@@ -95,6 +108,7 @@ export class MorphView extends View {
             geometry.setAttribute("normalNext", this.normalsOf(i + 1));
         }
         shared.time.value = along - i;
+        this.ends.forEach(({ points }, end) => (points.object.visible = t === end));
         this.stage.request();
     }
 
@@ -130,7 +144,12 @@ export class MorphView extends View {
         say(`Paused at ${this.time.value.toFixed(2)}`);
     }
 
+    enter() {
+        this.ends.forEach(({ labels }) => labels.enter());
+    }
+
     leave() {
+        this.ends.forEach(({ labels }) => labels.leave());
         this.pause();
     }
 

@@ -125,6 +125,28 @@ export function facts(rows) {
     return list;
 }
 
+/** A command line with a button that copies it. */
+export function commandLine(line) {
+    const code = element("code", {}, line);
+    const copy = element("button", { type: "button" }, "Copy");
+    copy.onclick = async () => {
+        await copyText(line, code);
+        copy.textContent = "Copied";
+        say("Copied");
+    };
+    return element("div", { className: "command" }, code, copy);
+}
+
+/** Pages from a disk may have no clipboard: then the text is selected. */
+async function copyText(text, node) {
+    try {
+        await navigator.clipboard.writeText(text);
+    } catch {
+        getSelection().selectAllChildren(node);
+        document.execCommand("copy");
+    }
+}
+
 export function heading(text) {
     return element("h2", {}, text);
 }

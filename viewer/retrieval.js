@@ -9,6 +9,7 @@ import { following, View } from "./view.js";
 
 const EDGE = 2; // pixels around the table, for the frame of the picked cell
 const LIST_MOST = 60; // largest number of neighbours in the list
+const NAMES_SHARE = 0.4; // largest part of the table's room for names
 
 export class RetrievalView extends View {
     name = "Retrieval";
@@ -26,6 +27,7 @@ export class RetrievalView extends View {
         this.distances = doubles("shape-distances");
         this.ranks = this.rankAll();
         this.picked = 0;
+        this.other = null; // the column of a picked cell
         this.node = this.makePanel();
         this.makeSheet();
         this.makeShades();
@@ -141,11 +143,12 @@ export class RetrievalView extends View {
         const n = this.count;
         const context = this.canvas.getContext("2d");
         context.font = this.font();
+        const room = Math.min(width, height);
         const longest = Math.min(
             170,
+            NAMES_SHARE * room,
             Math.max(...this.shapes.map((shape) => context.measureText(shape.name).width)) + 8,
         );
-        const room = Math.min(width, height);
         const named = (room - longest) / n >= 9;
         const frame = named ? longest : EDGE;
         this.left = this.top = frame;
@@ -214,12 +217,13 @@ export class RetrievalView extends View {
             const middle = (i + 0.5) * this.cell;
             context.fillStyle = i === this.picked ? strong : plain;
             context.textAlign = "right";
-            context.fillText(name, this.left - 6, this.top + middle, this.left - 8);
+            const shown = shorten(context, name, this.left - 8);
+            context.fillText(shown, this.left - 6, this.top + middle);
             context.save();
             context.translate(this.left + middle, this.top - 6);
             context.rotate(-Math.PI / 2);
             context.textAlign = "left";
-            context.fillText(name, 0, 0, this.top - 8);
+            context.fillText(shown, 0, 0);
             context.restore();
         });
     }
@@ -233,6 +237,13 @@ export class RetrievalView extends View {
             this.count * this.cell + 1,
             this.cell + 1,
         );
+        if (this.other !== null)
+            context.strokeRect(
+                this.left + this.other * this.cell - 1,
+                this.top + this.picked * this.cell - 1,
+                this.cell + 1,
+                this.cell + 1,
+            );
     }
 
     // ---- what is visible ----
@@ -242,6 +253,11 @@ export class RetrievalView extends View {
         const nearest = this.neighbours(i);
         this.self.replaceChildren(this.entry(i, ""));
         this.self.firstChild.setAttribute("aria-pressed", "true");
+        if (this.other !== null)
+            this.self.append(
+                heading("The picked cell"),
+                this.entry(this.other, real(this.distance(i, this.other))),
+            );
         this.title.textContent = "Most like it, with distances";
         this.list.setAttribute("aria-label", `Most like ${this.shapes[i].name}`);
         this.list.replaceChildren(
@@ -253,10 +269,11 @@ export class RetrievalView extends View {
 
     pick(i, other = null) {
         this.picked = i;
+        this.other = other === i ? null : other;
         this.update();
         const nearest = this.neighbours(i)[0];
         const { name } = this.shapes[i];
-        if (other !== null && other !== i)
+        if (this.other !== null)
             say(
                 `${name} and ${this.shapes[other].name}: distance ${real(this.distance(i, other))}`,
             );
@@ -280,6 +297,17 @@ export class RetrievalView extends View {
     leave() {
         this.place.hidden = true;
     }
+}
+
+/** A name without its middle, if it is too long: the ends tell models apart. */
+function shorten(context, name, room) {
+    const fits = (text) => context.measureText(text).width <= room;
+    if (fits(name)) return name;
+    let kept = name.length - 1;
+    const cut = () =>
+        `${name.slice(0, Math.ceil(kept / 2))}…${name.slice(name.length - (kept >> 1))}`;
+    while (kept > 1 && !fits(cut())) kept--;
+    return cut();
 }
 
 /** The meaning of the shades in a row. */

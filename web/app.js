@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `make web`: a model, what `check` finds, guards and pieces of it in the viewer, files to
 // keep, and the command lines that make the same files elsewhere.
-import { element, facts, heading, note, say } from "../viewer/panel.js";
+import { commandLine, element, facts, heading, note, say } from "../viewer/panel.js";
 import { amount, count, percent } from "../viewer/text.js";
 import "../viewer/theme.js";
 import { Cancelled, Run } from "./program.js";
@@ -136,12 +136,7 @@ class App {
 
     tell(words) {
         const line = join(words);
-        const copy = button("Copy", async () => {
-            await copyText(line, code);
-            copy.textContent = "Copied";
-        });
-        const code = element("code", {}, line);
-        this.commandList.append(element("div", { className: "command" }, code, copy));
+        this.commandList.append(commandLine(line));
         this.commands.push(line);
     }
 
@@ -354,16 +349,6 @@ function download(name, bytes) {
 
 function size(bytes) {
     return bytes < 1e6 ? `${count(Math.ceil(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`;
-}
-
-/** Pages from a disk may have no clipboard: then the text is selected. */
-async function copyText(text, node) {
-    try {
-        await navigator.clipboard.writeText(text);
-    } catch {
-        getSelection().selectAllChildren(node);
-        document.execCommand("copy");
-    }
 }
 
 function licences() {

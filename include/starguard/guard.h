@@ -91,6 +91,9 @@ typedef struct starg_guard_options {
  * STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
 
+/* What STARG_DEFAULT_STEP stands for with so many vertices of the scene. */
+STARG_API size_t starg_guard_default_step(size_t vertices, size_t coarsest);
+
 /* Names, ranges and descriptions of the options. */
 STARG_API const starg_fields *starg_guard_options_fields(void);
 
@@ -114,6 +117,7 @@ typedef struct starg_guards {
     char *file; /* the model's path as given; NULL if made in memory          */
     size_t vertex_count, face_count; /* of the model                                          */
     starg_guard_options options;     /* as used; `points` is NULL                             */
+    uint64_t seed;                   /* of the context */
 
     /* of a scene (starguard/space.h); the defaults and nothing for a plain solid */
     starg_space_options space; /* its lists belong to the result */

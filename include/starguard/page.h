@@ -33,6 +33,7 @@ typedef struct starg_page {
     const starg_mesh *model;
     const char *model_name;
     const starg_guards *guards;
+    const char *command;    /* line that makes the guards again, or NULL */
     const starg_bits *seen; /* with guards and model: one row per guard, one column per face */
     const starg_certificate_outline *proof; /* of the guards' bound, with guards and model */
     const starg_pieces_mesh *pieces;
@@ -40,6 +41,7 @@ typedef struct starg_page {
     const starg_skeleton *skeleton;    /* uses positions, edges and radii; radii may be NULL */
     const starg_mesh *const *frames;   /* of a morph: 2 or more meshes with the same faces */
     size_t frame_count;
+    const starg_guards *ends[2]; /* corresponding guards of its first and last frame, or NULL */
     const starg_page_shape *shapes;
     size_t shape_count;
     const double *distances; /* shape_count x shape_count */

@@ -24,6 +24,7 @@ typedef struct starg_picture_options {
     size_t point_count;
     const uint8_t *point_colors; /* point_count x 3, or NULL for distinct colours             */
     double point_radius;         /* as a fraction of the bounding box's diagonal              */
+    bool point_numbers;          /* numbers beside points, where none covers a nearer one     */
 } starg_picture_options;
 
 /* 1200 x 900, azimuth 35, elevation 20, up axis 1 (y), opacity 0.35, radius 0.012. */
@@ -54,9 +55,11 @@ STARG_API void starg_distinct_color(size_t index, uint8_t rgb[3]);
 
 /* Draws a square distance matrix as a PNG, one cell per entry: the smallest is black, the largest
  * white, and greys follow the rank, so that the contrast does not depend on the distribution.
+ * `names` (one per row, or NULL) stand beside the rows and columns of up to 120 rows.
  * Errors: ARGUMENT (over 8192 rows, an entry that is not a number), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_matrix_picture_write(starg_context *context, const double *values,
-                                                  size_t rows, const char *path);
+                                                  size_t rows, const char *const *names,
+                                                  const char *path);
 
 /* One curve of a chart: points in the unit square, x ascending. */
 typedef struct starg_curve {

@@ -19,7 +19,8 @@ from .mesh import as_mesh
 def _options(keep: list[Any], face_count: int, size: tuple[int, int] | None,
              azimuth: float | None, elevation: float | None, up: int | None,
              opacity: float | None, face_colors: ArrayLike | None, points: ArrayLike | None,
-             point_colors: ArrayLike | None, point_radius: float | None) -> Any:
+             point_colors: ArrayLike | None, point_radius: float | None,
+             point_numbers: bool = False) -> Any:
     """starg_picture_options; `keep` holds objects that must live as long."""
     options = ffi.new("starg_picture_options *")
     lib.starg_picture_options_default(options)
@@ -27,6 +28,7 @@ def _options(keep: list[Any], face_count: int, size: tuple[int, int] | None,
         options.width, options.height = size
     give(options, azimuth=azimuth, elevation=elevation, up=up, opacity=opacity,
          point_radius=point_radius)
+    options.point_numbers = point_numbers
     keep.append(_arrays.colors(face_colors, face_count, "face_colors"))
     options.face_colors = keep[-1]
     if points is not None:
@@ -43,9 +45,10 @@ def write_picture(path: PathLike, model: Any, *, size: tuple[int, int] | None = 
                   up: int | None = None, opacity: float | None = None,
                   face_colors: ArrayLike | None = None, points: ArrayLike | None = None,
                   point_colors: ArrayLike | None = None, point_radius: float | None = None,
-                  progress: Progress | None = None) -> None:
+                  point_numbers: bool = False, progress: Progress | None = None) -> None:
     """Draws a translucent mesh, with points as balls, as a PNG. Angles are in degrees, `up`
-    is the axis that points up, `point_radius` a fraction of the diagonal.
+    is the axis that points up, `point_radius` a fraction of the diagonal; `point_numbers`
+    writes the points' numbers beside them.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -56,7 +59,7 @@ def write_picture(path: PathLike, model: Any, *, size: tuple[int, int] | None = 
     session = Session()
     keep: list[Any] = []
     options = _options(keep, len(mesh.faces), size, azimuth, elevation, up, opacity, face_colors,
-                       points, point_colors, point_radius)
+                       points, point_colors, point_radius, point_numbers)
     session.call(lib.starg_picture_write, session.context, mesh._handle, options,
                  _arrays.path(path), progress=progress)
 
@@ -65,7 +68,7 @@ def picture(model: Any, *, size: tuple[int, int] | None = None, azimuth: float |
             elevation: float | None = None, up: int | None = None, opacity: float | None = None,
             face_colors: ArrayLike | None = None, points: ArrayLike | None = None,
             point_colors: ArrayLike | None = None, point_radius: float | None = None,
-            progress: Progress | None = None) -> bytes:
+            point_numbers: bool = False, progress: Progress | None = None) -> bytes:
     """The same picture as PNG bytes, for example for a notebook.
 
     >>> import starguard
@@ -76,7 +79,7 @@ def picture(model: Any, *, size: tuple[int, int] | None = None, azimuth: float |
     session = Session()
     keep: list[Any] = []
     options = _options(keep, len(mesh.faces), size, azimuth, elevation, up, opacity, face_colors,
-                       points, point_colors, point_radius)
+                       points, point_colors, point_radius, point_numbers)
     out, length = ffi.new("uint8_t **"), ffi.new("size_t *")
     try:
         session.call(lib.starg_picture_encode, session.context, mesh._handle, options, out, length,
@@ -108,18 +111,23 @@ def write_picture_sheet(path: PathLike, models: Sequence[Sequence[Any]], *,
                  options, _arrays.path(path), progress=progress)
 
 
-def write_matrix_picture(path: PathLike, values: ArrayLike) -> None:
-    """Draws a square distance matrix as a PNG, grey by rank.
+def write_matrix_picture(path: PathLike, values: ArrayLike, *,
+                         names: Sequence[str] | None = None) -> None:
+    """Draws a square distance matrix as a PNG, grey by rank, with the names of up to 120 rows.
 
     >>> import starguard
-    >>> starguard.write_matrix_picture("matrix.png", [[0, 1], [1, 0]])
+    >>> starguard.write_matrix_picture("matrix.png", [[0, 1], [1, 0]], names=["ball", "box"])
     """
     matrix = np.ascontiguousarray(values, dtype=np.float64)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ArgumentError(f"the matrix must be square, not {matrix.shape}")
+    if names is not None and len(names) != len(matrix):
+        raise ArgumentError(f"{len(names)} names for {len(matrix)} rows")
+    texts = [ffi.new("char[]", name.encode()) for name in names or ()]
     session = Session()
     session.call(lib.starg_matrix_picture_write, session.context,
-                 _arrays.pointer("double[]", matrix), len(matrix), _arrays.path(path))
+                 _arrays.pointer("double[]", matrix), len(matrix),
+                 ffi.new("char *[]", texts) if texts else ffi.NULL, _arrays.path(path))
 
 
 def write_chart(path: PathLike, curves: Mapping[str, tuple[ArrayLike, ArrayLike]], x_label: str,

@@ -181,7 +181,7 @@ static bool is_absent(const starg_field *f, const void *record) {
     if (!(f->flags & STARG_FIELD_OPTIONAL))
         return false;
     if (f->flags & STARG_FIELD_RARE)
-        return is_default(f, record);
+        return is_default(f, record) || (f->kind <= STARG_FIELD_CHOICE && !field_fits(f, record));
     if (f->kind <= STARG_FIELD_CHOICE)
         return !field_fits(f, record);
     if (f->kind != STARG_FIELD_LIST)

@@ -118,6 +118,16 @@ static starg_status check_frames(starg_context *context, const starg_page *p) {
     return STARG_OK;
 }
 
+static starg_status check_ends(starg_context *context, const starg_page *p) {
+    const starg_guards *a = p->ends[0], *b = p->ends[1];
+    if (a == NULL && b == NULL)
+        return STARG_OK;
+    if (p->frame_count > 0 && a != NULL && b != NULL && a->count == b->count)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                      "guards of a morph need its frames, and as many in the last as in the first");
+}
+
 static starg_status check_shapes(starg_context *context, const starg_page *p) {
     for (size_t i = 0; i < p->shape_count * p->shape_count; i++)
         if (!isfinite(p->distances[i]))
@@ -137,6 +147,7 @@ static starg_status check(starg_context *context, const book *b) {
     STARG_TRY(check_proof(context, p));
     STARG_TRY(check_pieces(context, p, &b->surfaces));
     STARG_TRY(check_frames(context, p));
+    STARG_TRY(check_ends(context, p));
     STARG_TRY(check_shapes(context, p));
 done:
     return status;
@@ -170,6 +181,8 @@ static void find_frame(const starg_page *p, frame *f) {
         cover_points(f, p->skeleton->positions, p->skeleton->node_count);
     for (size_t i = 0; i < p->frame_count; i++)
         cover_mesh(f, p->frames[i]);
+    for (int i = 0; i < 2 && p->ends[0] != NULL; i++)
+        cover_points(f, p->ends[i]->positions, p->ends[i]->count);
     for (int k = 0; k < 3; k++) {
         span[k] = f->upper[k] - f->lower[k];
         f->center[k] = f->lower[k] + 0.5 * span[k];
@@ -262,6 +275,9 @@ static void put_frames(FILE *stream, const book *b) {
     for (size_t i = 0; i < b->page->frame_count; i++)
         put_points(stream, "morph-points", i, &b->frame, starg_mesh_vertices(b->page->frames[i]),
                    starg_mesh_vertex_count(first));
+    for (size_t i = 0; i < 2 && b->page->ends[0] != NULL; i++)
+        put_points(stream, "morph-guards", i, &b->frame, b->page->ends[i]->positions,
+                   b->page->ends[i]->count);
 }
 
 static void put_shapes(FILE *stream, const starg_page *p) {
@@ -385,6 +401,8 @@ static json_t *guards_json(book *b) {
         put(b, guards, "cone", json_real(g->options.visibility.cone));
     if (b->page->proof != NULL)
         put(b, guards, "proof", proof_json(b));
+    if (b->page->command != NULL)
+        put(b, guards, "command", json_string(b->page->command));
     return guards;
 }
 
@@ -419,7 +437,9 @@ static json_t *skeleton_json(const starg_skeleton *s) {
 }
 
 static json_t *morph_json(const starg_page *p) {
-    return json_pack("{s:I, s:I, s:I}", "frames", (json_int_t)p->frame_count, "vertices",
+    size_t guards = p->ends[0] != NULL ? p->ends[0]->count : 0;
+    return json_pack("{s:I, s:I, s:I, s:I}", "guards", (json_int_t)guards, "frames",
+                     (json_int_t)p->frame_count, "vertices",
                      (json_int_t)starg_mesh_vertex_count(p->frames[0]), "faces",
                      (json_int_t)starg_mesh_face_count(p->frames[0]));
 }
@@ -438,6 +458,8 @@ static json_t *colors_json(book *b) {
     size_t count = b->page->guards != NULL ? b->page->guards->count : 0;
     if (count < b->surfaces.piece_count)
         count = b->surfaces.piece_count;
+    if (b->page->ends[0] != NULL && count < b->page->ends[0]->count)
+        count = b->page->ends[0]->count;
     json_t *list = json_array();
     for (size_t i = 0; i < count; i++) {
         uint8_t rgb[3];

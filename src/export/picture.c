@@ -7,10 +7,13 @@
 #include "starguard/picture.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "export/features.h"
+#include "export/lettering.h"
 #include "export/png.h"
 #include "export/raster.h"
 #include "geometry/vec3.h"
@@ -157,6 +160,64 @@ static void make_balls(const starg_picture_options *o, const double *centers,
     }
 }
 
+/* ---- numbers ---- */
+
+typedef struct number {
+    double x, y, z; /* of the point; pixels */
+    size_t index;
+} number;
+
+/* Near to far; at equal depth by index. */
+static int by_depth(const void *a, const void *b) {
+    const number *p = a, *q = b;
+    if (p->z != q->z)
+        return p->z < q->z ? 1 : -1;
+    return (p->index > q->index) - (p->index < q->index);
+}
+
+static bool is_free(const number *taken, size_t count, const number *n, double across,
+                    double down) {
+    for (size_t i = 0; i < count; i++)
+        if (fabs(taken[i].x - n->x) < across && fabs(taken[i].y - n->y) < down)
+            return false;
+    return true;
+}
+
+/* Draws the numbers of points to the upper right of their balls, nearer ones first; what would
+ * cover another is left out. */
+static starg_status draw_numbers(starg_context *context, const starg_picture_options *o,
+                                 const starg_raster_scene *scene, uint8_t *rgb) {
+    starg_status status = STARG_OK;
+    const starg_canvas canvas = {.rgb = rgb, .width = o->width, .height = o->height};
+    const double height = fmax(7, 0.0135 * (double)o->height);
+    const starg_lettering style = {.height = height, .ink = {28, 36, 48}, .halo = 0.28 * height};
+    char widest[24];
+    snprintf(widest, sizeof widest, "%zu", o->point_count);
+    const double across = starg_lettering_length(&style, widest), down = 1.4 * height;
+    const double beside = 0.8 * scene->ball_radius / STARG_RASTER_SAMPLES + 0.3 * height;
+    number *numbers = NULL;
+    size_t taken = 0;
+    STARG_NEW(context, STAGE, numbers, o->point_count);
+    for (size_t i = 0; i < o->point_count; i++) {
+        const double *p = scene->balls[i].center;
+        numbers[i] =
+            (number){p[0] / STARG_RASTER_SAMPLES, p[1] / STARG_RASTER_SAMPLES, p[2], .index = i};
+    }
+    qsort(numbers, o->point_count, sizeof *numbers, by_depth);
+    for (size_t i = 0; i < o->point_count; i++) {
+        char text[24];
+        number n = numbers[i];
+        if (!is_free(numbers, taken, &n, across, down))
+            continue;
+        numbers[taken++] = n;
+        snprintf(text, sizeof text, "%zu", n.index);
+        starg_lettering_draw(&canvas, &style, text, n.x + beside, n.y - beside);
+    }
+done:
+    starg_release(context, numbers);
+    return status;
+}
+
 /* Draws into height rows of width x 3 bytes. */
 static starg_status draw(starg_context *context, const starg_mesh *mesh,
                          const starg_picture_options *o, uint8_t *rgb) {
@@ -195,6 +256,8 @@ static starg_status draw(starg_context *context, const starg_mesh *mesh,
                                 .ball_count = o->point_count,
                                 .ball_radius = o->point_radius * f.scale};
     STARG_TRY(starg_raster_draw(context, &scene, rgb));
+    if (o->point_numbers)
+        STARG_TRY(draw_numbers(context, o, &scene, rgb));
 done:
     starg_features_free(context, &features);
     starg_release(context, positions);

@@ -37,7 +37,7 @@ static void set_defaults(starg_guard_options *o, size_t vertices) {
     if (o->max_nodes == STARG_DEFAULT_NODES)
         o->max_nodes = o->method == STARG_GUARD_PILP && !chooses_exactly(o) ? 30 : 100000;
     if (o->step == STARG_DEFAULT_STEP)
-        o->step = proxy_step(vertices, o->coarsest);
+        o->step = starg_guard_default_step(vertices, o->coarsest);
 }
 
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
@@ -136,13 +136,17 @@ done:
     return status;
 }
 
-static starg_status fail_without_candidates(starg_context *context, bool time_limited) {
+static starg_status fail_without_candidates(const guard_problem *problem, bool time_limited) {
     if (time_limited)
-        return starg_fail(context, STARG_ERROR_TIME, STAGE,
+        return starg_fail(problem->context, STARG_ERROR_TIME, STAGE,
                           "time limit reached before any candidate was evaluated; allow more time");
-    return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                      "no candidate inside the solid sees anything; try a smaller clearance, a "
-                      "larger range or other candidates");
+    return starg_fail(problem->context, STARG_ERROR_MESH, STAGE,
+                      problem->solid->scene
+                          ? "no candidate in the free space sees anything; try wider limits of "
+                            "where guards may stand (box, distances, faces), a smaller clearance, "
+                            "a larger range or other candidates"
+                          : "no candidate inside the solid sees anything; try a smaller clearance, "
+                            "a larger range or other candidates");
 }
 
 static starg_status find_pool(const guard_problem *problem, const guard_detail *detail,
@@ -151,8 +155,7 @@ static starg_status find_pool(const guard_problem *problem, const guard_detail *
     STARG_TRY(find_candidates(problem, detail, out));
     STARG_TRY(pool_augment(out, &problem->weights));
     if (pool_count(out) == 0)
-        status =
-            fail_without_candidates(problem->context, detail->time_limited || out->time_limited);
+        status = fail_without_candidates(problem, detail->time_limited || out->time_limited);
 done:
     return status;
 }
@@ -379,6 +382,8 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     STARG_TRY(baseline_guards(&problem, &outcome.pool, &outcome.selection));
     STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
+    if (options != NULL) /* as asked for: the file names it only then */
+        (*out)->options.max_nodes = options->max_nodes;
     warn_of_shells(&problem, *out);
 done:
     outcome_free(context, &outcome);

@@ -10,6 +10,7 @@
 /* ---- options ---- */
 
 #define OPTION(NAME) FIELD_MEMBER(starg_guard_options, NAME)
+#define USUALLY_NOT  .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE
 
 static const char *const METHODS[] = {"ilp", "greedy", "pilp", NULL};
 static const char *const CANDIDATES[] = {"medial", "interior", "given", "skeleton", NULL};
@@ -99,8 +100,10 @@ static const starg_field OPTIONS[] = {
      .high = 1e100,
      .value = "D",
      .help = "Minimum distance of guards from the boundary, in model units."},
-    {.option = "max-nodes",
+    {.key = "max_nodes",
+     .option = "max-nodes",
      .kind = STARG_FIELD_COUNT,
+     USUALLY_NOT,
      OPTION(max_nodes),
      .most = UINT32_MAX,
      .initial = STARG_DEFAULT_NODES,
@@ -150,8 +153,10 @@ static const starg_field OPTIONS[] = {
      .applies = has_levels,
      .initial = true,
      .help = "pilp: skip refinement, the search for fewer guards beside the candidates."},
-    {.option = "refine-lines",
+    {.key = "refine_lines",
+     .option = "refine-lines",
      .kind = STARG_FIELD_COUNT,
+     USUALLY_NOT,
      OPTION(refine_lines),
      .most = UINT32_MAX,
      .initial = STARG_DEFAULT_LINES,
@@ -160,14 +165,18 @@ static const starg_field OPTIONS[] = {
              "what takes as long.",
      .default_text =
          "400,000, 70 for each face, 40,000 for each guard, and 5 for each face and guard"},
-    {.option = "prove",
+    {.key = "prove",
+     .option = "prove",
      .kind = STARG_FIELD_FLAG,
+     USUALLY_NOT,
      OPTION(prove),
      .help = "Search fewer guards at every point of the solid, and prove how many are needed, "
              "wherever they stand (with --max-guards: how much so many could see). With candidates "
              "from a file the fewest of these are chosen."},
-    {.option = "prove-work",
+    {.key = "prove_work",
+     .option = "prove-work",
      .kind = STARG_FIELD_COUNT,
+     USUALLY_NOT,
      OPTION(prove_work),
      .most = UINT64_MAX >> 1,
      .initial = 90000000,
@@ -433,8 +442,6 @@ static const starg_field TARGETS[] = {
 static const starg_fields TARGETS_TABLE = {
     .columns = true, .name = "targets", .form = STARG_FORM_TUPLE, FIELD_ROWS(TARGETS)};
 
-#define USUALLY_NOT .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE
-
 static const starg_field SCENE[] = {
     {.key = "orientation",
      .kind = STARG_FIELD_CHOICE,
@@ -555,6 +562,13 @@ static const starg_field FILE_ROWS[] = {
      .offset = offsetof(starg_guards, options),
      .of = &OPTIONS_TABLE,
      .help = "The options used."},
+    {.key = "seed",
+     .kind = STARG_FIELD_COUNT,
+     USUALLY_NOT,
+     RESULT(seed),
+     .most = UINT64_MAX >> 1,
+     .initial = 1,
+     .help = "The seed of random numbers; absent if 1, and above 2^63 - 1."},
     {.key = "scene",
      .kind = STARG_FIELD_RECORD,
      USUALLY_NOT,

@@ -220,6 +220,7 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->vertex_count = starg_space_model_vertices(problem->solid);
     result->face_count = starg_space_model_faces(problem->solid);
     result->options = *problem->options;
+    result->seed = problem->context->seed;
     result->options.points = result->options.directions = result->options.ups = NULL;
     result->options.visibility.directions = result->options.visibility.ups = NULL;
     result->candidate_count = pool_count(&outcome->pool);

@@ -4,9 +4,11 @@
  * levels. */
 #include "guard/proxy.h"
 
+#include "starguard/guard.h"
+
 enum { STEP = 10000, LARGE = 40000, MANY = 100000, ENOUGH = 25000, COARSEST = 5000 };
 
-size_t proxy_step(size_t vertices, size_t coarsest) {
+size_t starg_guard_default_step(size_t vertices, size_t coarsest) {
     return vertices > coarsest && vertices - coarsest > LARGE ? STARG_QUARTERS : STEP;
 }
 
@@ -25,7 +27,7 @@ starg_status proxy_of_levels(starg_context *context, const starg_levels *levels,
 starg_status proxy_make(starg_context *context, const starg_solid *solid, starg_solid **out) {
     starg_status status = STARG_OK;
     starg_levels *levels = NULL;
-    size_t step = proxy_step(solid->mesh->vertex_count, COARSEST);
+    size_t step = starg_guard_default_step(solid->mesh->vertex_count, COARSEST);
     STARG_TRY(starg_mesh_levels(context, solid->mesh, COARSEST, step, NULL, &levels));
     STARG_TRY(proxy_of_levels(context, levels, out));
 done:

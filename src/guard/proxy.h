@@ -6,10 +6,6 @@
 #include "mesh/solid.h"
 #include "starguard/simplify.h"
 
-/* The default step between levels of detail: 10,000 vertices as in the paper, STARG_QUARTERS for
- * large models. */
-size_t proxy_step(size_t vertices, size_t coarsest);
-
 /* Is the model large enough to use a level of detail instead? */
 bool proxy_wanted(const starg_solid *solid);
 

@@ -4,7 +4,8 @@
  *
  * Stages:
  *   1. Candidates, and points above the faces that these do not see (guard/augment.c): what one of
- *      them sees is seen.
+ *      them sees is seen. A face within matter, or with matter before it, is invisible
+ * (mesh/buried.c).
  *   2. For the other faces, the free space is cut into boxes. A test finds what is certainly hidden
  *      from a box (visibility/box.h); a child is tested only for what its parent leaves open, and a
  *      box with nothing open is not cut. The open faces are also tested from the centre of each
@@ -21,6 +22,7 @@
 #include "core/parallel.h"
 #include "guard/pool.h"
 #include "guard/proxy.h"
+#include "mesh/buried.h"
 #include "visibility/box.h"
 #include "visibility/scene.h"
 
@@ -42,8 +44,9 @@ typedef struct unseen_search {
     visibility_scene *points;
     box_scene *boxes;
     uint32_t *rank_of;
-    STARG_ARRAY(uint32_t) list; /* faces that no candidate sees */
-    uint64_t *open;             /* bits of the list: not seen yet */
+    STARG_ARRAY(uint32_t) list;   /* faces that no candidate sees */
+    STARG_ARRAY(uint32_t) buried; /* those within matter, which are not in the list */
+    uint64_t *open;               /* bits of the list: not seen yet */
     STARG_ARRAY(unseen_box) leaves;
     unseen_box *parts; /* of a batch: two for each leaf that is cut */
     uint32_t *cut;     /* the leaves being cut */
@@ -69,9 +72,19 @@ static starg_status look_from_candidates(unseen_search *s, const starg_guard_opt
     STARG_TRY(candidates_find(s->context, &shape, STARG_CANDIDATES_INTERIOR, CANDIDATES, &points));
     STARG_TRY(pool_add(&pool, &points));
     STARG_TRY(pool_augment(&pool, &weights));
-    for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++)
-        if (solid_is_target(s->solid, false, f) && !starg_bit_test(pool.coverable, f))
+    if (candidates_count(&points) == 0 && pool_count(&pool) == 0)
+        status = starg_fail(s->context, STARG_ERROR_MESH, STAGE,
+                            "no place was found where anybody may stand; try wider limits (box, "
+                            "distances, clearance)");
+    STARG_TRY(status);
+    for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++) {
+        if (!solid_is_target(s->solid, false, f) || starg_bit_test(pool.coverable, f))
+            continue;
+        if (solid_hides(s->solid, f))
+            STARG_PUSH(s->context, STAGE, &s->buried, f);
+        else
             STARG_PUSH(s->context, STAGE, &s->list, f);
+    }
 done:
     pool_free(&pool);
     candidates_free(s->context, &points);
@@ -306,6 +319,7 @@ static void end(unseen_search *s) {
         starg_release(context, s->parts[i].open);
     STARG_ARRAY_FREE(context, &s->leaves);
     STARG_ARRAY_FREE(context, &s->list);
+    STARG_ARRAY_FREE(context, &s->buried);
     starg_release(context, s->rank_of);
     starg_release(context, s->open);
     starg_release(context, s->parts);
@@ -321,6 +335,8 @@ static starg_status report(const unseen_search *s, uint8_t **out) {
     STARG_NEW_ZERO(s->context, STAGE, *out, faces);
     for (size_t f = 0; f < faces; f++)
         (*out)[f] = solid_is_target(s->solid, false, f) ? STARG_FACE_SEEN : STARG_FACE_IGNORED;
+    for (size_t i = 0; i < s->buried.count; i++)
+        (*out)[s->buried.data[i]] = STARG_FACE_UNSEEN;
     for (size_t i = 0; i < s->list.count; i++) {
         bool open = false;
         for (size_t k = 0; k < s->leaves.count && !open; k++)

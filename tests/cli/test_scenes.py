@@ -247,6 +247,10 @@ class Scenes(Case):
         found = self.run_json("visible", "crate.off", "--outside", "--standoff", "0.1,2", "--obstacles",
                               "ground.off", "--unseen", "--work", "50000")
         self.assertEqual(len(found["unseen"]) + len(found["undecided"]), 8)
+        self.sample("statue", 500)
+        found = self.run_json("visible", "statue.off", "--outside", "--unseen", "--work", "1")
+        self.assertEqual(found["undecided"], [])  # where the figure stands in its plinth
+        self.assertGreater(len(found["unseen"]), 20)
 
     def test_export(self):
         """Cameras with the right field of view; results of scenes can be shown."""

@@ -108,7 +108,7 @@ class Schemas(support.Case):
                 self.assertFalse(validator.is_valid(wrong), f"{name}: {path} may be missing")
 
     OPTIONAL = {"levels", "flattest_given", "direction", "area_bound", "coarsest", "step",
-                "significance", "refine",
+                "significance", "refine", "prove", "prove_work", "max_nodes", "refine_lines", "seed",
                 "peak_resident_bytes", "report", "map", "letter", "separate", "cells", "witnesses",
                 "work", "landmark_pairs", "directions", "target_directions", "overlay_points",
                 "overlay_faces", "overlay", "lower_bound_everywhere", "optimal_everywhere",

@@ -4,6 +4,7 @@ import base64
 import json
 import os
 import re
+import shlex
 
 import support
 from support import Case, TETRAHEDRON
@@ -67,6 +68,57 @@ class View(Case):
         for i, guard in enumerate(guards["guards"]):
             bits = sum(bin(byte).count("1") for byte in seen[i * row:(i + 1) * row])
             self.assertEqual(bits, guard["faces"])
+
+    def test_a_morph_has_its_guards(self):
+        self.sample("l-room", 500, "a.off")
+        self.run_text("morph", "a.off", "a.off", "--frames", "2", "--guards", "-o", "frames")
+        self.run_text("view", "frames", "-o", "page.html")
+        page = self.read("page.html")
+        count = len(json.loads(self.read("frames/guards_a.json"))["guards"])
+        self.assertEqual(data_of(page)["morph"]["guards"], count)
+        for end in "01":
+            self.assertEqual(len(block_of(page, f"morph-guards-{end}")), 12 * count)
+        self.write("frames/guards_b.json", self.read("frames/guards_a.json").replace(
+            b'"guards": [', b'"guards": [\n    {"position": [1, 1, 1], "faces": 1, "level": 0},', 1))
+        _, err = self.run_text("view", "frames", "-o", "page.html", status=2)
+        self.assertIn("guards", err)
+        os.remove(self.path("frames/guards_b.json"))
+        self.run_text("view", "frames", "-o", "page.html")
+        self.assertEqual(data_of(self.read("page.html"))["morph"]["guards"], 0)
+
+    def command_of(self, result):
+        """The words of the command in the page of a result."""
+        self.run_text("view", result, "-o", "page.html")
+        return shlex.split(data_of(self.read("page.html"))["guards"]["command"])
+
+    def test_the_command_makes_the_same_guards(self):
+        self.sample("labyrinth", 500, "it's a maze.off")
+        plain = ["starguard", "guard", "it's a maze.off", "-o", "g.json"]
+        for options in ([], ["--prove", "--seed", "7", "--prove-work", "300000"],
+                        ["--method", "greedy", "--candidates", "interior", "--count", "77"],
+                        ["--no-refine", "--coarsest", "100", "--step", "60", "--significance", "0.3"],
+                        ["--method", "ilp", "--max-nodes", "3", "--visibility", "sweep"],
+                        ["--cone", "120", "--range", "3", "--incidence", "80.1", "--no-refine",
+                         "--count", "20"],
+                        ["--outside", "--standoff", "0.1,0.30000000000000004", "--fov", "90,60",
+                         "--count", "30", "--see", "0-20,40,50-55"],
+                        ["--over", "0-800", "--height", "0.5", "--up", "1,0,0", "--count", "50",
+                         "--within", "6,0,0,0,25,25", "--ignore", "3"],
+                        ["--mount", "0-100,200", "--clearance", "0.1", "--count", "20"]):
+            with self.subTest(options=options):
+                self.run_text("guard", "it's a maze.off", "-o", "g.json", *options)
+                first = self.read("g.json")
+                words = self.command_of("g.json")
+                self.assertEqual(words[:5], plain)
+                self.assertTrue(options or words == plain, words)
+                self.run_text(*words[1:])
+                self.assertEqual(self.read("g.json"), first, words)
+
+    def test_a_command_names_files_that_are_not_known(self):
+        self.sample("l-room", 500, "room.off")
+        self.write("places.txt", "0.2 0.2 0.2\n0.3 0.2 0.2\n")
+        self.run_text("guard", "room.off", "-o", "g.json", "--candidates", "places.txt")
+        self.assertIn("CANDIDATES", self.command_of("g.json"))
 
     def test_the_same_bytes(self):
         self.results()

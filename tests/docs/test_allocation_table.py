@@ -38,7 +38,7 @@ WITHOUT = {
     "starg_ranks_serve": ELSEWHERE, "starg_database_ranks_serve": ELSEWHERE,
     "starg_ranks_release": ELSEWHERE,
     "starg_cone_cosine": ARITHMETIC, "starg_frustum": ARITHMETIC,
-    "starg_guards_rotation": ARITHMETIC, "starg_incidence_cosine": ARITHMETIC, "starg_descriptor_direction": ARITHMETIC,
+    "starg_guard_default_step": ARITHMETIC, "starg_guards_rotation": ARITHMETIC, "starg_incidence_cosine": ARITHMETIC, "starg_descriptor_direction": ARITHMETIC,
     "starg_distinct_color": ARITHMETIC, "starg_map_positions": ARITHMETIC,
     "starg_overlay_positions": ARITHMETIC,
     "starg_descriptor_recognized": ARITHMETIC, "starg_tetmesh_recognized": ARITHMETIC,

@@ -189,7 +189,7 @@ static starg_status looked_at(starg_context *context) {
     FAILING(starg_picture_write, "", in.room, &picture, failing_output("p.png"));
     FAILING_BY(starg_picture_encode, "", picture_encode(context, &picture));
     FAILING(starg_picture_sheet_write, "", both, 1, 2, &picture, failing_output("s.png"));
-    FAILING(starg_matrix_picture_write, "", values, 2, failing_output("m.png"));
+    FAILING(starg_matrix_picture_write, "", values, 2, NULL, failing_output("m.png"));
     FAILING(starg_chart_write, "", &curve, 1, "x", "y", failing_output("c.svg"));
     SCENE(starg_scene_write, "glb");
     SCENE(starg_scene_write, "vtu");

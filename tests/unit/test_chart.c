@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "core/rng.h"
+#include "export/lettering.h"
 #include "starguard/picture.h"
 #include "support.h"
 
@@ -88,7 +89,7 @@ static void matrix_shows_ranks(void **state) {
     for (size_t i = 0; i < ROWS * ROWS; i++)
         values[i] = i / ROWS == i % ROWS ? 0 : exp(20 * starg_rng_unit(&rng));
     snprintf(path, sizeof path, "%s/m.png", folder);
-    test_ok(context, starg_matrix_picture_write(context, values, ROWS, path));
+    test_ok(context, starg_matrix_picture_write(context, values, ROWS, NULL, path));
     uint8_t *png = read_file("m.png", &size), *grey = decode(png, SIDE);
     uint8_t darkest = 255, lightest = 0;
     for (size_t i = 0; i < ROWS * ROWS; i++) {
@@ -108,6 +109,102 @@ static void matrix_shows_ranks(void **state) {
     test_context_free(context);
 }
 
+/* The ink of a text on a white square, in which it begins at the left of the middle or, rising, at
+ * the bottom of it. */
+enum { INK_SIDE = 61 };
+static void write_ink(const char *text, bool rising, uint8_t ink[INK_SIDE * INK_SIDE]) {
+    static uint8_t rgb[INK_SIDE * INK_SIDE * 3];
+    const starg_canvas canvas = {.rgb = rgb, .width = INK_SIDE, .height = INK_SIDE};
+    const starg_lettering style = {.height = 12, .rising = rising};
+    memset(rgb, 255, sizeof rgb);
+    starg_lettering_draw(&canvas, &style, text, rising ? 30.5 : 5, rising ? 56 : 30.5);
+    for (size_t i = 0; i < (size_t)INK_SIDE * INK_SIDE; i++)
+        ink[i] = (uint8_t)(255 - rgb[3 * i]);
+}
+
+/* No two characters look alike, none leaves its place, and a rising one is turned by a right angle.
+ */
+static void letters_differ_and_turn(void **state) {
+    (void)state;
+    enum { FIRST = '!', LAST = '~' };
+    static uint8_t all[LAST - FIRST + 1][INK_SIDE * INK_SIDE], turned[INK_SIDE * INK_SIDE];
+    const starg_lettering style = {.height = 12};
+    for (int c = FIRST; c <= LAST; c++) {
+        const char text[2] = {(char)c, '\0'};
+        uint8_t *ink = all[c - FIRST];
+        size_t right = 5 + (size_t)starg_lettering_length(&style, text), count = 0;
+        write_ink(text, false, ink);
+        write_ink(text, true, turned);
+        for (size_t i = 0; i < (size_t)INK_SIDE * INK_SIDE; i++) {
+            size_t x = i % INK_SIDE, y = i / INK_SIDE;
+            count += ink[i] > 127;
+            assert_true(ink[i] == 0 || (x >= 3 && x <= right && y >= 22 && y <= 43));
+            assert_true(abs(ink[i] - turned[(INK_SIDE - 1 - x) * INK_SIDE + y]) <= 1);
+        }
+        assert_true(count > 0);
+        for (int d = FIRST; d < c; d++) {
+            size_t unlike = 0;
+            for (size_t i = 0; i < (size_t)INK_SIDE * INK_SIDE; i++)
+                unlike += abs(ink[i] - all[d - FIRST][i]) > 127;
+            assert_true(unlike > 1);
+        }
+    }
+}
+
+/* A text may leave its canvas on every side; characters outside of ASCII are boxes, one each. */
+static void letters_may_leave_the_canvas(void **state) {
+    (void)state;
+    uint8_t *rgb = malloc(3 * 9 * 7); /* a sanitizer watches its ends */
+    assert_non_null(rgb);
+    memset(rgb, 255, 3 * 9 * 7);
+    const starg_canvas canvas = {.rgb = rgb, .width = 9, .height = 7};
+    for (int rising = 0; rising < 2; rising++) {
+        const starg_lettering style = {.height = 12, .rising = rising, .halo = 3};
+        for (double x = -40; x < 40; x += 7)
+            for (double y = -40; y < 40; y += 7)
+                starg_lettering_draw(&canvas, &style, "W_\xc3\xa4 9", x, y);
+        assert_true(starg_lettering_length(&style, "\xc3\xa4") ==
+                    starg_lettering_length(&style, "a"));
+    }
+    free(rgb);
+}
+
+/* With names the cells move to the lower right, and each row and column has a name, of which a long
+ * one is shortened. */
+static void matrix_has_names(void **state) {
+    (void)state;
+    enum { ROWS = 3, CELL = 24 };
+    static const char *const names[ROWS] = {
+        "cat.off", "a-name-of-a-model-that-is-by-far-longer-than-is-good-for-a-picture.off", "i"};
+    starg_context *context = test_context(1);
+    const double values[ROWS * ROWS] = {0, 1, 2, 1, 0, 3, 2, 3, 0};
+    char path[256];
+    size_t size, dark[2 * ROWS] = {0};
+    snprintf(path, sizeof path, "%s/n.png", folder);
+    test_ok(context, starg_matrix_picture_write(context, values, ROWS, names, path));
+    uint8_t *png = read_file("n.png", &size);
+    size_t side = big_endian(png + 16), frame = side - (size_t)ROWS * CELL;
+    uint8_t *grey = decode(png, side);
+    assert_true(frame > 150 && frame < 350); /* forty characters */
+    for (size_t i = 0; i < ROWS * ROWS; i++) {
+        size_t y = frame + i / ROWS * CELL, x = frame + i % ROWS * CELL;
+        assert_int_equal(grey[y * side + x], grey[(y + CELL - 1) * side + x + CELL - 1]);
+        assert_true((grey[y * side + x] == 0) == (i / ROWS == i % ROWS));
+    }
+    for (size_t i = 0; i < frame; i++)
+        for (size_t k = 0; k < (size_t)ROWS * CELL; k++) {
+            dark[k / CELL] += grey[(frame + k) * side + i] < 128;
+            dark[ROWS + k / CELL] += grey[i * side + frame + k] < 128;
+        }
+    for (int k = 0; k < 2; k++) {
+        const size_t *d = dark + (ptrdiff_t)k * ROWS;
+        assert_true(d[1] > 3 * d[0] && d[0] > 3 * d[2] && d[2] > 0);
+    }
+    free(grey);
+    free(png);
+    test_context_free(context);
+}
+
 static void matrix_refuses(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -115,13 +212,14 @@ static void matrix_refuses(void **state) {
     char path[256];
     size_t size;
     snprintf(path, sizeof path, "%s/r.png", folder);
-    assert_int_equal(starg_matrix_picture_write(context, bad, 2, path), STARG_ERROR_ARGUMENT);
-    assert_int_equal(starg_matrix_picture_write(context, bad, 0, path), STARG_ERROR_ARGUMENT);
-    assert_int_equal(starg_matrix_picture_write(context, bad, 8193, path), STARG_ERROR_ARGUMENT);
+    assert_int_equal(starg_matrix_picture_write(context, bad, 2, NULL, path), STARG_ERROR_ARGUMENT);
+    assert_int_equal(starg_matrix_picture_write(context, bad, 0, NULL, path), STARG_ERROR_ARGUMENT);
+    assert_int_equal(starg_matrix_picture_write(context, bad, 8193, NULL, path),
+                     STARG_ERROR_ARGUMENT);
     assert_int_equal(access(path, F_OK), -1);
-    test_ok(context, starg_matrix_picture_write(context, same, 2, path));
+    test_ok(context, starg_matrix_picture_write(context, same, 2, NULL, path));
     free(read_file("r.png", &size));
-    assert_int_equal(starg_matrix_picture_write(context, same, 2, "/nowhere/r.png"),
+    assert_int_equal(starg_matrix_picture_write(context, same, 2, NULL, "/nowhere/r.png"),
                      STARG_ERROR_WRITE);
     test_context_free(context);
 }
@@ -158,8 +256,9 @@ static void chart_has_its_curves(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(matrix_shows_ranks),
-                                       cmocka_unit_test(matrix_refuses),
-                                       cmocka_unit_test(chart_has_its_curves)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(matrix_shows_ranks),      cmocka_unit_test(matrix_has_names),
+        cmocka_unit_test(letters_differ_and_turn), cmocka_unit_test(letters_may_leave_the_canvas),
+        cmocka_unit_test(matrix_refuses),          cmocka_unit_test(chart_has_its_curves)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

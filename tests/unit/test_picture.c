@@ -266,6 +266,49 @@ static void balls_inside_show_through_but_not_through_opaque_walls(void **state)
     test_context_free(context);
 }
 
+/* Numbers change nothing but a place at the upper right of each point, and of two points in one
+ * direction only the nearer one has its number. */
+static void numbers_stand_beside_points(void **state) {
+    (void)state;
+    enum { BALL = 7, LETTERS = 24 }; /* pixels, with room */
+    starg_context *context = test_context(2);
+    starg_mesh *mesh = make_cube(context, 1, 0);
+    const double points[9] = {-0.6, 0.5, 0, 0.5, -0.5, -0.5, 0.5, -0.5, 0.5}; /* x, y, z */
+    starg_picture_options options = small_options();
+    options.width = options.height = 400;
+    options.points = points;
+    options.point_count = 3;
+    image without = draw(context, mesh, &options);
+    options.point_numbers = true;
+    image with = draw(context, mesh, &options);
+    options.points = points + 6; /* the nearest alone, as number 0 */
+    options.point_count = 1;
+    image other = draw(context, mesh, &options);
+    size_t changed[2] = {0}, unlike = 0;
+    for (size_t p = 0; p < with.width * with.height; p++) {
+        if (memcmp(with.rgb + 3 * p, without.rgb + 3 * p, 3) == 0)
+            continue;
+        double x = (double)(p % 400), y = (double)(p / 400);
+        bool found = false;
+        for (int i = 0; i < 2; i++) { /* a cube of side 2 with balls takes 0.94 of 400 pixels */
+            double right = x - 200 - 180.5 * points[3 * i],
+                   up = 200 - 180.5 * points[3 * i + 1] - y;
+            bool here = right > 0 && right < BALL + LETTERS && up > 0 && up < BALL + LETTERS;
+            changed[i] += here;
+            found |= here;
+        }
+        assert_true(found);
+        unlike += memcmp(with.rgb + 3 * p, other.rgb + 3 * p, 3) != 0 && x > 200;
+    }
+    assert_true(changed[0] > 20 && changed[1] > 20);
+    assert_true(unlike > 5); /* a 2, not a 0 */
+    free(with.rgb);
+    free(without.rgb);
+    free(other.rgb);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
 static void the_more_opaque_the_darker(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -538,6 +581,7 @@ int main(void) {
         cmocka_unit_test(a_face_on_cube_is_a_square),
         cmocka_unit_test(the_camera_stands_where_it_should),
         cmocka_unit_test(balls_inside_show_through_but_not_through_opaque_walls),
+        cmocka_unit_test(numbers_stand_beside_points),
         cmocka_unit_test(the_more_opaque_the_darker),
         cmocka_unit_test(flat_faces_have_no_seams),
         cmocka_unit_test(same_bytes_for_any_thread_count),

@@ -2,6 +2,7 @@
 /* The level of detail used for the medial axis of a large model. */
 #include "guard/proxy.h"
 #include "models.h"
+#include "starguard/guard.h"
 
 enum { MESHES = 4 };
 
@@ -39,12 +40,12 @@ static void test_choice(void **state) {
 
 static void test_step(void **state) {
     (void)state;
-    assert_int_equal(proxy_step(3000, 5000), 10000);
-    assert_int_equal(proxy_step(45000, 5000), 10000);
-    assert_true(proxy_step(45001, 5000) == STARG_QUARTERS);
-    assert_true(proxy_step(1005000, 5000) == STARG_QUARTERS);
-    assert_int_equal(proxy_step(1005000, 1000000), 10000);
-    assert_int_equal(proxy_step(SIZE_MAX, SIZE_MAX), 10000);
+    assert_int_equal(starg_guard_default_step(3000, 5000), 10000);
+    assert_int_equal(starg_guard_default_step(45000, 5000), 10000);
+    assert_true(starg_guard_default_step(45001, 5000) == STARG_QUARTERS);
+    assert_true(starg_guard_default_step(1005000, 5000) == STARG_QUARTERS);
+    assert_int_equal(starg_guard_default_step(1005000, 1000000), 10000);
+    assert_int_equal(starg_guard_default_step(SIZE_MAX, SIZE_MAX), 10000);
 }
 
 int main(void) {

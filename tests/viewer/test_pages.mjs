@@ -330,6 +330,13 @@ test("no view is wider than a narrow window, and a tap picks", async () => {
                         `${name}: ${widths}`,
                     );
                 }
+                const table = page.locator("#matrix canvas");
+                const [room, shown] = [page.locator("#matrix"), table].map((at) => at.boundingBox());
+                const [outer, inner] = [await room, await shown];
+                assert.ok(inner.x >= outer.x && inner.x + inner.width <= outer.x + outer.width);
+                await table.tap({ position: { x: inner.width - 4, y: 0.6 * inner.height } });
+                assert.match(await said(page), / and .*: distance /);
+                assert.ok(await page.getByText("The picked cell").isVisible());
                 await openTab(page, "Guards");
                 await settle(page);
                 const { x, y } = await placeOfGuard(page, 0);
