@@ -35,10 +35,10 @@
 static const char STAGE[] = "join";
 
 enum {
-    GROUP_MOST = 6,     /* pieces grown anew at a time, from 2 on                           */
-    IDLE_MOST = 60,     /* groups in a row that saved nothing: then no more                 */
-    WORK_MOST = 200000, /* tetrahedra of all groups, about 6 seconds                        */
-    PASSES = 40         /* as many tetrahedra looked at once take as long as one of a group */
+    GROUP_MOST = 4,     /* pieces grown anew at a time, from 2 on                           */
+    IDLE_MOST = 150,    /* groups in a row that saved nothing: then no more                 */
+    WORK_MOST = 600000, /* tetrahedra of all groups, about 8 seconds                        */
+    PASSES = 10         /* as many tetrahedra looked at once take as long as one of a group */
 };
 
 #define LAST UINT32_MAX /* ends a list */

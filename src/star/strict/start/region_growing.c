@@ -39,6 +39,7 @@ static const char STAGE[] = "grow regions";
 enum {
     CLIMBERS = 16,    /* guards that start and climb                                       */
     CLIMB_STEPS = 24, /* most steps of each                                                */
+    STEPS_AGAIN = 6,  /* where a group is grown again: more groups save more than steps    */
     EFFORT = 4000000  /* tetrahedra that may be looked at for one component, about          */
 };
 
@@ -242,9 +243,10 @@ static bool start(const growing *c, size_t item, starg_rng *rng, climber *out) {
 
 static size_t steps_for(const growing *c) {
     size_t steps = EFFORT / CLIMBERS / c->members.count;
+    size_t most = c->round > 0 ? STEPS_AGAIN : CLIMB_STEPS;
     if (starg_time_is_over(c->context))
         return 0;
-    return steps > CLIMB_STEPS ? CLIMB_STEPS : steps;
+    return steps > most ? most : steps;
 }
 
 static starg_status climb(starg_context *context, void *shared, void *scratch, size_t item) {
