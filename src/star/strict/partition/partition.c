@@ -32,11 +32,11 @@ void partition_to_unit(const partition *p, const double point[3], double out[3])
         out[k] = ldexp(out[k], -p->exponents[k]);
 }
 
-double partition_unit_length(const partition *p, double length) {
+int partition_exponent(const partition *p) {
     int largest = p->exponents[0];
     for (int k = 1; k < 3; k++)
         largest = p->exponents[k] > largest ? p->exponents[k] : largest;
-    return ldexp(length, -largest);
+    return largest;
 }
 
 void partition_from_unit(const partition *p, const double unit[3], double out[3]) {
@@ -351,4 +351,18 @@ bool partition_certify(const partition *p, const uint32_t *triangles, size_t cou
                        const double guard[3]) {
     const kernel_faces surface = {p->points.data, triangles, count};
     return kernel_sees_all(&surface, guard) && kernel_winding(&surface, guard) == 1;
+}
+
+starg_status partition_certify_all(const partition *p, bool *done) {
+    starg_status status = STARG_OK;
+    partition_triangles triangles = {0};
+    *done = true;
+    for (uint32_t i = 0; i < p->pieces.count && *done; i++) {
+        triangles.count = 0;
+        STARG_TRY(partition_gather(p, i, &triangles));
+        *done = partition_certify(p, triangles.data, triangles.count / 3, p->pieces.data[i].guard);
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
 }

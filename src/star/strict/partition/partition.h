@@ -79,8 +79,8 @@ static inline const double *partition_unit(const partition *p, uint32_t vertex) 
     return p->unit.data + 3 * (size_t)vertex;
 }
 
-/* At most what any segment of this length has. */
-double partition_unit_length(const partition *p, double length);
+/* The largest of the exponents. */
+int partition_exponent(const partition *p);
 void partition_to_unit(const partition *p, const double point[3], double out[3]);
 void partition_from_unit(const partition *p, const double unit[3], double out[3]);
 
@@ -136,5 +136,8 @@ void partition_renumber(partition *p, uint32_t from, uint32_t to);
  * Exact. */
 bool partition_certify(const partition *p, const uint32_t *triangles, size_t count,
                        const double guard[3]);
+
+/* The same for every piece of a partition with an index. Errors: MEMORY. */
+starg_status partition_certify_all(const partition *p, bool *done);
 
 #endif
