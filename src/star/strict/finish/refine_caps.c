@@ -13,8 +13,8 @@
  * round the cap is triangulated anew (star/strict/partition/cap.c). Triangles grow in proportion
  * from short edges to long ones, so that few vertices are enough.
  *
- * Only caps whose tetrahedra have small dihedral angles are refined, and of all rounds the one whose
- * angles lack least is taken.
+ * Only caps whose tetrahedra have small dihedral angles are refined, and of all rounds the one
+ * whose angles lack least is taken.
  *
  * Invariants: those of the partition, by a certificate for every piece; edges and vertices that
  * other facets have stay. Cost: some triangulations for each cap that is refined, and for each
