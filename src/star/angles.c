@@ -45,13 +45,11 @@ static void normal_of(const double p[4][3], int i, double out[3]) {
     vec3_cross(u, v, out);
 }
 
-/* In degrees. */
-static double smallest_dihedral(const starg_tetmesh *mesh, size_t tetrahedron, int exponent) {
-    double p[4][3], normal[4][3], least = 180;
-    gather(mesh, tetrahedron, exponent, p);
+double angles_smallest(const double p[4][3]) {
+    double normal[4][3], least = 180;
     double determinant = vec3_triple(p[1], p[2], p[3]);
     for (int i = 0; i < 4; i++)
-        normal_of((const double(*)[3])p, i, normal[i]);
+        normal_of(p, i, normal[i]);
     for (int i = 0; i < 4; i++)
         for (int k = i + 1; k < 4; k++) {
             /* the edge that the faces opposite of i and k share joins the other two corners */
@@ -60,6 +58,12 @@ static double smallest_dihedral(const starg_tetmesh *mesh, size_t tetrahedron, i
             least = fmin(least, DEGREES * atan2(sine, -vec3_dot(normal[i], normal[k])));
         }
     return least;
+}
+
+static double smallest_dihedral(const starg_tetmesh *mesh, size_t tetrahedron, int exponent) {
+    double p[4][3];
+    gather(mesh, tetrahedron, exponent, p);
+    return angles_smallest((const double(*)[3])p);
 }
 
 static int ascending(const void *a, const void *b) {

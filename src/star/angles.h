@@ -5,6 +5,9 @@
 
 #include "starguard/decompose.h"
 
+/* The smallest dihedral angle of a tetrahedron, in degrees. The first corner is the origin. */
+double angles_smallest(const double corners[4][3]);
+
 /* Sets smallest_angle and median_angle. Errors: MEMORY. */
 starg_status angles_measure(starg_context *context, starg_decomposition *d);
 

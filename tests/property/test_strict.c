@@ -247,6 +247,35 @@ static void test_scales(void **state) {
     test_context_free(context);
 }
 
+/* Star-shaped is star-shaped in whatever way a solid is pressed: as few pieces however thin it is,
+ * and the same ones. */
+static void test_pressed(void **state) {
+    (void)state;
+    static const double factors[] = {1, 0x1p-12, 0x1p-35, 0x1p-60};
+    starg_context *context = test_context(1);
+    const starg_decompose_options options = small_effort(100);
+    size_t counts[4];
+    for (size_t i = 0; i < 4; i++) {
+        shape s = shape_columns();
+        for (size_t v = 0; v < s.vertex_count; v++)
+            s.vertices[3 * v + 1] *= factors[i];
+        starg_solid *solid = test_solid_of(context, &s);
+        starg_decomposition *d = decompose(context, solid, &options);
+        check_verified(context, "pressed", starg_solid_mesh(solid), NULL, d);
+        assert_true(d->tetra.surface_kept);
+        counts[i] = d->piece_count;
+        starg_decomposition_free(context, d);
+        starg_solid_free(solid);
+        shape_free(&s);
+    }
+    print_message("pieces: %zu, pressed %zu, %zu, %zu\n", counts[0], counts[1], counts[2],
+                  counts[3]);
+    assert_true(counts[1] <= counts[0] + 1);
+    assert_int_equal(counts[2], counts[1]);
+    assert_int_equal(counts[3], counts[1]);
+    test_context_free(context);
+}
+
 /* ---- options ---- */
 
 /* More effort never gives more pieces, because the search continues the same path; max_pieces ends
@@ -420,6 +449,7 @@ int main(void) {
         cmocka_unit_test(test_shapes),
         cmocka_unit_test(test_other_contacts),
         cmocka_unit_test(test_scales),
+        cmocka_unit_test(test_pressed),
         cmocka_unit_test(test_options),
         cmocka_unit_test(test_time),
         cmocka_unit_test(test_random_tetrahedra),

@@ -145,7 +145,7 @@ void partition_oracle_check(const partition *p) {
     assert_int_equal(p->points.count, p->unit.count);
     for (size_t i = 0; i < p->points.count; i++)
         assert_true(p->unit.data[i] ==
-                    (p->points.data[i] - p->origin[i % 3]) / ldexp(1, p->exponent));
+                    (p->points.data[i] - p->origin[i % 3]) / ldexp(1, p->exponents[i % 3]));
     for (size_t i = 0; i < p->facets.count; i++) {
         const facet *f = &p->facets.data[i];
         for (int k = 0; k < 3; k++) {
@@ -173,7 +173,7 @@ static void check_guard(const partition *p, uint32_t number) {
     const piece *own = &p->pieces.data[number];
     double unit[3], room = INFINITY;
     for (int k = 0; k < 3; k++)
-        unit[k] = (own->guard[k] - p->origin[k]) / ldexp(1, p->exponent);
+        unit[k] = (own->guard[k] - p->origin[k]) / ldexp(1, p->exponents[k]);
     for (uint32_t i = p->start.data[number]; i < p->start.data[number + 1]; i++) {
         const facet *f = &p->facets.data[p->index.data[i] / 2];
         int side = (int)(p->index.data[i] % 2);
@@ -274,7 +274,7 @@ bool partition_oracle_same(const partition *a, const partition *b) {
     return SAME(a->points, b->points) && SAME(a->unit, b->unit) && SAME(a->planes, b->planes) &&
            SAME(a->facets, b->facets) && SAME(a->pieces, b->pieces) && SAME(a->start, b->start) &&
            SAME(a->index, b->index) && a->first_points == b->first_points &&
-           a->stamps == b->stamps && a->exponent == b->exponent &&
+           a->stamps == b->stamps && memcmp(a->exponents, b->exponents, sizeof a->exponents) == 0 &&
            memcmp(a->origin, b->origin, sizeof a->origin) == 0;
 }
 

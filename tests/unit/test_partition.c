@@ -81,7 +81,7 @@ static void test_create(void **state) {
             assert_memory_equal(p.pieces.data[i].guard, guards + 3 * i, 3 * sizeof *guards);
             assert_true(fabs(p.pieces.data[i].volume - partition_oracle_volume(&p, i)) < 1e-13);
         }
-        double scale = ldexp(1, 3 * p.exponent);
+        double scale = ldexp(1, p.exponents[0] + p.exponents[1] + p.exponents[2]);
         assert_true(fabs(volume_of_all(&p) * scale - starg_tetmesh_volume(mesh)) < 1e-12 * scale);
         partition_free(&p);
         free(labels);
@@ -112,7 +112,7 @@ static void test_create_from_surface(void **state) {
         assert_memory_equal(p.points.data, surface.vertices, 24 * p.first_points);
         for (size_t f = 0; f < surface.count; f++)
             assert_memory_equal(p.facets.data[f].corners, surface.faces + 3 * f, 12);
-        double scale = ldexp(1, 3 * p.exponent);
+        double scale = ldexp(1, p.exponents[0] + p.exponents[1] + p.exponents[2]);
         assert_true(fabs(volume_of_all(&p) * scale - starg_mesh_volume(mesh)) < 1e-12 * scale);
         partition_free(&p);
         starg_solid_free(solid);

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Room for guards: partitions stay partitions with as many pieces (partition_oracle.h, in
- * rationals), and no margin that was small gets smaller. */
+ * rationals), and no margin that was small gets smaller. Refined caps: likewise, with the same
+ * guards and outer facets, and fewer small angles. */
 #include "support.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "partition_oracle.h"
+#include "star/strict/finish/refine_caps.h"
 #include "star/strict/finish/widen.h"
 #include "star/strict/search/improve.h"
 
@@ -89,7 +91,95 @@ static void test_same(void **state) {
     test_context_free(five);
 }
 
+/* ---- caps ---- */
+
+/* In degrees, by the angle between the parts of two edges that are normal to a third. */
+static double dihedral_angle(const double *a, const double *b, const double *c, const double *d) {
+    double along[3], part[2][3], length = 0, norm[2] = {0, 0}, dot = 0;
+    for (int k = 0; k < 3; k++) {
+        along[k] = b[k] - a[k];
+        length += along[k] * along[k];
+    }
+    for (int i = 0; i < 2; i++) {
+        const double *to = i == 0 ? c : d;
+        double share = 0;
+        for (int k = 0; k < 3; k++)
+            share += (to[k] - a[k]) * along[k] / length;
+        for (int k = 0; k < 3; k++) {
+            part[i][k] = to[k] - a[k] - share * along[k];
+            norm[i] += part[i][k] * part[i][k];
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        dot += part[0][k] * part[1][k] / sqrt(norm[0] * norm[1]);
+    return acos(fmax(-1, fmin(1, dot))) * 57.29577951308232;
+}
+
+static double smallest_angle_of(const double *const corners[4]) {
+    double least = 180;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < i; j++) {
+            int k = 0, l = 3;
+            while (k == i || k == j)
+                k++;
+            while (l == i || l == j)
+                l--;
+            least = fmin(least, dihedral_angle(corners[i], corners[j], corners[k], corners[l]));
+        }
+    return least;
+}
+
+/* Tetrahedra on facets between pieces with an angle of less than a fifth of a degree; outer facets.
+ */
+static size_t count_small(const partition *p, size_t *outer) {
+    size_t count = 0;
+    *outer = 0;
+    for (size_t i = 0; i < p->facets.count; i++) {
+        const facet *f = &p->facets.data[i];
+        *outer += f->side[FACET_OUTER] == PARTITION_OUTSIDE;
+        for (int side = 0; side < 2 && f->side[FACET_OUTER] != PARTITION_OUTSIDE; side++) {
+            const double *const corners[4] = {
+                partition_point(p, f->corners[0]), partition_point(p, f->corners[1]),
+                partition_point(p, f->corners[2]), p->pieces.data[f->side[side]].guard};
+            count += smallest_angle_of(corners) < 0.2;
+        }
+    }
+    return count;
+}
+
+static void test_caps(void **state) {
+    (void)state;
+    static const char *const names[] = {"gallery", "labyrinth"};
+    size_t sum[2] = {0, 0}, outer[2];
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_context *context = test_context(1);
+        partition first, p = searched_sample(context, names[i], &first), before;
+        test_ok(context, widen(&p, WORK / 8));
+        before = partition_oracle_copy(&p);
+        test_ok(context, refine_caps(&p));
+        partition_oracle_check(&p);
+        partition_oracle_check_guards(&p);
+        partition_oracle_check_surface(&first, &p);
+        assert_int_equal(p.pieces.count, before.pieces.count);
+        assert_memory_equal(p.pieces.data, before.pieces.data,
+                            p.pieces.count * sizeof *p.pieces.data);
+        size_t had = count_small(&before, &outer[0]), has = count_small(&p, &outer[1]);
+        print_message("%s: %zu tetrahedra with small angles, then %zu; %zu facets, then %zu\n",
+                      names[i], had, has, before.facets.count, p.facets.count);
+        assert_int_equal(outer[0], outer[1]);
+        assert_true(has <= had);
+        sum[0] += had;
+        sum[1] += has;
+        partition_free(&first);
+        partition_free(&before);
+        partition_free(&p);
+        test_context_free(context);
+    }
+    assert_true(sum[0] >= 4 && 2 * sum[1] <= sum[0]);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_samples), cmocka_unit_test(test_same)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_samples), cmocka_unit_test(test_same),
+                                       cmocka_unit_test(test_caps)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

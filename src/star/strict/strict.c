@@ -5,7 +5,8 @@
  * star-shaped (bsp_start.c); neighbours are joined where that can be done; then, in turns, small
  * changes save pieces (improve.c) and some neighbouring pieces are cut anew (renew.c), every step
  * with an exact certificate, until nothing is found any more. At the end guards get room
- * (widen.c), and each piece is made of tetrahedra about its guard (cone.c).
+ * (widen.c), borders between pieces better triangles (refine_caps.c), and each piece is made of
+ * tetrahedra about its guard (cone.c).
  *
  * The start runs to its end whatever the time limit says, in a hurry once that has passed: so there
  * is a result. Where it fails, which takes roundings that spoil every cut of some piece, others are
@@ -16,6 +17,7 @@
 #include <math.h>
 
 #include "star/decomposition.h"
+#include "star/strict/finish/refine_caps.h"
 #include "star/strict/finish/widen.h"
 #include "star/strict/partition/apply.h"
 #include "star/strict/partition/cone.h"
@@ -309,6 +311,7 @@ static starg_status decompose(starg_context *context, model of,
     STARG_TRY(merge_coplanar(&p));
     STARG_TRY(apply_centers(&p, &scratch));
     STARG_TRY(widen(&p, room_for(&s, options)));
+    STARG_TRY(refine_caps(&p));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
 done:

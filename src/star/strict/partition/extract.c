@@ -14,6 +14,7 @@
 #include "star/strict/partition/extract.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "geometry/vec3.h"
 
@@ -192,9 +193,9 @@ starg_status extract_make(const partition *p, const uint32_t *pieces, size_t cou
                           region_scratch *scratch, partition_extract *out) {
     starg_status status = STARG_OK;
     const extractor x = {p, scratch, out};
-    *out = (partition_extract){
-        .part = {.context = p->context, .exponent = p->exponent, .stamps = p->stamps}};
+    *out = (partition_extract){.part = {.context = p->context, .stamps = p->stamps}};
     vec3_copy(p->origin, out->part.origin);
+    memcpy(out->part.exponents, p->exponents, sizeof p->exponents);
     STARG_TRY(region_scratch_fit(scratch, p));
     STARG_TRY(name_pieces(&x, pieces, count));
     STARG_TRY(list_own_facets(&x));

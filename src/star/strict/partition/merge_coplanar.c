@@ -406,20 +406,6 @@ done:
     return status;
 }
 
-static starg_status certify_all(const partition *p, bool *done) {
-    starg_status status = STARG_OK;
-    partition_triangles triangles = {0};
-    *done = true;
-    for (uint32_t i = 0; i < p->pieces.count && *done; i++) {
-        triangles.count = 0;
-        STARG_TRY(partition_gather(p, i, &triangles));
-        *done = partition_certify(p, triangles.data, triangles.count / 3, p->pieces.data[i].guard);
-    }
-done:
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
-}
-
 static starg_status make_anew(tidier *t, bool *done) {
     starg_status status = STARG_OK;
     size_t vertices = t->p->points.count / 3;
@@ -469,7 +455,7 @@ static starg_status merge_all(partition *p, bool proven) {
     STARG_TRY(drop_planes(&copy));
     STARG_TRY(partition_build_index(&copy));
     if (proven)
-        STARG_TRY(certify_all(&copy, &done));
+        STARG_TRY(partition_certify_all(&copy, &done));
     if (!done)
         goto done;
     partition before = *p;

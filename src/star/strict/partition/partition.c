@@ -16,6 +16,7 @@
  * Cost: linear. */
 #include "star/strict/partition/partition.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,15 +24,24 @@
 
 static const uint32_t NONE = UINT32_MAX;
 
+enum { THIN = 6 }; /* so many bits less than the longest side is the shortest at least */
+
 void partition_to_unit(const partition *p, const double point[3], double out[3]) {
     vec3_subtract(point, p->origin, out);
     for (int k = 0; k < 3; k++)
-        out[k] = ldexp(out[k], -p->exponent);
+        out[k] = ldexp(out[k], -p->exponents[k]);
+}
+
+int partition_exponent(const partition *p) {
+    int largest = p->exponents[0];
+    for (int k = 1; k < 3; k++)
+        largest = p->exponents[k] > largest ? p->exponents[k] : largest;
+    return largest;
 }
 
 void partition_from_unit(const partition *p, const double unit[3], double out[3]) {
     for (int k = 0; k < 3; k++)
-        out[k] = p->origin[k] + ldexp(unit[k], p->exponent);
+        out[k] = p->origin[k] + ldexp(unit[k], p->exponents[k]);
 }
 
 starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex) {
@@ -62,7 +72,9 @@ static void find_frame(const double *vertices, const uint32_t *corners, size_t c
         p->origin[k] = 0.5 * lower[k] + 0.5 * upper[k];
         extent = fmax(extent, upper[k] - lower[k]);
     }
-    frexp(extent, &p->exponent);
+    for (int k = 0; k < 3; k++) {
+        frexp(fmin(extent, ldexp(fmax(upper[k] - lower[k], DBL_MIN), THIN)), &p->exponents[k]);
+    }
 }
 
 /* Adds points for the vertices whose number is not NONE, and sets that number. */
@@ -231,11 +243,11 @@ void partition_free(partition *p) {
 starg_status partition_copy(const partition *from, partition *to) {
     starg_status status = STARG_OK;
     *to = (partition){.context = from->context,
-                      .exponent = from->exponent,
                       .first_points = from->first_points,
                       .first_planes = from->first_planes,
                       .stamps = from->stamps};
     vec3_copy(from->origin, to->origin);
+    memcpy(to->exponents, from->exponents, sizeof to->exponents);
     COPY_ARRAY(from->context, &to->points, &from->points);
     COPY_ARRAY(from->context, &to->unit, &from->unit);
     COPY_ARRAY(from->context, &to->planes, &from->planes);
@@ -339,4 +351,18 @@ bool partition_certify(const partition *p, const uint32_t *triangles, size_t cou
                        const double guard[3]) {
     const kernel_faces surface = {p->points.data, triangles, count};
     return kernel_sees_all(&surface, guard) && kernel_winding(&surface, guard) == 1;
+}
+
+starg_status partition_certify_all(const partition *p, bool *done) {
+    starg_status status = STARG_OK;
+    partition_triangles triangles = {0};
+    *done = true;
+    for (uint32_t i = 0; i < p->pieces.count && *done; i++) {
+        triangles.count = 0;
+        STARG_TRY(partition_gather(p, i, &triangles));
+        *done = partition_certify(p, triangles.data, triangles.count / 3, p->pieces.data[i].guard);
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
 }

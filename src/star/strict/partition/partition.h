@@ -45,10 +45,12 @@ typedef struct piece {
  * is unused. */
 typedef struct partition {
     starg_context *context;
-    /* Unit coordinates are (p - origin) / 2^exponent: the solid roughly fills [-1/2, 1/2]^3. They
+    /* Unit coordinates are (p - origin) / 2^exponent, axis by axis: the solid roughly fills
+     * [-1/2, 1/2]^3. Where it is much thinner along one axis than along another, that is stretched:
+     * star-shaped pieces stay so, and what is rounded or looked for in space gets room. They
      * serve the search; signs are decided on the points. */
     double origin[3];
-    int exponent;
+    int exponents[3];
     STARG_ARRAY(double) points; /* x 3, in the coordinates of the solid */
     STARG_ARRAY(double) unit;   /* x 3, the same in unit coordinates */
     size_t first_points;        /* those that precede any cut */
@@ -77,6 +79,8 @@ static inline const double *partition_unit(const partition *p, uint32_t vertex) 
     return p->unit.data + 3 * (size_t)vertex;
 }
 
+/* The largest of the exponents. */
+int partition_exponent(const partition *p);
 void partition_to_unit(const partition *p, const double point[3], double out[3]);
 void partition_from_unit(const partition *p, const double unit[3], double out[3]);
 
@@ -132,5 +136,8 @@ void partition_renumber(partition *p, uint32_t from, uint32_t to);
  * Exact. */
 bool partition_certify(const partition *p, const uint32_t *triangles, size_t count,
                        const double guard[3]);
+
+/* The same for every piece of a partition with an index. Errors: MEMORY. */
+starg_status partition_certify_all(const partition *p, bool *done);
 
 #endif

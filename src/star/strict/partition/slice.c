@@ -84,8 +84,8 @@ static int side_of_piece(const slicer *s, const facet *f) {
 static double find_tolerance(const partition *p) {
     double largest = 0;
     for (int k = 0; k < 3; k++)
-        largest = fmax(largest, fabs(p->origin[k]));
-    return fmax(SLICE_ON, 32 * DBL_EPSILON * (ldexp(largest, -p->exponent) + 0.5));
+        largest = fmax(largest, ldexp(fabs(p->origin[k]), -p->exponents[k]));
+    return fmax(SLICE_ON, 32 * DBL_EPSILON * (largest + 0.5));
 }
 
 static void find_height(slicer *s, uint32_t vertex) {

@@ -124,7 +124,7 @@ static starg_status find_kernel(const partition *p, job *j) {
     STARG_TRY(kernel_find(p->context, &surface, &result));
     if (result.verdict == STARG_KERNEL_INTERIOR) {
         vec3_copy(result.guard, j->guard);
-        j->radius = ldexp(fabs(result.radius), -p->exponent);
+        j->radius = ldexp(fabs(result.radius), -partition_exponent(p));
     }
 done:
     STARG_ARRAY_FREE(p->context, &triangles);
