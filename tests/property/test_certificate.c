@@ -212,28 +212,12 @@ static void test_shared(void **state) {
     }
 }
 
-/* A heap of cells: many reflex edges, and bounds that need branching. */
-static shape random_cells(uint64_t item) {
-    starg_rng rng = starg_rng_make(9, 2, item);
-    char cells[5 * 5 * 2];
-    int at[3] = {0, 0, 0};
-    const int size[3] = {5, 5, 2};
-    memset(cells, ' ', sizeof cells);
-    for (int step = 0; step < 30; step++) {
-        size_t k = (size_t)starg_rng_below(&rng, 3);
-        cells[at[0] + 5 * (at[1] + 5 * at[2])] = '#';
-        at[k] = (int)starg_rng_below(&rng, 2) ? at[k] + 1 : at[k] - 1;
-        at[k] = at[k] < 0 ? 0 : at[k] >= size[k] ? size[k] - 1 : at[k];
-    }
-    return shape_cells(cells, 5, 5, 2);
-}
-
 static void test_random_solids(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     size_t branched = 0, above = 0, rounds = test_rounds(8, 300);
     for (uint64_t item = 0; item < rounds; item++) {
-        shape made = item % 4 == 0 ? shape_blob(2, item) : random_cells(item);
+        shape made = item % 4 == 0 ? shape_blob(2, item) : shape_heap(5, item);
         starg_mesh *mesh = test_mesh_of(context, &made);
         starg_solid *solid = NULL;
         if (starg_solid_create(context, mesh, &solid) == STARG_OK) {
@@ -459,7 +443,7 @@ static void test_damaged(void **state) {
     subject_free(&gallery);
     damage_shape(shape_columns(), test_rounds(DAMAGED / 10, DAMAGED));
     for (uint64_t item = 1; item < 8; item++)
-        damage_shape(random_cells(item), test_rounds(DAMAGED / 20, DAMAGED));
+        damage_shape(shape_heap(5, item), test_rounds(DAMAGED / 20, DAMAGED));
 }
 
 /* ---- conclusions from what leaves may see ---- */

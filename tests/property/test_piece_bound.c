@@ -42,25 +42,9 @@ static shape make_comb(int teeth) {
     return shape_cells(cells, width, height, 1);
 }
 
-/* A heap of cells: many reflex edges. */
-static shape random_heap(uint64_t item) {
-    starg_rng rng = starg_rng_make(9, 2, item);
-    char cells[4 * 4 * 2];
-    int at[3] = {0, 0, 0};
-    const int size[3] = {4, 4, 2};
-    memset(cells, ' ', sizeof cells);
-    for (int step = 0; step < 20; step++) {
-        size_t k = (size_t)starg_rng_below(&rng, 3);
-        cells[at[0] + 4 * (at[1] + 4 * at[2])] = '#';
-        at[k] = (int)starg_rng_below(&rng, 2) ? at[k] + 1 : at[k] - 1;
-        at[k] = at[k] < 0 ? 0 : at[k] >= size[k] ? size[k] - 1 : at[k];
-    }
-    return shape_cells(cells, 4, 4, 2);
-}
-
 /* Embedded, or NULL. */
 static starg_solid *random_solid(starg_context *context, uint64_t item) {
-    shape made = item % 3 == 0 ? shape_blob(2, item) : random_heap(item);
+    shape made = item % 3 == 0 ? shape_blob(2, item) : shape_heap(4, item);
     starg_mesh *mesh = test_mesh_of(context, &made);
     starg_solid *solid = NULL;
     starg_check *check = NULL;

@@ -119,28 +119,12 @@ static void check_solid(starg_context *context, const starg_solid *solid,
     starg_guards_free(context, first);
 }
 
-/* A heap of cells: many reflex edges, at which cells can never be settled. */
-static shape random_cells(uint64_t item) {
-    starg_rng rng = starg_rng_make(8, 2, item);
-    char cells[4 * 4 * 2];
-    int at[3] = {0, 0, 0};
-    const int size[3] = {4, 4, 2};
-    memset(cells, ' ', sizeof cells);
-    for (int step = 0; step < 20; step++) {
-        size_t k = (size_t)starg_rng_below(&rng, 3);
-        cells[at[0] + 4 * (at[1] + 4 * at[2])] = '#';
-        at[k] = (int)starg_rng_below(&rng, 2) ? at[k] + 1 : at[k] - 1;
-        at[k] = at[k] < 0 ? 0 : at[k] >= size[k] ? size[k] - 1 : at[k];
-    }
-    return shape_cells(cells, 4, 4, 2);
-}
-
 static void test_random_solids(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     size_t solids = 0, rounds = test_rounds(12, 200);
     for (uint64_t item = 0; item < rounds; item++) {
-        shape s = item % 3 == 0 ? shape_blob(2, item) : random_cells(item);
+        shape s = item % 3 == 0 ? shape_blob(2, item) : shape_heap(4, item);
         starg_mesh *mesh = test_mesh_of(context, &s);
         starg_solid *solid = NULL;
         if (starg_solid_create(context, mesh, &solid) == STARG_OK) {

@@ -111,6 +111,22 @@ shape shape_columns(void) {
                        5, 5, 2);
 }
 
+shape shape_heap(int width, uint64_t seed) {
+    enum { WIDEST = 5 };
+    starg_rng rng = starg_rng_make(8, 2, seed);
+    char cells[2 * WIDEST * WIDEST];
+    int at[3] = {0, 0, 0};
+    const int size[3] = {width, width, 2};
+    memset(cells, ' ', sizeof cells);
+    for (int step = 0; step < 6 * width; step++) {
+        size_t k = (size_t)starg_rng_below(&rng, 3);
+        cells[at[0] + width * (at[1] + width * at[2])] = '#';
+        at[k] = (int)starg_rng_below(&rng, 2) ? at[k] + 1 : at[k] - 1;
+        at[k] = at[k] < 0 ? 0 : at[k] >= size[k] ? size[k] - 1 : at[k];
+    }
+    return shape_cells(cells, width, width, 2);
+}
+
 /* Splits every face into four, with the midpoints projected to the unit sphere. */
 static shape subdivide(const shape *s) {
     shape fine = {0};

@@ -22,6 +22,8 @@ shape shape_cube(int sides); /* sides^3 cells */
 shape shape_room(void);      /* an L of cells, one cell high */
 shape shape_cavity(void);    /* 3 x 3 x 3 cells without the middle one */
 shape shape_columns(void);   /* a hall of 5 x 5 x 2 with columns */
+shape shape_heap(int width,
+                 uint64_t seed); /* random walk of width x width x 2 cells: reflex edges */
 shape shape_blob(int levels,
                  uint64_t seed); /* a sphere with random radii: star-shaped about the origin */
 
