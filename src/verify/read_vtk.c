@@ -10,13 +10,13 @@
  * and with maps to balls FIELD FieldData 1, ball 12 m double. Binary numbers are big-endian,
  * integers of 32 bits. Further sections after the labels are skipped. Declared counts are compared
  * with the remaining bytes before allocating. */
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "core/locale.h"
 #include "core/memory.h"
 #include "starguard/verify.h"
 #include "verify/facets.h"
@@ -394,17 +394,14 @@ starg_status starg_pieces_mesh_read_memory(starg_context *context, const void *b
     starg_pieces_mesh *mesh = NULL;
     const char *begin = size > 0 ? bytes : "";
     reader r = {.context = context, .name = name, .begin = begin, .at = begin, .end = begin + size};
-    locale_t before, plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    starg_c_locale locale = {0};
     *out = NULL;
-    if (plain == (locale_t)0)
-        return starg_fail_memory(context, STAGE);
-    before = uselocale(plain);
+    STARG_TRY(starg_c_locale_enter(context, &locale));
     STARG_NEW_ZERO(context, STAGE, mesh, 1);
     STARG_TRY(read_all(&r, mesh));
     *out = mesh;
 done:
-    uselocale(before);
-    freelocale(plain);
+    starg_c_locale_leave(&locale);
     if (status != STARG_OK)
         starg_pieces_mesh_free(context, mesh);
     return status;

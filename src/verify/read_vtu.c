@@ -10,12 +10,12 @@
  * Elements are taken in any order, arrays of other names are skipped, and numbers are text
  * (format="ascii"). Nothing else of XML is understood: neither entities nor sections of raw text.
  * Counts are compared with the numbers that are there, never allocated in advance. */
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/locale.h"
 #include "core/memory.h"
 #include "starguard/verify.h"
 #include "verify/facets.h"
@@ -357,19 +357,16 @@ starg_status starg_solid_map_read_memory(starg_context *context, const void *byt
     starg_solid_map *map = NULL;
     char *copy = NULL;
     reader r = {.context = context, .name = name};
-    locale_t before, plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    starg_c_locale locale = {0};
     *out = NULL;
-    if (plain == (locale_t)0)
-        return starg_fail_memory(context, STAGE);
-    before = uselocale(plain);
+    STARG_TRY(starg_c_locale_enter(context, &locale));
     STARG_TRY(copy_text(&r, bytes, size, &copy));
     STARG_NEW_ZERO(context, STAGE, map, 1);
     STARG_TRY(read_tags(&r));
     STARG_TRY(take_map(&r, map));
     *out = map;
 done:
-    uselocale(before);
-    freelocale(plain);
+    starg_c_locale_leave(&locale);
     for (int i = 0; i < NAMES; i++)
         STARG_ARRAY_FREE(context, &r.numbers[i]);
     STARG_ARRAY_FREE(context, &r.keys);

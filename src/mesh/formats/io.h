@@ -4,11 +4,11 @@
 #ifndef STARG_MESH_FORMATS_IO_H
 #define STARG_MESH_FORMATS_IO_H
 
-#include <locale.h>
 #include <stdbool.h>
 #include <stdio.h>
 
 #include "core/context.h"
+#include "core/locale.h"
 #include "core/memory.h"
 #include "core/private.h"
 #include "mesh/mesh.h"
@@ -133,16 +133,5 @@ void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colo
 
 /* True if `name` ends with `extension`, ignoring case. */
 bool starg_has_extension(const char *name, const char *extension);
-
-/* Numbers use a decimal point in any locale: between enter and leave the calling thread uses the
- * "C" locale. Errors: MEMORY. */
-typedef struct starg_c_locale {
-    locale_t own, before;
-} starg_c_locale;
-
-starg_status starg_c_locale_enter(starg_context *context, starg_c_locale *locale)
-    STARG_PRIVATE(starg_c_locale_enter);
-/* Does nothing for an all-zero `locale`. */
-void starg_c_locale_leave(starg_c_locale *locale) STARG_PRIVATE(starg_c_locale_leave);
 
 #endif
