@@ -15,6 +15,7 @@
 
 #include "core/fields.h"
 #include "guard/baseline.h"
+#include "guard/carry.h"
 #include "guard/certificate.h"
 #include "guard/corners.h"
 #include "guard/proxy.h"
@@ -130,6 +131,8 @@ static starg_status find_candidates(const guard_problem *problem, const guard_de
     candidate_points points = {0};
     STARG_TRY(pool_create(problem->context, problem->solid, problem->options, out));
     STARG_TRY(find_first(problem, detail, &points));
+    if (detail->proxy != NULL && !sensor_is_directed(&problem->options->visibility))
+        STARG_TRY(carry_candidates(problem, detail->proxy, &points));
     STARG_TRY(pool_add(out, &points));
 done:
     candidates_free(problem->context, &points);

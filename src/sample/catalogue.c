@@ -10,7 +10,7 @@
 
 static const char STAGE[] = "sample";
 
-enum { MIN_VERTICES = 500, MAX_VERTICES = 1000000, RIGID = -1 };
+enum { MIN_VERTICES = 500, MAX_VERTICES = 10000000, RIGID = -1 };
 
 typedef starg_status make_solid(starg_context *context, size_t vertex_count, starg_mesh **out);
 
