@@ -48,7 +48,7 @@ class App {
             ),
         );
         this.sample.addEventListener("change", () => this.takeSample(this.sample.value));
-        this.guardOptions = optionLine("Options of guard", "--prove --effort 2");
+        this.guardOptions = optionLine("Options of guard", "--prove --coverage 0.99");
         this.pieceOptions = optionLine("Options of decompose", "--effort 100");
         this.found = element("div", { id: "found" });
         this.guarded = element("div", { id: "guarded" });
