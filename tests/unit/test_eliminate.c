@@ -62,6 +62,37 @@ done:
     return plan;
 }
 
+/* Marked entries are found when facets have other numbers; not when one of them is split. */
+static void check_found_again(const partition *p, fan_plan *plan, starg_rng *rng) {
+    partition other = partition_oracle_copy(p);
+    size_t count = other.facets.count;
+    bool found;
+    test_ok(p->context, fan_plan_mark(p, plan));
+    for (size_t i = count; i > 1; i--) {
+        size_t k = starg_rng_below(rng, i);
+        facet swapped = other.facets.data[k];
+        other.facets.data[k] = other.facets.data[i - 1];
+        other.facets.data[i - 1] = swapped;
+    }
+    test_ok(p->context, partition_build_index(&other));
+    test_ok(p->context, fan_plan_find(&other, plan, &found));
+    assert_true(found);
+    for (size_t i = 0; i < plan->entries.count; i++) {
+        uint32_t entry = plan->entries.data[i], c[3];
+        facet_outward(&other.facets.data[entry / 2], (int)(entry % 2), c);
+        assert_memory_equal(c, plan->corners.data + 3 * i, sizeof c);
+        assert_int_equal(other.facets.data[entry / 2].side[entry % 2], plan->pieces[0]);
+    }
+    uint32_t at = plan->entries.data[0];
+    other.facets.data[at / 2].corners[1] = (uint32_t)(other.points.count / 3);
+    test_ok(p->context, fan_plan_find(&other, plan, &found));
+    assert_false(found);
+    /* as they were */
+    test_ok(p->context, fan_plan_find(p, plan, &found));
+    assert_true(found);
+    partition_free(&other);
+}
+
 /* The volume that each taker gets, by tetrahedra. */
 static void volumes_taken(const partition *p, const fan_plan *plan, double *out) {
     for (size_t i = 0; i < plan->taker_count; i++)
@@ -89,6 +120,7 @@ static void test_fans_stay_closed(void **state) {
         partition p = partition_oracle_copy(&first);
         fan_plan plan = random_fan(&p, number, &rng);
         double taken[FAN_TAKERS_MOST];
+        check_found_again(&p, &plan, &rng);
         if (plan.taker_count == 0) {
             partition_free(&p);
             continue;

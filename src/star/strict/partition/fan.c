@@ -10,6 +10,7 @@
 #include "star/strict/partition/fan.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "geometry/vec3.h"
 
@@ -24,8 +25,67 @@ typedef STARG_ARRAY(fan_edge) fan_edges;
 void fan_plan_free(starg_context *context, fan_plan *plan) {
     STARG_ARRAY_FREE(context, &plan->entries);
     STARG_ARRAY_FREE(context, &plan->takes);
+    STARG_ARRAY_FREE(context, &plan->corners);
     *plan = (fan_plan){.piece_count = 0};
 }
+
+/* ---- finding facets again ---- */
+
+typedef struct known_facet {
+    uint32_t corners[3], entry;
+} known_facet;
+
+static int compare_facets(const void *left, const void *right) {
+    const known_facet *x = left, *y = right;
+    for (int k = 0; k < 3; k++)
+        if (x->corners[k] != y->corners[k])
+            return x->corners[k] < y->corners[k] ? -1 : 1;
+    return 0;
+}
+
+starg_status fan_plan_mark(const partition *p, fan_plan *plan) {
+    starg_status status = STARG_OK;
+    plan->corners.count = 0;
+    for (size_t i = 0; i < plan->entries.count; i++) {
+        uint32_t entry = plan->entries.data[i], c[3];
+        facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), c);
+        for (int k = 0; k < 3; k++)
+            STARG_PUSH(p->context, PARTITION_STAGE, &plan->corners, c[k]);
+    }
+done:
+    return status;
+}
+
+starg_status fan_plan_find(const partition *p, fan_plan *plan, bool *found) {
+    starg_status status = STARG_OK;
+    STARG_ARRAY(known_facet) facets = {0};
+    *found = false;
+    for (size_t i = 0; i < plan->piece_count; i++)
+        for (uint32_t k = p->start.data[plan->pieces[i]]; k < p->start.data[plan->pieces[i] + 1];
+             k++) {
+            known_facet fresh = {.entry = p->index.data[k]};
+            facet_outward(&p->facets.data[fresh.entry / 2], (int)(fresh.entry % 2), fresh.corners);
+            STARG_PUSH(p->context, PARTITION_STAGE, &facets, fresh);
+        }
+    if (facets.count == 0)
+        goto done;
+    qsort(facets.data, facets.count, sizeof *facets.data, compare_facets);
+    *found = true;
+    for (size_t i = 0; i < plan->entries.count && *found; i++) {
+        known_facet wanted;
+        memcpy(wanted.corners, plan->corners.data + 3 * i, sizeof wanted.corners);
+        const known_facet *at =
+            bsearch(&wanted, facets.data, facets.count, sizeof wanted, compare_facets);
+        *found = at != NULL;
+        if (*found)
+            plan->entries.data[i] = at->entry;
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &facets);
+    return status;
+}
+
+/* ---- the fan ---- */
 
 static starg_status gather_edges(const partition *p, const fan_plan *plan, fan_edges *edges) {
     starg_status status = STARG_OK;

@@ -17,9 +17,18 @@ typedef struct fan_plan {
     double apex[3];                /* in unit coordinates */
     STARG_ARRAY(uint32_t) entries; /* of the union's surface: 2 * facet + side */
     STARG_ARRAY(uint8_t) takes;    /* for each: the index of its taker */
+    STARG_ARRAY(uint32_t) corners; /* for each, x 3: by which it is found again */
 } fan_plan;
 
 void fan_plan_free(starg_context *context, fan_plan *plan);
+
+/* Notes the corners of all entries. Errors: MEMORY. */
+starg_status fan_plan_mark(const partition *p, fan_plan *plan);
+
+/* The entries of a marked plan by the numbers of a partition with an index that has changed since;
+ * the plan's own numbers of pieces are those of now. *found is false if some facet is gone. Errors:
+ * MEMORY. */
+starg_status fan_plan_find(const partition *p, fan_plan *plan, bool *found);
 
 /* Applies the plan to the partition for which it was made, without proof. Pieces that are not kept
  * end up without facets, and the index becomes stale. Errors: MEMORY. */

@@ -16,8 +16,8 @@
  *
  * Invariants: trials come in batches that look at the same partition, each with random numbers of
  * its own, and are carried out in their order unless an earlier one of the batch has changed a
- * piece of theirs: the result does not depend on the number of threads. Cost: a trial looks at the
- * facets of its union some hundred times. */
+ * piece of theirs or a neighbour that takes part: the result does not depend on the number of
+ * threads. Cost: a trial looks at the facets of its union some hundred times. */
 #include "star/strict/search/improve.h"
 
 #include <math.h>
@@ -298,27 +298,50 @@ done:
     return status;
 }
 
-static bool have_common(const trial *t, const uint32_t *pieces, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (is_in(t, pieces[i]))
+static bool concerns(const trial *t, uint32_t number) {
+    for (size_t i = 0; i < t->fan.taker_count; i++)
+        if (t->fan.takers[i] == number)
+            return true;
+    return is_in(t, number);
+}
+
+static bool meet(const trial *a, const trial *b) {
+    for (size_t i = 0; i < a->count; i++)
+        if (concerns(b, a->pieces[i]))
+            return true;
+    for (size_t i = 0; i < a->fan.taker_count; i++)
+        if (concerns(b, a->fan.takers[i]))
             return true;
     return false;
 }
 
-/* Trials of the batch that have a piece of a trial that was carried out are void, and so are those
- * that know facets by their numbers; the others may find pieces under other numbers. */
-static void follow(improver *m, size_t count, const trial *done, const apply_effect *effect) {
+static void renumber(uint32_t *pieces, size_t count, const apply_effect *effect) {
+    for (size_t k = 0; k < effect->move_count; k++)
+        for (size_t n = 0; n < count; n++)
+            if (pieces[n] == effect->moves[k].from)
+                pieces[n] = effect->moves[k].to;
+}
+
+/* Trials of the batch that concern a piece of a trial that was carried out are void; the others may
+ * find pieces and facets under other numbers. Of moves by fans, one for each batch is enough:
+ * carrying out five times as many left as many pieces as before. */
+static starg_status follow(improver *m, size_t count, const trial *done,
+                           const apply_effect *effect) {
+    starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++) {
         trial *t = &m->trials[i];
-        if (SORTS[t->sort].eliminates || have_common(t, done->pieces, done->count) ||
-            have_common(t, done->fan.takers, done->fan.taker_count))
-            t->found = false;
+        bool is_fan = SORTS[t->sort].eliminates;
+        t->found = t->found && !meet(t, done) && (saves(t) || !is_fan);
+        if (!t->found)
+            continue;
+        renumber(t->pieces, t->count, effect);
+        renumber(t->fan.pieces, t->fan.piece_count, effect);
+        renumber(t->fan.takers, t->fan.taker_count, effect);
+        if (is_fan)
+            STARG_TRY(fan_plan_find(m->p, &t->fan, &t->found));
     }
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < effect->move_count; k++)
-            for (size_t n = 0; n < m->trials[i].count; n++)
-                if (m->trials[i].pieces[n] == effect->moves[k].from)
-                    m->trials[i].pieces[n] = effect->moves[k].to;
+done:
+    return status;
 }
 
 static starg_status merge_if_crowded(improver *m) {
@@ -333,6 +356,9 @@ static starg_status merge_if_crowded(improver *m) {
 static starg_status carry_out_batch(improver *m, size_t count) {
     starg_status status = STARG_OK;
     bool any = false;
+    for (size_t i = 0; i < count; i++)
+        if (m->trials[i].found && SORTS[m->trials[i].sort].eliminates)
+            STARG_TRY(fan_plan_mark(m->p, &m->trials[i].fan));
     for (int fewer = 1; fewer >= 0; fewer--)
         for (size_t i = 0; i < count; i++) {
             trial *t = &m->trials[i];
@@ -342,7 +368,7 @@ static starg_status carry_out_batch(improver *m, size_t count) {
             STARG_TRY(carry_out(m, t, &effect));
             t->found = false;
             if (effect.done)
-                follow(m, count, t, &effect);
+                STARG_TRY(follow(m, count, t, &effect));
             any = any || effect.done;
         }
     if (any) {
