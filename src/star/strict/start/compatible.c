@@ -16,9 +16,9 @@
  * Planes cannot help here as they do for one solid (repartition.c): what is plane in one place is
  * not in the other. So pieces consist of the tetrahedra that were given.
  *
- * Cost: that of the region growing, for the whole and for WORK_MOST tetrahedra of groups, and two
- * linear programs for each pair of neighbours that is tried; a pair is tried again only when one of
- * the two has changed. */
+ * Cost: that of the region growing, for the whole and for a fixed number of tetrahedra of groups,
+ * and two linear programs for each pair of neighbours that is tried; a pair is tried again only
+ * when one of the two has changed. */
 #include "star/strict/start/compatible.h"
 
 #include <stdlib.h>
@@ -35,10 +35,11 @@
 static const char STAGE[] = "join";
 
 enum {
-    GROUP_MOST = 4,     /* pieces grown anew at a time, from 2 on                           */
-    IDLE_MOST = 150,    /* groups in a row that saved nothing: then no more                 */
-    WORK_MOST = 600000, /* tetrahedra of all groups, about 8 seconds                        */
-    PASSES = 10         /* as many tetrahedra looked at once take as long as one of a group */
+    GROUP_MOST = 4,      /* pieces grown anew at a time, from 2 on                           */
+    IDLE_MOST = 150,     /* groups in a row that saved nothing: then no more                 */
+    WORK_LEAST = 400000, /* tetrahedra of all groups                                        */
+    WORK_EACH = 30,      /* and as many more for each tetrahedron that there is             */
+    PASSES = 60          /* as many looked at once take as long as one of a group           */
 };
 
 #define LAST UINT32_MAX /* ends a list */
@@ -331,8 +332,8 @@ static starg_status renew_groups(compatible *w) {
     uint8_t *dropped = NULL;
     starg_progress_begin(context, STAGE);
     STARG_NEW(context, STAGE, dropped, w->pieces.count);
-    size_t idle = 0, work = 0;
-    for (uint64_t round = 1; idle < IDLE_MOST && work < WORK_MOST && w->pieces.count > 1; round++) {
+    size_t idle = 0, work = 0, most = WORK_LEAST + WORK_EACH * w->meshes[0]->count;
+    for (uint64_t round = 1; idle < IDLE_MOST && work < most && w->pieces.count > 1; round++) {
         starg_rng rng = starg_rng_make(context->seed, 0, round);
         size_t group = 0;
         STARG_TRY(drop_group(w, 2 + starg_rng_below(&rng, GROUP_MOST - 1), &rng, dropped, &group));
@@ -346,7 +347,7 @@ static starg_status renew_groups(compatible *w) {
             *w = next;
             next = former;
         }
-        starg_progress_step(context, work, WORK_MOST);
+        starg_progress_step(context, work, most);
     }
 done:
     starg_progress_end(context);
