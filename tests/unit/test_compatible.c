@@ -9,6 +9,7 @@
 #include "decomposition_oracle.h"
 #include "exact_oracle.h"
 #include "star/strict/start/compatible.h"
+#include "star/strict/start/region_growing.h"
 #include "tetra/tetmesh.h"
 #include "tetrahedra.h"
 
@@ -143,6 +144,26 @@ static void test_affine(void **state) {
     test_context_free(context);
 }
 
+/* Growing groups anew saves pieces: without it there are as many as regions grown and joined once.
+ */
+static void test_saves(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_tetmesh *mesh = sample_tetmesh(context, "octopus", 800), *image = shear(context, mesh);
+    starg_decomposition *out[2];
+    grown_regions grown;
+    test_ok(context, grow_compatible_regions(context, mesh, image, &grown));
+    test_ok(context, compatible_decompose(context, mesh, image, out));
+    check(mesh, image, out);
+    print_message("%zu regions, %zu pieces\n", grown.count, out[0]->piece_count);
+    assert_true(3 * out[0]->piece_count < 2 * grown.count);
+    grown_regions_free(context, &grown);
+    free_both(context, out);
+    starg_tetmesh_free(mesh);
+    starg_tetmesh_free(image);
+    test_context_free(context);
+}
+
 static void test_memory(void **state) {
     (void)state;
     starg_status status = STARG_ERROR_MEMORY;
@@ -172,6 +193,6 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_affine),
-                                       cmocka_unit_test(test_memory)};
+                                       cmocka_unit_test(test_saves), cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,11 +129,8 @@ done:
 }
 
 static void keep_better(partition *p, partition *other) {
-    if (other->pieces.count >= p->pieces.count)
-        return;
-    partition before = *p;
-    *p = *other;
-    *other = before;
+    if (other->pieces.count < p->pieces.count)
+        partition_swap(p, other);
 }
 
 /* Where there are tetrahedra, regions of them are a start at once, and in a solid full of holes the

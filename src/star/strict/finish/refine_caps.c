@@ -437,11 +437,8 @@ starg_status refine_caps(partition *p) {
     STARG_TRY(partition_build_index(&copy));
     if (r.any)
         STARG_TRY(partition_certify_all(&copy, &done));
-    if (!done)
-        goto done;
-    partition before = *p;
-    *p = copy;
-    copy = before;
+    if (done)
+        partition_swap(p, &copy);
 done:
     refiner_free(&r);
     partition_free(&copy);

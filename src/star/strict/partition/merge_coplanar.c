@@ -456,11 +456,8 @@ static starg_status merge_all(partition *p, bool proven) {
     STARG_TRY(partition_build_index(&copy));
     if (proven)
         STARG_TRY(partition_certify_all(&copy, &done));
-    if (!done)
-        goto done;
-    partition before = *p;
-    *p = copy;
-    copy = before;
+    if (done)
+        partition_swap(p, &copy);
 done:
     tidier_free(&t);
     partition_free(&copy);

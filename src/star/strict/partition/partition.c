@@ -39,6 +39,12 @@ int partition_exponent(const partition *p) {
     return largest;
 }
 
+void partition_swap(partition *a, partition *b) {
+    partition before = *a;
+    *a = *b;
+    *b = before;
+}
+
 void partition_from_unit(const partition *p, const double unit[3], double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = p->origin[k] + ldexp(unit[k], p->exponents[k]);
@@ -72,9 +78,8 @@ static void find_frame(const double *vertices, const uint32_t *corners, size_t c
         p->origin[k] = 0.5 * lower[k] + 0.5 * upper[k];
         extent = fmax(extent, upper[k] - lower[k]);
     }
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         frexp(fmin(extent, ldexp(fmax(upper[k] - lower[k], DBL_MIN), THIN)), &p->exponents[k]);
-    }
 }
 
 /* Adds points for the vertices whose number is not NONE, and sets that number. */

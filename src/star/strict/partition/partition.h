@@ -79,6 +79,9 @@ static inline const double *partition_unit(const partition *p, uint32_t vertex) 
     return p->unit.data + 3 * (size_t)vertex;
 }
 
+/* Exchanges what they hold. */
+void partition_swap(partition *a, partition *b);
+
 /* The largest of the exponents. */
 int partition_exponent(const partition *p);
 void partition_to_unit(const partition *p, const double point[3], double out[3]);

@@ -125,9 +125,7 @@ starg_status renew(partition *p, const renew_options *options, renew_report *rep
     if (copy.pieces.count > p->pieces.count)
         goto done;
     report->better = copy.pieces.count < p->pieces.count;
-    partition before = *p;
-    *p = copy;
-    copy = before;
+    partition_swap(p, &copy);
 done:
     report->time_limited = report->time_limited || starg_time_is_over(p->context);
     starg_progress_end(p->context);
