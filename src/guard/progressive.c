@@ -18,7 +18,6 @@
  * as required).
  * Cost: visibility of all candidates on all levels, a third more than that of the model if each
  * level is a quarter of the next; an ILP per level on what is left of it. */
-#include "geometry/vec3.h"
 #include "guard/stages.h"
 #include "mesh/solid.h"
 
@@ -172,23 +171,6 @@ done:
     return status;
 }
 
-/* A level of an embedded solid is embedded, since simplification keeps it so: what was found out
- * about the solid is not found out again. */
-static starg_status make_level(const guard_problem *problem, const starg_mesh *mesh,
-                               starg_solid **out) {
-    double lower[3], upper[3];
-    starg_check check = *problem->solid->check;
-    if (!check.embedded)
-        return solid_make_in_time(problem->context, mesh, out);
-    starg_mesh_bounds(mesh, lower, upper);
-    check.diagonal = vec3_distance(lower, upper);
-    check.vertices = mesh->vertex_count;
-    check.faces = mesh->face_count;
-    check.edges = mesh->face_count / 2 * 3;
-    return solid_of_parts(problem->context, mesh->vertices, mesh->vertex_count, mesh->faces,
-                          mesh->face_count, &check, out);
-}
-
 /* The choice for a coarse level replaces the previous one and is recorded. A level is skipped if
  * time does not suffice. */
 static starg_status guard_coarse_level(const guard_problem *problem, const guard_pool *finest,
@@ -198,7 +180,7 @@ static starg_status guard_coarse_level(const guard_problem *problem, const guard
     starg_solid *solid = NULL;
     guard_pool pool = {0};
     guard_selection next = {0};
-    status = make_level(problem, mesh, &solid);
+    status = solid_of_level(problem->context, problem->solid, mesh, &solid);
     chosen->time_limited = chosen->time_limited || status == STARG_ERROR_TIME;
     if (status == STARG_ERROR_TIME)
         return STARG_OK;

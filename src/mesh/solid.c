@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "core/memory.h"
+#include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/flood.h"
 
@@ -192,6 +193,23 @@ done:
     if (status != STARG_OK)
         starg_solid_free(solid);
     return status;
+}
+
+starg_status solid_of_level(starg_context *context, const starg_solid *fine,
+                            const starg_mesh *level, starg_solid **out) {
+    double lower[3], upper[3];
+    starg_check check = *fine->check;
+    if (!check.embedded)
+        return solid_make_in_time(context, level, out);
+    starg_mesh_bounds(level, lower, upper);
+    check.diagonal = vec3_distance(lower, upper);
+    check.area = starg_mesh_area(level);
+    check.volume = starg_mesh_volume(level);
+    check.vertices = level->vertex_count;
+    check.faces = level->face_count;
+    check.edges = level->face_count / 2 * 3;
+    return solid_of_parts(context, level->vertices, level->vertex_count, level->faces,
+                          level->face_count, &check, out);
 }
 
 void starg_solid_free(starg_solid *solid) {

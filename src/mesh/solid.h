@@ -81,6 +81,12 @@ starg_status solid_make_as_given(starg_context *context, const starg_mesh *mesh,
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out)
     STARG_PRIVATE(solid_make_in_time);
 
+/* A solid of a simplification of `fine`, within the time limit. If that is embedded, so is the
+ * level, since simplification keeps it so, and its shells and loops are the same: they are not
+ * looked for again. Errors: those of solid_make_in_time. */
+starg_status solid_of_level(starg_context *context, const starg_solid *fine,
+                            const starg_mesh *level, starg_solid **out);
+
 /* Rebuilds a solid that another process examined: its mesh after examination, and the needed part
  * of the check. Copies everything. Errors: those of starg_mesh_create. */
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,

@@ -145,6 +145,12 @@ class Decompose(support.Case):
         _, err = self.run_text(*base, "--balls", "--mode", "paper", status=1)
         self.assertIn("--mode strict", err)
 
+    def test_thin_tetrahedra_of_cuts(self):
+        """Cuts get vertices within where their triangles are thin: 0.017 degrees without."""
+        model = self.sample("giraffe", 500)
+        result = self.run_json("decompose", model, "-o", "p.vtk", "--effort", "30")
+        self.assertGreater(result["smallest_angle"], 0.03)
+
     def test_no_time(self):
         """However short the time, there are pieces, all star-shaped."""
         model = self.sample("gallery")

@@ -90,6 +90,32 @@ static void test_level_options_survive(void **state) {
     test_context_free(context);
 }
 
+/* What JSON cannot hold is left out rather than changed. */
+static void test_seeds(void **state) {
+    static const struct {
+        uint64_t seed;
+        const char *text;
+    } seeds[] = {{1, NULL}, {7, "\"seed\": 7"}, {UINT64_MAX, NULL}};
+    (void)state;
+    starg_context *context = test_context(1);
+    file_text file = file_of(ILP, CURVE);
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++) {
+        char *text;
+        size_t size;
+        starg_guards *guards = read_file(context, &file);
+        guards->seed = seeds[i].seed;
+        test_ok(context, starg_guards_write_memory(context, guards, "m", &text, &size));
+        const char *at = strstr(text, "\"seed\"");
+        if (seeds[i].text == NULL)
+            assert_null(at);
+        else
+            assert_memory_equal(at, seeds[i].text, strlen(seeds[i].text));
+        starg_text_free(context, text);
+        starg_guards_free(context, guards);
+    }
+    test_context_free(context);
+}
+
 /* A file without the step stays without it; null means quarters. */
 static void test_missing_step(void **state) {
     (void)state;
@@ -137,6 +163,7 @@ static void test_numbers_out_of_range(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_file_without_curve), cmocka_unit_test(test_level_options_survive),
-        cmocka_unit_test(test_missing_step), cmocka_unit_test(test_numbers_out_of_range)};
+        cmocka_unit_test(test_missing_step), cmocka_unit_test(test_seeds),
+        cmocka_unit_test(test_numbers_out_of_range)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

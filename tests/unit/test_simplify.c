@@ -6,6 +6,7 @@
 
 #include <dirent.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@
 #include "core/rng.h"
 #include "mesh/levels/collapse.h"
 #include "mesh/levels/heap.h"
+#include "mesh/solid.h"
 #include "models.h"
 #include "starguard/check.h"
 #include "starguard/sample.h"
@@ -524,6 +526,39 @@ static void test_levels(void **state) {
     test_context_free(context);
 }
 
+/* What is taken over from the finest level is what an examination of each finds. */
+static void test_levels_are_solids(void **state) {
+    static const char *const names[] = {"horse", "knot", "shell", "plate"};
+    (void)state;
+    starg_context *context = test_context(1);
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        starg_solid *fine = test_sample(context, names[n], 3600), *known, *examined;
+        starg_levels *levels;
+        test_ok(context,
+                starg_mesh_levels(context, starg_solid_mesh(fine), 500, 1000, NULL, &levels));
+        assert_true(starg_solid_check(fine)->embedded);
+        for (size_t i = 0; i < levels->count; i++) {
+            test_ok(context, solid_of_level(context, fine, levels->levels[i].mesh, &known));
+            test_ok(context, solid_make(context, levels->levels[i].mesh, &examined));
+            starg_check a = *starg_solid_check(known), b = *starg_solid_check(examined);
+            assert_same_mesh(starg_solid_mesh(known), starg_solid_mesh(examined));
+            assert_true(fabs(a.area - b.area) <= 1e-12 * b.area);
+            assert_true(fabs(a.volume - b.volume) <= 1e-12 * b.volume);
+            a.area = b.area;
+            a.volume = b.volume;
+            assert_true(fabs(a.diagonal - b.diagonal) <= 1e-12 * b.diagonal);
+            a.diagonal = b.diagonal;
+            a.face_marks = b.face_marks = NULL;
+            assert_memory_equal(&a, &b, offsetof(starg_check, findings));
+            starg_solid_free(known);
+            starg_solid_free(examined);
+        }
+        starg_levels_free(context, levels);
+        starg_solid_free(fine);
+    }
+    test_context_free(context);
+}
+
 /* Each a quarter of the next finer one; the last clamped to the coarsest, if worthwhile. */
 static void test_levels_by_quarters(void **state) {
     (void)state;
@@ -761,6 +796,7 @@ int main(void) {
         cmocka_unit_test(test_extreme_places),
         cmocka_unit_test(test_crossing_input_keeps_its_topology),
         cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_levels_are_solids),
         cmocka_unit_test(test_levels_by_quarters),
         cmocka_unit_test(test_levels_that_are_left_out),
         cmocka_unit_test(test_other_meshes_are_refused),
