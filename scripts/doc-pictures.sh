@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Draws the pictures of docs/ that show results of the command line: guards of four samples, what one guard
-# sees, a morph by three methods, distances of shapes. All from samples. Needs ImageMagick. Usage: doc-pictures.sh STARGUARD
+# sees, a morph by three methods, distances of shapes. All from samples. Needs ImageMagick. Usage: doc-pictures.sh [STARGUARD]
 set -eu
-starguard=$(readlink -f "$1")
+starguard=$(readlink -f "${1:-build/starguard}")
 pictures=$(cd "$(dirname "$0")/../docs/pictures" && pwd)
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/starguard-pictures.XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
