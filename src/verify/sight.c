@@ -19,17 +19,24 @@
 #include "core/memory.h"
 #include "verify/signs.h"
 
-enum { SIDES = 6, MAX_LEVELS = 8 };
+enum { SIDES = 6, MAX_LEVELS = 12 };
 
 typedef struct listing {
     uint32_t cell, face;
 } listing;
+
+/* Cells in a line of a side that an item may meet. */
+typedef struct strips {
+    uint32_t at[1u << MAX_LEVELS];
+    size_t count;
+} strips;
 
 struct verify_sight {
     const verify_surface *surface;
     uint32_t width;                /* cells in a row of a side */
     STARG_ARRAY(listing) listings; /* in order of insertion */
     STARG_ARRAY(uint32_t) cells;   /* of the item placed last */
+    strips columns, rows;          /* of that item on a side */
     size_t *start;                 /* of each cell's faces in `listed` */
     uint32_t *listed;              /* faces by cell */
     size_t listed_capacity;
@@ -97,33 +104,45 @@ static bool beyond(const item *it, int k, double limit, int direction) {
     return true;
 }
 
-/* Appends the cells of a side that the item may meet, among the `size` x `size` ones starting at
- * (column, row): recursively splits the square into four. */
-static starg_status place(verify_sight *sight, const item *it, uint32_t side, uint32_t column,
-                          uint32_t row, uint32_t size) {
-    starg_status status = STARG_OK;
-    double step = 2.0 / sight->width;
-    if (beyond(it, 0, column * step - 1, -1) || beyond(it, 0, (column + size) * step - 1, 1) ||
-        beyond(it, 1, row * step - 1, -1) || beyond(it, 1, (row + size) * step - 1, 1))
-        return STARG_OK;
+/* Appends those of the `size` columns (k = 0) or rows (k = 1) from `first` on: recursively halves. */
+static void find_strips(const item *it, int k, uint32_t width, uint32_t first, uint32_t size,
+                        strips *out) {
+    double step = 2.0 / width;
+    if (beyond(it, k, first * step - 1, -1) || beyond(it, k, (first + size) * step - 1, 1))
+        return;
     if (size == 1) {
-        uint32_t cell = (side * sight->width + row) * sight->width + column;
-        if (sight->cells.count == sight->cells.capacity) {
-            size_t capacity = 2 * sight->cells.capacity + 64;
-            uint32_t *grown = starg_reallocate(sight->surface->context, sight->cells.data,
-                                               sight->cells.count, capacity, sizeof *grown);
-            if (grown == NULL)
-                return STARG_ERROR_MEMORY;
-            sight->cells.data = grown;
-            sight->cells.capacity = capacity;
-        }
-        sight->cells.data[sight->cells.count++] = cell;
-        return STARG_OK;
+        out->at[out->count++] = first;
+        return;
     }
-    size /= 2;
-    for (uint32_t quarter = 0; quarter < 4 && status == STARG_OK; quarter++)
-        status = place(sight, it, side, column + (quarter & 1) * size, row + (quarter >> 1) * size,
-                       size);
+    find_strips(it, k, width, first, size / 2, out);
+    find_strips(it, k, width, first + size / 2, size / 2, out);
+}
+
+static starg_status reserve_cells(verify_sight *sight, size_t more) {
+    size_t count = sight->cells.count + more;
+    if (count <= sight->cells.capacity)
+        return STARG_OK;
+    uint32_t *grown = starg_reallocate(sight->surface->context, sight->cells.data,
+                                       sight->cells.count, 2 * count, sizeof *grown);
+    if (grown == NULL)
+        return STARG_ERROR_MEMORY;
+    sight->cells.data = grown;
+    sight->cells.capacity = 2 * count;
+    return STARG_OK;
+}
+
+/* Appends the cells of a side that the item may meet: all in such a column and such a row. */
+static starg_status place(verify_sight *sight, const item *it, uint32_t side) {
+    strips *columns = &sight->columns, *rows = &sight->rows;
+    columns->count = rows->count = 0;
+    find_strips(it, 0, sight->width, 0, sight->width, columns);
+    if (columns->count > 0)
+        find_strips(it, 1, sight->width, 0, sight->width, rows);
+    starg_status status = reserve_cells(sight, columns->count * rows->count);
+    for (size_t r = 0; r < rows->count && status == STARG_OK; r++)
+        for (size_t c = 0; c < columns->count; c++)
+            sight->cells.data[sight->cells.count++] =
+                (side * sight->width + rows->at[r]) * sight->width + columns->at[c];
     return status;
 }
 
@@ -140,7 +159,7 @@ static starg_status find_cells(verify_sight *sight, const double p[3], const dou
             it.x[i][1] = points[i][(axis + 2) % 3] - p[(axis + 2) % 3];
             it.x[i][2] = sign * (points[i][axis] - p[axis]);
         }
-        starg_status status = place(sight, &it, side, 0, 0, sight->width);
+        starg_status status = place(sight, &it, side);
         if (status != STARG_OK)
             return status;
     }
