@@ -7,7 +7,7 @@ CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 STRICT  := $(CMAKE) -DSTARGUARD_WERROR=ON
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
-LONG_PARTS := analysis slow exact memory threads mpi matrix
+LONG_PARTS := analysis slow exact memory threads mpi matrix aarch64
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
 	coverage mpi web lint fuzz bench install package wheel release deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
@@ -72,6 +72,11 @@ check-mpi: mpi
 check-matrix: deps-check
 	@JOBS=$(JOBS) scripts/determinism.py --matrix $(BUILD)-matrix
 
+# Visibility, covers and pieces on another processor: gcc and clang for aarch64, qemu.
+check-aarch64: deps-check
+	@scripts/install-deps.sh aarch64
+	@scripts/aarch64.sh $(BUILD)-aarch64 $(JOBS)
+
 # Which lines the tests reach. Left out are tests of what an instrumented build cannot have: its time,
 # and symbols and files that are installed.
 coverage: deps-check
@@ -134,4 +139,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-web demo dist
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-web $(BUILD)-aarch64 demo dist

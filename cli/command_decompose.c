@@ -426,6 +426,17 @@ done:
     return status;
 }
 
+/* ---- the command of a result ---- */
+
+starg_status cli_decompose_command(cli_session *session, const starg_decomposition *d,
+                                   const cli_pieces_files *files, char **line) {
+    values v = {.report = files->report, .binary = files->binary, .wanted = d->options};
+    if (d->options.guard_count > 0)
+        v.guards = "GUARDS";
+    return cli_command_print(session, &cli_command_decompose, &v, d->seed, d->file, files->pieces,
+                             line);
+}
+
 const cli_command cli_command_decompose = {
     .name = "decompose",
     .usage = "MODEL -o PIECES.vtk [options]",

@@ -283,8 +283,7 @@ done:
 
 /* ---- the command of a result ---- */
 
-static starg_status recall(cli_session *session, const starg_guards *g, values *v,
-                           cli_common *common) {
+static starg_status recall(cli_session *session, const starg_guards *g, values *v) {
     size_t vertices = g->vertex_count;
     for (size_t i = 0; i < g->obstacle_count; i++)
         vertices += g->obstacles[i].vertex_count;
@@ -296,7 +295,6 @@ static starg_status recall(cli_session *session, const starg_guards *g, values *
             v->candidates = sources[i].word;
     if (g->options.candidates == STARG_CANDIDATES_GIVEN)
         v->candidates = "CANDIDATES";
-    common->seed = g->seed;
     return cli_scene_recall(session, g, &v->scene);
 }
 
@@ -304,26 +302,11 @@ starg_status cli_guard_command(cli_session *session, const starg_guards *g, cons
                                char **line) {
     starg_status status = STARG_OK;
     values v = {0};
-    cli_common common = {0};
-    cli_group groups[CLI_GROUPS];
-    size_t size;
-    FILE *stream = open_memstream(line, &size);
-    if (stream == NULL)
-        return cli_fail_memory(session);
-    cli_command_groups(&cli_command_guard, &v, &common, groups);
-    for (int i = 0; i < CLI_GROUPS; i++)
-        cli_options_default(&groups[i]);
-    CLI_TRY(recall(session, g, &v, &common));
-    fputs("starguard guard ", stream);
-    cli_word_print(g->file != NULL ? g->file : "MODEL", stream);
-    fputs(" -o ", stream);
-    cli_word_print(output, stream);
-    for (int i = 0; i < CLI_GROUPS; i++)
-        cli_options_print(&groups[i], stream);
+    cli_command_default(&cli_command_guard, &v);
+    CLI_TRY(recall(session, g, &v));
+    CLI_TRY(cli_command_print(session, &cli_command_guard, &v, g->seed, g->file, output, line));
 done:
     cli_scene_forget(&v.scene);
-    if (fclose(stream) != 0 && status == STARG_OK)
-        status = cli_fail_memory(session);
     return status;
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "commands.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const cli_command *const cli_commands[] = {
@@ -49,4 +51,31 @@ void cli_command_groups(const cli_command *command, void *values, void *common,
             (cli_group){command->library()->fields, command->library()->count,
                         values != NULL ? (char *)values + command->library_offset : NULL};
     groups[CLI_COMMON] = (cli_group){cli_common_options, cli_common_option_count, common};
+}
+
+void cli_command_default(const cli_command *command, void *values) {
+    cli_group groups[CLI_GROUPS];
+    cli_command_groups(command, values, NULL, groups);
+    cli_options_default(&groups[CLI_OWN]);
+    cli_options_default(&groups[CLI_FROM_LIBRARY]);
+}
+
+starg_status cli_command_print(cli_session *session, const cli_command *command, void *values,
+                               uint64_t seed, const char *model, const char *output, char **line) {
+    cli_common common = {0};
+    cli_group groups[CLI_GROUPS];
+    size_t size;
+    FILE *stream = open_memstream(line, &size);
+    if (stream == NULL)
+        return cli_fail_memory(session);
+    cli_command_groups(command, values, &common, groups);
+    cli_options_default(&groups[CLI_COMMON]);
+    common.seed = seed;
+    fprintf(stream, "starguard %s ", command->name);
+    cli_word_print(model != NULL ? model : "MODEL", stream);
+    fputs(" -o ", stream);
+    cli_word_print(output, stream);
+    for (int i = 0; i < CLI_GROUPS; i++)
+        cli_options_print(&groups[i], stream);
+    return fclose(stream) == 0 ? STARG_OK : cli_fail_memory(session);
 }

@@ -57,10 +57,25 @@ enum { CLI_OWN, CLI_FROM_LIBRARY, CLI_COMMON, CLI_GROUPS };
 void cli_command_groups(const cli_command *command, void *values, void *common,
                         cli_group groups[CLI_GROUPS]);
 
-/* The command that makes a result again: on the heap, also on failure. Errors: MEMORY. */
+/* Sets the defaults of a command's own and its library's options. */
+void cli_command_default(const cli_command *command, void *values);
+
+/* The line that runs a command with these options: on the heap, also on failure. `model` may be
+ * NULL. Errors: MEMORY. */
+starg_status cli_command_print(cli_session *session, const cli_command *command, void *values,
+                               uint64_t seed, const char *model, const char *output, char **line);
+
+/* The command that makes a result again: likewise. */
 struct starg_guards;
 starg_status cli_guard_command(cli_session *session, const struct starg_guards *guards,
                                const char *output, char **line);
+struct starg_decomposition;
+typedef struct cli_pieces_files {
+    const char *pieces, *report; /* names */
+    bool binary;
+} cli_pieces_files;
+starg_status cli_decompose_command(cli_session *session, const struct starg_decomposition *pieces,
+                                   const cli_pieces_files *files, char **line);
 
 extern const cli_command cli_command_sample;
 extern const cli_command cli_command_check;

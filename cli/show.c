@@ -10,6 +10,7 @@
 #include "extensions.h"
 #include "model.h"
 #include "starguard/animation.h"
+#include "starguard/decompose.h"
 
 enum { HEAD = 4096 }; /* bytes used to recognize a file */
 
@@ -106,6 +107,7 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
         if (page->pieces != NULL)
             return fail_twice(session, "pieces file", file);
         page->pieces = result->pieces;
+        show->pieces_file = file;
     } else if (result->map != NULL || result->morph != NULL) {
         return cli_fail(session, STARG_ERROR_ARGUMENT, "'%.300s' has no page; %s", file,
                         result->map != NULL ? "'starguard map --picture' draws a map"
@@ -292,6 +294,43 @@ static starg_status measure(cli_session *session, cli_show *show) {
     return STARG_OK;
 }
 
+/* Can it be read once more? */
+static bool is_regular(const char *name) {
+    struct stat info;
+    return stat(name, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+/* Does the third line of PIECES.vtk say so? */
+static bool is_binary(const char *name) {
+    char head[HEAD + 1] = {0};
+    FILE *file = fopen(name, "rb");
+    if (file == NULL)
+        return false;
+    size_t size = fread(head, 1, HEAD, file);
+    fclose(file);
+    const char *line = size > 0 ? strchr(head, '\n') : NULL;
+    line = line != NULL ? strchr(line + 1, '\n') : NULL;
+    return line != NULL && strncmp(line + 1, "BINARY", 6) == 0;
+}
+
+/* What a clock has stopped does not come again, and there is no option for a target. A report that
+ * contradicts itself is shown, without a command. */
+static starg_status recall_pieces(cli_session *session, cli_show *show) {
+    starg_decomposition *d = NULL;
+    if (!is_regular(show->pieces_file) || !is_regular(show->report_file))
+        return STARG_OK;
+    starg_status status = starg_decomposition_read(session->context, NULL, show->report_file, &d);
+    if (status == STARG_ERROR_FORMAT)
+        return STARG_OK;
+    const cli_pieces_files files = {base_of(show->pieces_file), base_of(show->report_file),
+                                    is_binary(show->pieces_file)};
+    if (status == STARG_OK && d->options_known && !d->time_limited && d->options.tetra.target == 0)
+        status = cli_decompose_command(session, d, &files, &show->pieces_command);
+    show->page.pieces_command = show->pieces_command;
+    starg_decomposition_free(session->context, d);
+    return status;
+}
+
 static starg_status compute(cli_session *session, cli_show *show) {
     starg_status status = STARG_OK;
     bool radii = show->skeleton != NULL && show->skeleton->radii == NULL;
@@ -301,6 +340,8 @@ static starg_status compute(cli_session *session, cli_show *show) {
         CLI_TRY(starg_solid_create(session->context, show->model, &show->solid));
     if (show->skeleton != NULL)
         CLI_TRY(measure(session, show));
+    if (show->page.report != NULL)
+        CLI_TRY(recall_pieces(session, show));
 done:
     return status;
 }
@@ -358,6 +399,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
     for (int end = 0; end < 2; end++)
         starg_guards_free(session->context, show->ends[end]);
     free(show->command);
+    free(show->pieces_command);
     free(show->title);
     starg_skeleton_free(context, show->skeleton);
     starg_bits_free(show->seen);

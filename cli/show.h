@@ -10,7 +10,7 @@
 
 typedef struct cli_show {
     starg_page page; /* refers to the members below */
-    const char *guards_file, *report_file;
+    const char *guards_file, *pieces_file, *report_file;
     starg_tetmesh *tetmesh;
     starg_mesh *model, **frames;
     starg_solid *solid;
@@ -22,9 +22,9 @@ typedef struct cli_show {
     starg_guards *ends[2]; /* of a morph */
     bool from_animation;   /* frames come from starg_animation_read */
     size_t frame_count;
-    char *command;   /* that makes the guards again */
-    char *title;     /* of a morph that tells its shapes; else NULL */
-    cli_table table; /* of a database */
+    char *command, *pieces_command; /* that make the guards, the pieces again */
+    char *title;                    /* of a morph that tells its shapes; else NULL */
+    cli_table table;                /* of a database */
     double *distances;
     starg_page_shape *shapes;
     uint8_t **pictures; /* of shapes, where available */

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing Debian packages, as root or with sudo.
-# Usage: install-deps.sh build|check|coverage|memory|mpi|wheel|web|bench ...
+# Usage: install-deps.sh build|check|coverage|memory|mpi|wheel|aarch64|web|bench ...
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 
@@ -20,6 +20,7 @@ for purpose in "$@"; do
     memory) packages="$packages valgrind" ;;
     mpi) packages="$packages libopenmpi-dev openmpi-bin" ;;
     wheel) packages="$packages patchelf binutils debootstrap python3-pip" ;;
+    aarch64) packages="$packages gcc-aarch64-linux-gnu g++-aarch64-linux-gnu qemu-user-static" ;;
     web) packages="$packages emscripten dpkg-dev" ;;
     bench) packages="$packages libembree-dev hyperfine" ;;
     *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;

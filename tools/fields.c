@@ -17,13 +17,13 @@
 #define SEARCHED(KEY, HELP)                                                                        \
     {                                                                                              \
         .key = KEY, .kind = STARG_FIELD_COUNT, .flags = STARG_FIELD_OPTIONAL, .least = 1,          \
-        .most = UINT64_MAX, .help = HELP                                                           \
+        .most = INT64_MAX, .help = HELP                                                            \
     }
 static const starg_field GUARD_REPORT[] = {
     {.key = "output", .kind = STARG_FIELD_TEXT, .help = "The file that was written."},
     {.key = "sight_lines",
      .kind = STARG_FIELD_COUNT,
-     .most = UINT64_MAX,
+     .most = INT64_MAX,
      .help = "Tests that refinement made."},
     SEARCHED("cells", "--prove: boxes of the subdivision."),
     SEARCHED("witnesses", "--prove: faces or vertices that the bound is proven for."),
@@ -36,11 +36,11 @@ static const starg_fields GUARD_REPORT_TABLE = {.name = "report", FIELD_ROWS(GUA
 static const starg_field RECONSTRUCTION[] = {
     {.key = "points",
      .kind = STARG_FIELD_COUNT,
-     .most = UINT64_MAX,
+     .most = INT64_MAX,
      .help = "Of the boundary, that the descriptor holds."},
     {.key = "samples",
      .kind = STARG_FIELD_COUNT,
-     .most = UINT64_MAX,
+     .most = INT64_MAX,
      .help = "Random points of the surface."},
     DISTANCE("to_mean", "Distance of the points from the surface, by the diagonal: mean."),
     DISTANCE("to_largest", "The same: largest."),
@@ -57,11 +57,11 @@ static const starg_field DECOMPOSE_REPORT[] = {
      .help = "Of all tetrahedra, in cubic model units; rounded."},
     {.key = "single_tetrahedra",
      .kind = STARG_FIELD_COUNT,
-     .most = UINT64_MAX,
+     .most = INT64_MAX,
      .help = "Pieces of one tetrahedron."},
     {.key = "contacts",
      .kind = STARG_FIELD_COUNT,
-     .most = UINT64_MAX,
+     .most = INT64_MAX,
      .help = "Length of adjacency."},
 };
 static const starg_fields DECOMPOSE_REPORT_TABLE = {.name = "report", FIELD_ROWS(DECOMPOSE_REPORT)};

@@ -4,7 +4,18 @@ import { BufferAttribute, BufferGeometry, Color, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
 import { setCutOpen, shared, surfaceMaterial } from "./materials.js";
-import { check, element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
+import {
+    check,
+    commandLine,
+    element,
+    facts,
+    heading,
+    note,
+    pickList,
+    say,
+    slider,
+    swatch,
+} from "./panel.js";
 import { Labels } from "./labels.js";
 import { PickPoints } from "./points.js";
 import { normalAttribute } from "./surface.js";
@@ -186,6 +197,7 @@ export class PiecesView extends View {
         );
         if (!told.reported)
             node.append(note("Without PIECES.json, guards and proofs are not known."));
+        if (told.command) node.append(heading("The same pieces again"), commandLine(told.command));
         return node;
     }
 

@@ -29,6 +29,35 @@ typedef enum starg_balls {
     STARG_BALLS_EVEN = 2  /* faces get shares of the sphere nearer to those of the surface */
 } starg_balls;
 
+/* Default density of initial tetrahedra: that of [YL11] for PAPER, and low for STRICT, which needs
+ * them only where the surface is not embedded. */
+#define STARG_DECOMPOSE_DENSITY (-1.0)
+
+typedef struct starg_decompose_options {
+    starg_decompose_mode mode;
+    starg_tetra_options tetra; /* how to tetrahedralize, where that is needed */
+    /* STRICT: stop the search at this number of pieces. PAPER: at most this number, at the cost of
+     * visibility (but one for each component). 0: as few as possible. */
+    size_t max_pieces;
+    const double *guards; /* guard_count x 3, or NULL. PAPER: seeds of the pieces; NULL: those of
+                             starg_guard. STRICT: tried as guards, too */
+    size_t guard_count;
+    /* STRICT: number of trials of the search. 0: a fixed amount of work, the same on every machine
+     * and for any number of threads; unlimited if the context has a time limit */
+    uint64_t effort;
+    /* starg_decompose_open_mesh: fill the surface even if the filled volume is far from it */
+    bool fill;
+    /* STRICT: spend more on guards away from the planes of their pieces' faces, and so on the
+     * angles of tetrahedra */
+    bool quality;
+    /* STRICT, embedded surfaces: prove first how few star-shaped pieces can make up the solid,
+     * however it is cut (lower_bound), in half of the time that the context allows; the search then
+     * ends as soon as there are no more */
+    bool prove;
+    uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
+    starg_balls balls;   /* STRICT: map each piece to a ball */
+} starg_decompose_options;
+
 /* One piece. If `star` is true, its guard is strictly inside its kernel, by exact tests: strictly
  * on the inner side of each boundary face, and the boundary winds around it once. */
 typedef struct starg_piece {
@@ -92,36 +121,14 @@ typedef struct starg_decomposition {
      * weighted by volume, and the share of the volume where it is above 10. */
     double ball_worst, ball_mean, ball_above_10;
     bool time_limited; /* the time limit stopped the search: another run may differ */
+    /* How it was made, unless it was read from a report of an earlier version: then nothing of
+     * this is known. The guards are only counted, and the path of tetgen is left out. An effort
+     * that only --time-limit makes unlimited is INT64_MAX where the usual one would have ended
+     * earlier. */
+    bool options_known;
+    starg_decompose_options options;
+    uint64_t seed;
 } starg_decomposition;
-
-/* Default density of initial tetrahedra: that of [YL11] for PAPER, and low for STRICT, which needs
- * them only where the surface is not embedded. */
-#define STARG_DECOMPOSE_DENSITY (-1.0)
-
-typedef struct starg_decompose_options {
-    starg_decompose_mode mode;
-    starg_tetra_options tetra; /* how to tetrahedralize, where that is needed */
-    /* STRICT: stop the search at this number of pieces. PAPER: at most this number, at the cost of
-     * visibility (but one for each component). 0: as few as possible. */
-    size_t max_pieces;
-    const double *guards; /* guard_count x 3, or NULL. PAPER: seeds of the pieces; NULL: those of
-                             starg_guard. STRICT: tried as guards, too */
-    size_t guard_count;
-    /* STRICT: number of trials of the search. 0: a fixed amount of work, the same on every machine
-     * and for any number of threads; unlimited if the context has a time limit */
-    uint64_t effort;
-    /* starg_decompose_open_mesh: fill the surface even if the filled volume is far from it */
-    bool fill;
-    /* STRICT: spend more on guards away from the planes of their pieces' faces, and so on the
-     * angles of tetrahedra */
-    bool quality;
-    /* STRICT, embedded surfaces: prove first how few star-shaped pieces can make up the solid,
-     * however it is cut (lower_bound), in half of the time that the context allows; the search then
-     * ends as soon as there are no more */
-    bool prove;
-    uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
-    starg_balls balls;   /* STRICT: map each piece to a ball */
-} starg_decompose_options;
 
 /* STRICT, as few pieces as possible. */
 STARG_API void starg_decompose_options_default(starg_decompose_options *options);
@@ -196,7 +203,8 @@ STARG_API starg_status starg_decomposition_write_report_memory(
     starg_context *context, const starg_decomposition *decomposition, const char *model_file,
     char **text, size_t *size);
 
-/* Reads both files; writing the result gives the same bytes. Errors: READ, FORMAT (also if the
+/* Reads both files; writing the result gives the same bytes. `pieces_path` may be NULL: then mesh
+ * and labels are left out (NULL). Errors: READ, FORMAT (also if the
  * files belong to different decompositions), MEMORY, CANCELLED, and those of starg_tetmesh_read. */
 STARG_API starg_status starg_decomposition_read(starg_context *context, const char *pieces_path,
                                                 const char *report_path, starg_decomposition **out);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Iterator
 
 import numpy as np
@@ -73,6 +73,9 @@ class Decomposition:
     ball_worst: float
     ball_mean: float
     ball_above_10: float
+    #: The options of `decompose` that were used, and the seed; None where a file does not tell.
+    options: dict[str, Any] | None
+    seed: int | None
     _handle: Any = field(repr=False)
 
     def __repr__(self) -> str:
@@ -96,7 +99,7 @@ class Decomposition:
             for name in files:
                 with open(name, "rb") as file:
                     contents.append(file.read())
-        return Decomposition.from_bytes, tuple(contents)
+        return _unpickled, (*contents, self.options)
 
     def _repr_html_(self) -> str:
         from .pictures import distinct_colors
@@ -230,6 +233,11 @@ def _certified(session: Session, path: PathLike, solid: Any, wanted: Any, **call
     return handle
 
 
+def _unpickled(pieces: bytes, report: bytes, options: dict[str, Any] | None) -> Decomposition:
+    """A decomposition from its pickle: the files do not tell all options."""
+    return replace(Decomposition.from_bytes(pieces, report), options=options)
+
+
 @takes(OPTIONS)
 def decompose(model: Any, *, guards: ArrayLike | None = None,
               certificate: PathLike | None = None, threads: int | None = None,
@@ -290,6 +298,8 @@ def _of(d: Any, file: PathLike | None = None) -> Decomposition:
     mesh = TetMesh._of(d.mesh, owner=d)
     return fill(Decomposition, d, _handle=d, file=text(d.file) if d.file else name_of(file),
                 mode=OPTIONS.word("mode", d.mode),
+                options=OPTIONS.read(ffi.addressof(d, "options")) if d.options_known else None,
+                seed=d.seed if d.options_known else None,
                 tetra=TetraReport._of(d.tetra), mesh=mesh,
                 labels=_arrays.view(d, d.labels, (len(mesh.tetrahedra),), np.int32),
                 ball_corners=(_arrays.view(d, d.ball_corners, (len(mesh.tetrahedra), 4, 3),

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Converts a struct to JSON and back by its field table (starguard/fields.h).
  *
- * Writing is lossless: reals have 17 significant digits. Reading is strict: every key is checked
- * against its type and range, so that reading a written file gives the same struct, and writing
- * that the same bytes. Members follow the order of the table; whether one applies may depend on
- * earlier ones. */
+ * Writing is lossless: reals have 17 significant digits, counts above 2^63 - 1 are texts. Reading
+ * is strict: every key is checked against its type and range, so that reading a written file gives
+ * the same struct, and writing that the same bytes. Members follow the order of the table; whether
+ * one applies may depend on earlier ones. */
 #include "core/record.h"
 
 #include <math.h>
@@ -71,7 +71,11 @@ static json_t *count_json(const starg_field *f, const void *record) {
     uint64_t value = starg_field_count(f, record);
     if ((f->flags & STARG_FIELD_NULLABLE) && value == f->none)
         return json_null();
-    return json_integer((json_int_t)value);
+    if (value <= INT64_MAX)
+        return json_integer((json_int_t)value);
+    char digits[32];
+    snprintf(digits, sizeof digits, "%llu", (unsigned long long)value);
+    return json_string(digits);
 }
 
 static json_t *reals_json(const char *at, size_t count) {
@@ -339,14 +343,30 @@ static starg_status read_word(const reader *r, json_t *value, const starg_field 
     return reject_value(r, f);
 }
 
+/* A count above 2^63 - 1, which JSON readers may not hold as a number: its digits. */
+static bool read_digits(const char *digits, uint64_t *value) {
+    *value = 0;
+    for (const char *c = digits; *c != '\0'; c++) {
+        uint64_t digit = (uint64_t)(*c - '0');
+        if (*c < '0' || *c > '9' || *value > (UINT64_MAX - digit) / 10)
+            return false;
+        *value = 10 * *value + digit;
+    }
+    return *value > INT64_MAX;
+}
+
 static starg_status read_number(const reader *r, json_t *value, const starg_field *f,
                                 void *record) {
     bool good = false;
+    uint64_t large;
     if (f->kind == STARG_FIELD_FLAG && json_is_boolean(value))
         good = starg_field_set_count(f, record, json_is_true(value));
     else if (f->kind == STARG_FIELD_COUNT && json_is_integer(value) &&
              json_integer_value(value) >= 0)
         good = starg_field_set_count(f, record, (uint64_t)json_integer_value(value));
+    else if (f->kind == STARG_FIELD_COUNT && json_is_string(value) &&
+             read_digits(json_string_value(value), &large))
+        good = starg_field_set_count(f, record, large);
     else if (f->kind == STARG_FIELD_REAL && json_is_number(value))
         good = starg_field_set_real(f, record, json_number_value(value));
     return good ? STARG_OK : reject_value(r, f);

@@ -425,10 +425,14 @@ static json_t *pieces_json(book *b) {
     for (size_t i = 0; i < b->surfaces.piece_count; i++)
         append(b, list, piece_json(b, i));
     const starg_pieces_report *report = b->page->report;
-    return json_pack("{s:o, s:I, s:b, s:I, s:b}", "list", list, "tetrahedra",
-                     (json_int_t)b->page->pieces->count, "reported", (int)(report != NULL),
-                     "lower_bound", (json_int_t)(report != NULL ? report->lower_bound : 0),
-                     "optimal", (int)(report != NULL && report->optimal));
+    json_t *pieces =
+        json_pack("{s:o, s:I, s:b, s:I, s:b}", "list", list, "tetrahedra",
+                  (json_int_t)b->page->pieces->count, "reported", (int)(report != NULL),
+                  "lower_bound", (json_int_t)(report != NULL ? report->lower_bound : 0), "optimal",
+                  (int)(report != NULL && report->optimal));
+    if (b->page->pieces_command != NULL)
+        put(b, pieces, "command", json_string(b->page->pieces_command));
+    return pieces;
 }
 
 static json_t *skeleton_json(const starg_skeleton *s) {

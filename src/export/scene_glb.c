@@ -157,7 +157,8 @@ static json_t *triple(const double x[3]) {
     return json_pack("[f, f, f]", x[0], x[1], x[2]);
 }
 
-/* An accessor of all of a view of reals; positions have their box, as the file holds it. */
+/* An accessor of all of a view of reals; positions have their box, as the file holds it. With fmin
+ * and fmax, gcc 12 for aarch64 breaks off at -O3. */
 static json_int_t add_reals(glb_scene *s, view_kind kind) {
     const view *v = &s->views[kind];
     json_t *accessor =
@@ -168,8 +169,9 @@ static json_int_t add_reals(glb_scene *s, view_kind kind) {
         for (size_t k = 0; k < 3; k++) {
             lower[k] = upper[k] = (double)real_of(s, kind, 0, k);
             for (size_t i = 1; i < v->count; i++) {
-                lower[k] = fmin(lower[k], (double)real_of(s, kind, i, k));
-                upper[k] = fmax(upper[k], (double)real_of(s, kind, i, k));
+                double x = (double)real_of(s, kind, i, k);
+                lower[k] = x < lower[k] ? x : lower[k];
+                upper[k] = x > upper[k] ? x : upper[k];
             }
         }
         put(s, accessor, "min", triple(lower));

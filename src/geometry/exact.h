@@ -12,10 +12,10 @@
 #include <stdint.h>
 
 /* Doubles below 1e100 need at most 333 + 1074 bits above the smallest subnormal: 23 limbs for a
- * difference, 117 for the in-sphere determinant, which has degree five, 138 for the squares that
- * tell how obliquely a point sees a triangle, which have degree six, with a cosine of at most 53 +
- * 64 bits. */
-enum { EXACT_LIMBS = 144 };
+ * difference, 117 for the in-sphere determinant, which has degree five, 168 for the squares that
+ * tell how obliquely a point sees a triangle, which have degree six, with a cosine of any size: 17
+ * limbs, twice. */
+enum { EXACT_LIMBS = 176 };
 
 /* sign is -1, 0 or 1; limb[0 .. count - 1] is the magnitude, lowest first, no leading zeros. */
 typedef struct exact {

@@ -64,17 +64,20 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_decompose_options, fill),
      .help = "Fill a surface with holes even if the filled volume is farther from it than a fifth "
              "of its diagonal."},
-    {.option = "quality",
+    {.key = "quality",
+     .option = "quality",
      .kind = STARG_FIELD_FLAG,
      FIELD_MEMBER(starg_decompose_options, quality),
      .help = "strict: spend more on room for the guards, which makes better tetrahedra."},
-    {.option = "prove",
+    {.key = "prove",
+     .option = "prove",
      .kind = STARG_FIELD_FLAG,
      FIELD_MEMBER(starg_decompose_options, prove),
      .help =
          "strict: prove first how few star-shaped pieces there can be, however the solid is cut; "
          "the search ends as soon as there are no more."},
-    {.option = "prove-work",
+    {.key = "prove_work",
+     .option = "prove-work",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, prove_work),
      .most = UINT64_MAX >> 1,
@@ -97,6 +100,12 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "decompose options", .size = sizeof(starg_decompose_options), FIELD_ROWS(OPTIONS)};
+
+/* In files without the last two, tetgen's path and its limit in seconds. */
+const starg_fields decompose_file_options = {.name = "options",
+                                             .size = sizeof(starg_decompose_options),
+                                             .fields = OPTIONS,
+                                             .count = sizeof OPTIONS / sizeof *OPTIONS - 2};
 
 const starg_fields *starg_decompose_options_fields(void) {
     return &OPTIONS_TABLE;
@@ -149,6 +158,18 @@ static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
     return status;
 }
 
+/* What made a result. The search has noted its effort. */
+static void remember(const starg_context *context, const starg_decompose_options *options,
+                     starg_decomposition *d) {
+    uint64_t effort = d->options.effort;
+    d->options_known = true;
+    d->options = *options;
+    d->options.effort = effort;
+    d->options.guards = NULL;
+    d->options.tetra.tetgen = NULL;
+    d->seed = context->seed;
+}
+
 /* What every result has, once its pieces are final. */
 static starg_status complete(starg_context *context, const starg_decompose_options *options,
                              starg_decomposition *out) {
@@ -183,6 +204,7 @@ starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh
     (*out)->model_vertices = mesh->vertex_count;
     (*out)->model_tetrahedra = mesh->count;
     STARG_TRY(complete(context, options, *out));
+    remember(context, options, *out);
 done:
     return drop_failed(context, status, out);
 }
@@ -287,18 +309,20 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     STARG_TRY(complete(context, options, *out));
     if (solid != NULL && (*out)->tetra.surface_kept)
         STARG_TRY(angles_tell_apart(context, model, *out));
+    remember(context, options, *out);
 done:
     return drop_failed(context, status, out);
 }
 
-/* Half of the time that is left is for the proof. */
+/* Half of the time that is left is for the proof; did it end that? */
 static starg_status find_bound(starg_context *context, const starg_solid *solid,
                                const starg_decompose_options *options, bool certified,
-                               corner_guards *out) {
+                               corner_guards *out, bool *time_limited) {
     const starg_deadline all = context->deadline;
     if (all.at > 0)
         context->deadline.at -= fmax(starg_seconds_left(context), 0) / 2;
     starg_status status = piece_bound_find(context, solid, options->prove_work, certified, out);
+    *time_limited = starg_time_is_over(context);
     context->deadline.at = all.at;
     return status;
 }
@@ -309,7 +333,8 @@ static starg_status decompose_proven(starg_context *context, const starg_solid *
                                      corner_guards *bound, starg_decomposition **out) {
     starg_status status = STARG_OK;
     starg_decompose_options own = *options;
-    STARG_TRY(find_bound(context, solid, options, certified, bound));
+    bool time_limited;
+    STARG_TRY(find_bound(context, solid, options, certified, bound, &time_limited));
     if (own.max_pieces < bound->bound)
         own.max_pieces = bound->bound;
     if (own.guards == NULL) {
@@ -319,6 +344,8 @@ static starg_status decompose_proven(starg_context *context, const starg_solid *
     STARG_TRY(decompose_model(context, solid, NULL, &own, out));
     (*out)->lower_bound = bound->bound;
     (*out)->optimal = bound->bound == (*out)->piece_count;
+    (*out)->time_limited = (*out)->time_limited || time_limited;
+    remember(context, options, *out);
 done:
     return status;
 }

@@ -12,6 +12,9 @@ extern const char *const decompose_mode_words[];
 /* Words of starg_balls, likewise. */
 extern const char *const decompose_ball_words[];
 
+/* starg_decompose_options in PIECES.json. */
+extern const starg_fields decompose_file_options;
+
 /* PIECES.json as a starg_decomposition. */
 extern const starg_fields decomposition_file_fields;
 

@@ -31,6 +31,10 @@ static bool is_approximated(const void *record) {
     return !of(record)->tetra.surface_kept;
 }
 
+static bool is_told(const void *record) {
+    return of(record)->options_known;
+}
+
 static bool is_bounded(const void *record) {
     return of(record)->lower_bound > 0;
 }
@@ -143,6 +147,28 @@ static const starg_field FILE_ROWS[] = {
     {.key = "format", .kind = STARG_FIELD_CONSTANT, .value = "starguard-pieces"},
     {.key = "version", .kind = STARG_FIELD_CONSTANT, .initial = 1},
     {.key = "model", .kind = STARG_FIELD_RECORD, .of = &MODEL_TABLE},
+    {.key = "options",
+     .kind = STARG_FIELD_RECORD,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(options),
+     .of = &decompose_file_options,
+     .applies = is_told,
+     .help = "The options used."},
+    {.key = "seed",
+     .kind = STARG_FIELD_COUNT,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     RESULT(seed),
+     .applies = is_told,
+     .most = UINT64_MAX,
+     .initial = 1,
+     .help = "The seed of random numbers, absent if 1; above 2^63 - 1 its digits as a text."},
+    {.key = "guards_given",
+     .kind = STARG_FIELD_COUNT,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     RESULT(options.guard_count),
+     .applies = is_told,
+     .most = UINT32_MAX,
+     .help = "Number of initial guards that were given; absent if none were."},
     {.key = "mode", .kind = STARG_FIELD_CHOICE, RESULT(mode), .words = decompose_mode_words},
     {.key = "surface",
      .kind = STARG_FIELD_CHOICE,

@@ -46,6 +46,8 @@ static starg_status read_report(starg_context *context, const starg_file_bytes *
     starg_status status = STARG_OK;
     json_t *root = NULL;
     STARG_TRY(starg_json_parse(context, STAGE, file->name, file->bytes, file->size, &root));
+    starg_decompose_options_default(&d->options);
+    d->options_known = json_object_get(root, "options") != NULL;
     STARG_TRY(record_read(context, file->name, root, &decomposition_file_fields, d));
     STARG_TRY(check_report(context, file->name, d));
     d->tetra.generator = d->tetra.surface_kept ? STARG_TETRA_AUTO : STARG_TETRA_STUFFING;
@@ -106,10 +108,12 @@ starg_status starg_decomposition_read_memory(starg_context *context, const starg
     *out = NULL;
     STARG_NEW_ZERO(context, STAGE, d, 1);
     STARG_TRY(read_report(context, report, d));
-    STARG_TRY(
-        starg_tetmesh_read_memory(context, pieces->bytes, pieces->size, pieces->name, &d->mesh));
-    STARG_TRY(take_labels(context, report, d));
-    STARG_TRY(take_balls(context, pieces, d));
+    if (pieces != NULL) {
+        STARG_TRY(starg_tetmesh_read_memory(context, pieces->bytes, pieces->size, pieces->name,
+                                            &d->mesh));
+        STARG_TRY(take_labels(context, report, d));
+        STARG_TRY(take_balls(context, pieces, d));
+    }
     *out = d;
 done:
     if (status != STARG_OK)
@@ -124,10 +128,12 @@ starg_status starg_decomposition_read(starg_context *context, const char *pieces
     char *pieces_bytes = NULL, *report_bytes = NULL;
     *out = NULL;
     STARG_TRY(starg_file_read(context, STAGE, report_path, &report_bytes, &report.size));
-    STARG_TRY(starg_file_read(context, STAGE, pieces_path, &pieces_bytes, &pieces.size));
+    if (pieces_path != NULL)
+        STARG_TRY(starg_file_read(context, STAGE, pieces_path, &pieces_bytes, &pieces.size));
     report.bytes = report_bytes;
     pieces.bytes = pieces_bytes;
-    STARG_TRY(starg_decomposition_read_memory(context, &pieces, &report, out));
+    STARG_TRY(starg_decomposition_read_memory(context, pieces_path != NULL ? &pieces : NULL,
+                                              &report, out));
 done:
     starg_release(context, report_bytes);
     starg_release(context, pieces_bytes);

@@ -86,15 +86,17 @@ class View(Case):
         self.run_text("view", "frames", "-o", "page.html")
         self.assertEqual(data_of(self.read("page.html"))["morph"]["guards"], 0)
 
-    def command_of(self, result):
-        """The words of the command in the page of a result."""
-        self.run_text("view", result, "-o", "page.html")
-        return shlex.split(data_of(self.read("page.html"))["guards"]["command"])
+    def command_of(self, *results, part="guards"):
+        """The words of the command in the page of a result; None if it has none."""
+        self.run_text("view", *results, "-o", "page.html")
+        command = data_of(self.read("page.html"))[part].get("command")
+        return command and shlex.split(command)
 
     def test_the_command_makes_the_same_guards(self):
         self.sample("labyrinth", 500, "it's a maze.off")
         plain = ["starguard", "guard", "it's a maze.off", "-o", "g.json"]
         for options in ([], ["--prove", "--seed", "7", "--prove-work", "300000"],
+                        ["--seed", "18446744073709551615", "--count", "30"],
                         ["--method", "greedy", "--candidates", "interior", "--count", "77"],
                         ["--no-refine", "--coarsest", "100", "--step", "60", "--significance", "0.3"],
                         ["--method", "ilp", "--max-nodes", "3", "--visibility", "sweep"],
@@ -113,6 +115,46 @@ class View(Case):
                 self.assertTrue(options or words == plain, words)
                 self.run_text(*words[1:])
                 self.assertEqual(self.read("g.json"), first, words)
+
+    def test_the_command_makes_the_same_pieces(self):
+        self.sample("gallery", 500, "it's a room.off")
+        self.run_text("decompose", "it's a room.off", "-o", "tets.vtk", "--mode", "paper", "--density", "4")
+        plain = ["starguard", "decompose", "it's a room.off", "-o", "p.vtk", "--report", "p.json"]
+        self.run_text("guard", "it's a room.off", "-o", "GUARDS", "--method", "greedy")
+        for model, options in (
+                ("it's a room.off", ["--effort", "30"]),
+                ("it's a room.off", ["--effort", "20", "--seed", "9223372036854775808", "--binary"]),
+                ("it's a room.off", ["--effort", "20", "--seed", "18446744073709551615", "--quality"]),
+                ("it's a room.off", ["--max-pieces", "12", "--seed", "0"]),
+                ("it's a room.off", ["--effort", "9", "--prove", "--prove-work", "100000"]),
+                ("it's a room.off", ["--effort", "9", "--balls", "even"]),
+                ("it's a room.off", ["--effort", "9", "--guards", "GUARDS"]),
+                ("it's a room.off", ["--mode", "paper", "--density", "3.7", "--max-pieces", "5"]),
+                ("it's a room.off", ["--mode", "paper", "--generator", "stuffing"]),
+                ("tets.vtk", ["--effort", "9", "--balls"])):
+            with self.subTest(model=model, options=options):
+                self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", *options)
+                first = self.read("p.vtk"), self.read("p.json")
+                words = self.command_of("p.vtk", "p.json", part="pieces")
+                plain[2] = model
+                self.assertEqual(words[:3] + words[3:5], plain[:5])
+                self.assertEqual(len(words), len(plain) + len(options) + (options[-1] == "--balls"), words)
+                for name in "p.vtk", "p.json":
+                    os.remove(self.path(name))
+                self.run_text(*words[1:])
+                self.assertEqual((self.read("p.vtk"), self.read("p.json")), first, words)
+
+    def test_pieces_that_nothing_makes_again_have_no_command(self):
+        self.sample("gallery", 500, "room.off")
+        files = "p.vtk", "p.json"
+        self.run_text("decompose", "room.off", "-o", "p.vtk", "--report", "p.json", "--effort", "9")
+        self.assertTrue(self.command_of(*files, part="pieces"))
+        report = json.loads(self.read("p.json"))
+        for change in ({"options": None}, {"time_limited": True},
+                       {"options": dict(report["options"], target=500)}):
+            other = {key: value for key, value in {**report, **change}.items() if value is not None}
+            self.write("p.json", json.dumps(other))
+            self.assertIsNone(self.command_of(*files, part="pieces"), change)
 
     def test_a_command_names_files_that_are_not_known(self):
         self.sample("l-room", 500, "room.off")

@@ -226,7 +226,7 @@ static void check_dual(cover_run *run, starg_rng *rng, cover_instance *instance)
 
 /* A full cover from all rows in random order, without redundant ones. */
 static void random_cover(starg_rng *rng, const cover_instance *instance, cover_state *out) {
-    size_t order[COVER_ORACLE_ROWS];
+    size_t order[COVER_ORACLE_ROWS] = {0};
     for (size_t i = 0; i < instance->rows; i++) {
         size_t other = starg_rng_below(rng, i + 1);
         order[i] = order[other];

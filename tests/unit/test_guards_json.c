@@ -90,12 +90,16 @@ static void test_level_options_survive(void **state) {
     test_context_free(context);
 }
 
-/* What JSON cannot hold is left out rather than changed. */
+/* JSON readers hold whole numbers up to 2^63 - 1: larger ones are texts. */
 static void test_seeds(void **state) {
     static const struct {
         uint64_t seed;
         const char *text;
-    } seeds[] = {{1, NULL}, {7, "\"seed\": 7"}, {UINT64_MAX, NULL}};
+    } seeds[] = {{1, NULL},
+                 {7, "\"seed\": 7"},
+                 {INT64_MAX, "\"seed\": 9223372036854775807,"},
+                 {(uint64_t)INT64_MAX + 1, "\"seed\": \"9223372036854775808\""},
+                 {UINT64_MAX, "\"seed\": \"18446744073709551615\""}};
     (void)state;
     starg_context *context = test_context(1);
     file_text file = file_of(ILP, CURVE);
@@ -110,8 +114,37 @@ static void test_seeds(void **state) {
             assert_null(at);
         else
             assert_memory_equal(at, seeds[i].text, strlen(seeds[i].text));
+        starg_guards_free(context, guards);
+        test_ok(context, starg_guards_read_memory(context, text, size, "again", &guards));
+        assert_true(guards->seed == seeds[i].seed);
         starg_text_free(context, text);
         starg_guards_free(context, guards);
+    }
+    test_context_free(context);
+}
+
+static void test_wrong_seeds(void **state) {
+    static const char *const seeds[] = {"\"\"",
+                                        "\"7\"",
+                                        "\"9223372036854775807\"",
+                                        "\"18446744073709551616\"",
+                                        "\"-9223372036854775808\"",
+                                        "\"9223372036854775808 \"",
+                                        "\"0x8000000000000000\"",
+                                        "-1",
+                                        "1.5"};
+    (void)state;
+    starg_context *context = test_context(1);
+    file_text file = file_of(ILP, CURVE);
+    const char *from = strstr(file.text, "\"guards\"");
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++) {
+        char text[sizeof file.text + 64];
+        starg_guards *guards;
+        int size = snprintf(text, sizeof text, "%.*s\"seed\": %s, %s", (int)(from - file.text),
+                            file.text, seeds[i], from);
+        assert_int_equal(starg_guards_read_memory(context, text, (size_t)size, "m", &guards),
+                         STARG_ERROR_FORMAT);
+        assert_non_null(strstr(starg_context_error(context)->message, "\"seed\""));
     }
     test_context_free(context);
 }
@@ -163,7 +196,7 @@ static void test_numbers_out_of_range(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_file_without_curve), cmocka_unit_test(test_level_options_survive),
-        cmocka_unit_test(test_missing_step), cmocka_unit_test(test_seeds),
-        cmocka_unit_test(test_numbers_out_of_range)};
+        cmocka_unit_test(test_missing_step),       cmocka_unit_test(test_seeds),
+        cmocka_unit_test(test_wrong_seeds),        cmocka_unit_test(test_numbers_out_of_range)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -513,6 +513,35 @@ test("numbers stand beside the guards, and go with the box", async () => {
     });
 });
 
+test("the commands that make results again are copied", async () => {
+    const lines = {
+        Guards: "starguard guard horse.off -o guards.json",
+        Pieces: "starguard decompose horse.off -o pieces.vtk --report pieces.json --mode paper",
+    };
+    await look("all.html", {}, async (page) => {
+        await page.evaluate(() => {
+            window.copied = [];
+            const writeText = async (text) => window.copied.push(text);
+            Object.defineProperty(navigator, "clipboard", { value: { writeText } });
+        });
+        for (const [tab, line] of Object.entries(lines)) {
+            await openTab(page, tab);
+            const command = page.locator(".command:visible");
+            assert.equal(await command.locator("code").textContent(), line);
+            await command.getByRole("button", { name: "Copy" }).click();
+            await command.getByRole("button", { name: "Copied" }).waitFor();
+        }
+        assert.deepEqual(await page.evaluate(() => window.copied), Object.values(lines));
+        // without a clipboard the line is selected
+        await page.evaluate(() => (navigator.clipboard.writeText = () => Promise.reject()));
+        await page.locator(".command:visible button").click();
+        await page.waitForFunction(
+            (line) => getSelection().toString() === line,
+            Object.values(lines)[1],
+        );
+    });
+});
+
 test("a proof shows its witnesses and the boxes of guards", async () => {
     starguard("sample", "gallery", "--vertices", "500", "-o", "room.off");
     starguard("guard", "room.off", "--prove", "--certificate", "why.txt", "-o", "proven.json");

@@ -256,6 +256,11 @@ static bool may_go_on(const searches *s, const partition *p) {
            p->pieces.count > (s->enough > 2 ? s->enough : 2);
 }
 
+/* The trials that give the same result without a clock. */
+static uint64_t effort_of(const searches *s, const starg_decompose_options *options) {
+    return options->effort == 0 && s->work > WORK_MOST ? INT64_MAX : options->effort;
+}
+
 /* How far the search is, by whatever will end it. */
 static void tell_progress(const searches *s, const partition *p) {
     double part = (double)s->idle / (double)idle_most(p), passed = starg_clock() - s->began;
@@ -311,6 +316,7 @@ static starg_status decompose(starg_context *context, model of,
     STARG_TRY(refine_caps(&p));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
+    (*out)->options.effort = effort_of(&s, options);
 done:
     region_scratch_free(&scratch);
     partition_free(&p);
