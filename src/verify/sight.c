@@ -104,7 +104,7 @@ static bool beyond(const item *it, int k, double limit, int direction) {
     return true;
 }
 
-/* Appends those of the `size` columns (k = 0) or rows (k = 1) from `first` on: recursively halves. */
+/* Appends those of the `size` columns (k = 0) or rows (k = 1) from `first` on, by halving. */
 static void find_strips(const item *it, int k, uint32_t width, uint32_t first, uint32_t size,
                         strips *out) {
     double step = 2.0 / width;
