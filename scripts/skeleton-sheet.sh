@@ -16,4 +16,5 @@ for name in horse dog cat giraffe dinosaur bird human octopus knot torus star ga
 done
 # shellcheck disable=SC2086
 montage $pictures -trim +repage -resize 400x300 -tile 4x -geometry 400x300+6+6 -background white \
+    -font "$(fc-match -f "%{file}" sans-serif)" \
     -pointsize 20 -depth 8 "PNG24:$sheet"
