@@ -43,12 +43,15 @@ static json_t *record_schema(const starg_fields *fields);
 
 static json_t *count_schema(const starg_field *f) {
     json_t *schema = needed(json_object());
-    put_type(schema, "integer", f->flags & STARG_FIELD_NULLABLE);
     put(schema, "minimum", json_integer((json_int_t)f->least));
     if (f->most <= INT64_MAX) {
+        put_type(schema, "integer", f->flags & STARG_FIELD_NULLABLE);
         put(schema, "maximum", json_integer((json_int_t)f->most));
     } else { /* its digits, where it is above 2^63 - 1 */
-        put(schema, "type", json_pack("[ss]", "integer", "string"));
+        json_t *types = f->flags & STARG_FIELD_NULLABLE
+                            ? json_pack("[sss]", "integer", "string", "null")
+                            : json_pack("[ss]", "integer", "string");
+        put(schema, "type", types);
         put(schema, "pattern", json_string("^[0-9]{19,20}$"));
     }
     return schema;

@@ -101,11 +101,11 @@ static const starg_field OPTIONS[] = {
 static const starg_fields OPTIONS_TABLE = {
     .name = "decompose options", .size = sizeof(starg_decompose_options), FIELD_ROWS(OPTIONS)};
 
-/* In files without the last two, tetgen's path and its limit in seconds. */
 const starg_fields decompose_file_options = {.name = "options",
                                              .size = sizeof(starg_decompose_options),
                                              .fields = OPTIONS,
-                                             .count = sizeof OPTIONS / sizeof *OPTIONS - 2};
+                                             .count = sizeof OPTIONS / sizeof *OPTIONS -
+                                                      TETRA_MACHINE_FIELDS};
 
 const starg_fields *starg_decompose_options_fields(void) {
     return &OPTIONS_TABLE;

@@ -11,6 +11,9 @@
 
 extern const char *const tetra_generator_words[];
 
+/* The last of TETRA_FIELDS: where tetgen is, and how long it may take. Files leave them out. */
+enum { TETRA_MACHINE_FIELDS = 2 };
+
 /* All but the density, for a struct T with the options at PREFIX. */
 #define TETRA_FIELDS(T, PREFIX)                                                                    \
     {.key = "generator",                                                                           \

@@ -108,10 +108,15 @@ function settle(page) {
     });
 }
 
-/** The pixels of the stage. */
+/** The pixels of the stage, once two pictures in a row have the same: what is drawn may be shown later. */
 async function picture(page) {
     await settle(page);
-    return page.locator("#stage").screenshot();
+    const shoot = () => page.locator("#stage").screenshot();
+    for (let before = await shoot(); ;) {
+        const now = await shoot();
+        if (now.equals(before)) return now;
+        before = now;
+    }
 }
 
 async function placeOfGuard(page, i) {
