@@ -14,14 +14,15 @@
  *      them. Its solution is tested against all faces: it gives better guards, or the faces that
  *      they miss become witnesses;
  *   3. split the cells whose total price may be too high for the target bound, starting with those
- *      of high price and large size; add their points and return to 1. Small cells are not split,
- *      but count as points in the prices (guard/search_prices.c);
+ *      of high price and large size, for as long as the prices took; add their points and return to
+ *      1. Small cells are not split, but count as points in the prices (guard/search_prices.c);
  *   4. if there are no such cells, the prices prove the bound (guard/bound.c). If the bound is
  *      below the number of guards, smaller cells are split as well; and by turns faces that the
  *      fractional cover does not see enough become witnesses;
  *   5. if there are no such faces either, solve an integer program over cells and points: cells
  *      that would allow fewer guards are split, with more points; if no cells would, branching
  *      proves it, with separate prices in each branch.
+ * In the end all cells count as points, which gives the best bound of these cells.
  *
  * If several guards must see each face, the witnesses are faces that enough guards see, and k
  * guards cover at most k times what one of them covers. If views are directed, points have a
@@ -40,7 +41,11 @@ static const char STAGE[] = "search";
 
 enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 10, MANY_NODES = 300 };
 
-static const double ROUNDING = 1e-6, FIRST_FINEST = 1.0 / 64;
+static const double ROUNDING = 1e-6;
+
+/* The more guards, the smaller are the parts of the space that tell them apart: leaves of a
+ * sixteenth of the extent, shared among the guards, are small at first. */
+static const double FIRST_FINEST = 1.0 / 16;
 
 /* ---- points ---- */
 
@@ -204,16 +209,23 @@ static size_t next_aim(const search *s) {
     return s->bound < most ? s->bound + (most - s->bound + 2) / 3 : most;
 }
 
-/* Splits leaves that block the next bound. *changed: there are some. */
+/* Splits leaves that block the next bound, until none does or as much work went into this as into
+ * the prices. *changed: there are some. */
 static starg_status split_costly(search *s, bool *changed) {
     starg_status status = STARG_OK;
     scored_leaf *leaves = NULL;
     size_t count, aim = next_aim(s);
     double most = aim > 1 ? search_value(s) / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
-    STARG_TRY(search_list_leaves(s, most, &leaves, &count));
-    if (count > 0)
-        STARG_TRY(search_split(s, leaves, count, TRIES));
-    *changed = count > 0;
+    uint64_t enough = s->scene.work + s->prices.work;
+    *changed = false;
+    do {
+        STARG_TRY(search_list_leaves(s, most, &leaves, &count));
+        if (count > 0)
+            STARG_TRY(search_split(s, leaves, count, TRIES));
+        *changed = *changed || count > 0;
+        starg_release(context_of(s), leaves);
+        leaves = NULL;
+    } while (count > 0 && !s->ended && s->scene.work < enough);
 done:
     starg_release(context_of(s), leaves);
     return status;
@@ -291,6 +303,21 @@ done:
     return status;
 }
 
+/* The best bound of the leaves that there are: all of them count as points in the prices. */
+static starg_status prove_by_leaves(search *s) {
+    starg_status status = STARG_OK;
+    row_list list = {0};
+    if (s->bound == s->count || starg_time_is_over(context_of(s)))
+        return STARG_OK;
+    s->finest = INFINITY;
+    STARG_TRY(row_list_make(context_of(s), 2 * s->points.count + s->cells.count, &list));
+    STARG_TRY(search_find_prices(s, &list));
+    STARG_TRY(prove(s));
+done:
+    row_list_free(context_of(s), &list);
+    return status;
+}
+
 static starg_status run(search *s, bool improves) {
     starg_status status = STARG_OK;
     const starg_guard_options *o = s->problem->options;
@@ -302,9 +329,10 @@ static starg_status run(search *s, bool improves) {
     }
     s->nodes = MANY_NODES;
     if (o->prove) {
-        s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST;
+        s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
         STARG_TRY(run_rounds(s, prove_round, o->prove_work));
         STARG_TRY(search_bound_points(s));
+        STARG_TRY(prove_by_leaves(s));
     }
     if (s->bound < s->count)
         STARG_TRY(prove(s));

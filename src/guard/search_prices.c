@@ -90,6 +90,7 @@ starg_status search_find_prices(search *s, row_list *list) {
     uint8_t *listed = NULL;
     const witness_row all = all_witnesses(s);
     double most = 1;
+    uint64_t before = s->scene.work;
     STARG_NEW_ZERO(context, STAGE, listed, s->points.count);
     double least = s->prices.sum > 0 ? 0.8 : 0;
     list->count = 0;
@@ -110,6 +111,7 @@ starg_status search_find_prices(search *s, row_list *list) {
     for (size_t j = 0; j < MOST_WITNESSES; j++)
         s->prices.price[j] /= most;
     s->prices.sum /= most;
+    s->prices.work = s->scene.work - before;
 done:
     starg_release(context, listed);
     return status;

@@ -245,7 +245,7 @@ static void test_cells_hold_their_points(void **state) {
 static char *bytes_with(int threads, size_t *size) {
     starg_context *context = test_context(threads);
     starg_solid *solid = test_sample(context, "gallery", 500);
-    starg_guard_options options = proving(1000000);
+    starg_guard_options options = proving(300000);
     starg_guards *guards = NULL;
     char *text = NULL, *copy;
     test_ok(context, starg_guard(context, solid, &options, &guards));
@@ -292,16 +292,16 @@ static void test_more_work(void **state) {
     test_context_free(context);
 }
 
-/* About reflex edges boxes see more than any point, however small they are. If small ones did not
- * count as points in the prices, boxes would be split there until the work is used up, and one
- * guard less would be proven. */
+/* About reflex edges boxes see more than any point, however small they are. If boxes never counted
+ * as points in the prices, neither small ones nor in the end all, they would be split there until
+ * the work is used up, and one guard less would be proven. */
 static void test_limits_of_sight(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     static const char *const names[] = {"labyrinth", "gallery"};
     for (size_t i = 0; i < 2; i++) {
         starg_solid *solid = test_sample(context, names[i], 500);
-        starg_guard_options options = proving(1500000);
+        starg_guard_options options = proving(300000);
         starg_guards *guards = test_guard(context, solid, &options);
         assert_true(guards->lower_bound_everywhere >= 3 + i);
         starg_guards_free(context, guards);

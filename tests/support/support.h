@@ -32,7 +32,8 @@ void test_context_free(starg_context *context);
 const char *test_shared_data(void);
 
 /* Number of rounds of a randomized test: `usual`, or the percentage of `thorough` given by
- * STARGUARD_LONG in the environment (100 in make check-long). */
+ * STARGUARD_LONG in the environment (100 in make check-long). Without it, sanitizers, which make
+ * everything some five times as slow, get a quarter of `usual`. */
 size_t test_rounds(size_t usual, size_t thorough);
 
 /* Asserts that a status is STARG_OK; prints the context's message otherwise. */

@@ -549,7 +549,8 @@ test("the commands that make results again are copied", async () => {
 
 test("a proof shows its witnesses and the boxes of guards", async () => {
     starguard("sample", "gallery", "--vertices", "500", "-o", "room.off");
-    starguard("guard", "room.off", "--prove", "--certificate", "why.txt", "-o", "proven.json");
+    const proof = ["--prove", "--prove-work", "200000", "--certificate", "why.txt"];
+    starguard("guard", "room.off", ...proof, "-o", "proven.json");
     starguard("view", "proven.json", "why.txt", "-o", "proof.html");
     const lines = readFileSync(fileOf("why.txt"), "utf8").split("\n");
     const witnesses = Number(lines.find((line) => line.startsWith("witnesses ")).slice(10));
