@@ -48,6 +48,10 @@ static starg_status check_kinds(cli_session *session, const starg_page *page) {
         return cli_fail(
             session, STARG_ERROR_ARGUMENT,
             "a scene cannot contain a morph; 'starguard morph --glb FILE' writes an animation");
+    if (page->map != NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "a scene cannot contain a map between solids; MAP.vtu itself opens in "
+                        "ParaView");
     if (page->shape_count > 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "a scene cannot contain a table of shapes; 'starguard db matrix' writes a "

@@ -37,6 +37,7 @@ static void tell(cli_session *session, const values *v, const starg_page *page) 
     } parts[] = {{"guards", "guards", page->guards != NULL ? page->guards->count : 0},
                  {"pieces", "pieces", page->report != NULL ? page->report->piece_count : 0},
                  {"tetrahedra", "tetrahedra", page->pieces != NULL ? page->pieces->count : 0},
+                 {"pieces of map", "map_pieces", page->map != NULL ? page->map->piece_count : 0},
                  {"skeleton nodes", "skeleton_nodes",
                   page->skeleton != NULL ? page->skeleton->node_count : 0},
                  {"morph frames", "morph_frames", page->frame_count},
@@ -82,6 +83,8 @@ const cli_command cli_command_view = {
         "The certificate of its bound: the faces that prove it, and where guards may see their "
         "share of them.\n"
         "PIECES.vtk and PIECES.json: coloured pieces, which can be exploded.\n"
+        "MAP.vtu: both solids of 'starguard map --solid' side by side, in the colours of their "
+        "pieces, or with a checker or coordinate lines carried over.\n"
         "A skeleton (.obj, .cg, .vtk of 'starguard skeleton') with its radii.\n"
         "A morph (the folder of 'starguard morph', or its .glb) with a time slider; with its "
         "report (--report) the page names both shapes.\n"
@@ -92,8 +95,9 @@ const cli_command cli_command_view = {
                 "starguard view guards.json -o guards.html\n"
                 "# guards, star-shaped pieces and skeleton of a model in one page\n"
                 "starguard view guards.json pieces.vtk pieces.json skeleton.vtk -o horse.html\n"
-                "# a morph; the shapes of a database\n"
+                "# a morph; a map between solids; the shapes of a database\n"
                 "starguard view frames -o morph.html\n"
+                "starguard view map.vtu -o map.html\n"
                 "starguard view shapes.db -o shapes.html --distance star",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, SIZE_MAX),

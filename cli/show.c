@@ -18,7 +18,7 @@ enum { HEAD = 4096 }; /* bytes used to recognize a file */
 
 typedef enum kind {
     KIND_MODEL,
-    KIND_RESULT, /* guards, a certificate, pieces, a report of pieces */
+    KIND_RESULT, /* guards, a certificate, pieces, a report of pieces, a map between solids */
     KIND_SKELETON,
     KIND_FRAMES,
     KIND_ANIMATION,
@@ -52,7 +52,8 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
         return strstr(head, "DATASET POLYDATA") != NULL ? KIND_SKELETON : KIND_RESULT;
     if (strncmp(head, curve, sizeof curve - 1) == 0)
         return KIND_SKELETON;
-    if (*first == '{' || strncmp(head, certificate, sizeof certificate - 1) == 0)
+    if (*first == '{' || strncmp(first, "<?xml", 5) == 0 || strncmp(first, "<VTKFile", 8) == 0 ||
+        strncmp(head, certificate, sizeof certificate - 1) == 0)
         return KIND_RESULT;
     if (cli_has_extension(name, ".csv"))
         return KIND_TABLE;
@@ -108,6 +109,10 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
             return fail_twice(session, "pieces file", file);
         page->pieces = result->pieces;
         show->pieces_file = file;
+    } else if (result->solid_map != NULL) {
+        if (page->map != NULL)
+            return fail_twice(session, "map", file);
+        page->map = result->solid_map;
     } else if (result->map != NULL || result->morph != NULL) {
         return cli_fail(session, STARG_ERROR_ARGUMENT, "'%.300s' has no page; %s", file,
                         result->map != NULL ? "'starguard map --picture' draws a map"

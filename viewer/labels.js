@@ -8,7 +8,8 @@ const APART = { x: 16, y: 13 }; // pixels between numbers
 const BESIDE = 9; // pixels from the point's middle
 
 export class Labels {
-    constructor(stage, points) {
+    constructor(stage, points, side = 0) {
+        this.side = side;
         this.stage = stage;
         this.points = points;
         this.wanted = true;
@@ -47,7 +48,7 @@ export class Labels {
         const shown = Math.min(points.count, points.geometry.drawRange.count);
         const spots = this.spans.map((span, i) => {
             const place = points.place(i);
-            const spot = i < shown ? stage.project(...place) : null;
+            const spot = i < shown ? stage.project(...place, this.side) : null;
             const far = Math.hypot(place[0] - eye.x, place[1] - eye.y, place[2] - eye.z);
             return { span, spot, far };
         });

@@ -5,6 +5,7 @@ import { Controls } from "./controls.js";
 import { GuardsView } from "./guards.js";
 import { fillHeader } from "./header.js";
 import { fillHelp, listenToKeys, showHelp } from "./help.js";
+import { MapView } from "./map.js";
 import { ModelView } from "./model.js";
 import { MorphView } from "./morph.js";
 import { say } from "./panel.js";
@@ -46,6 +47,7 @@ class App {
         if (page.guards) views.push(new GuardsView(stage, surface));
         if (page.pieces) views.push(new PiecesView(stage));
         if (page.skeleton) views.push(new SkeletonView(stage, surface));
+        if (page.map) views.push(new MapView(stage));
         if (page.morph) views.push(new MorphView(stage));
         if (page.shapes) views.push(new RetrievalView(stage, at("matrix")));
         return views.length > 0 ? views : [new ModelView()];
@@ -84,9 +86,13 @@ class App {
 
     /** Objects of other views are on a layer hidden from the camera. */
     showObjects() {
-        const { view, surface } = this;
+        const { view, surface, stage } = this;
+        stage.setSides(view.sides?.length ?? 1);
         for (const each of this.views)
             each.objects.forEach((object) => object.layers.set(each === view ? 0 : 1));
+        view.sides?.forEach((objects, side) =>
+            objects.forEach((object) => object.layers.set(stage.layerOf(side))),
+        );
         if (surface) {
             surface.object.visible = view.withSurface;
             surface.paint(null, new Set());
@@ -139,7 +145,7 @@ class App {
         const tag = at("tag"),
             { place } = this.stage;
         const found = this.view.tag(this.pointer);
-        const spot = found && this.stage.project(...found.place);
+        const spot = found && this.stage.project(...found.place, found.side);
         this.stage.canvas.classList.toggle("over", found?.over ?? false);
         tag.hidden = !spot;
         if (!spot) return;
@@ -156,7 +162,7 @@ class App {
 
     keys() {
         const { stage, views } = this;
-        const pieces = this.viewOf(PiecesView),
+        const apart = views.some((view) => view.toggleExplode),
             morph = this.viewOf(MorphView);
         const keys = [
             [["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], "turn", (key) => this.turn(key)],
@@ -170,7 +176,8 @@ class App {
             [["Escape"], "pick nothing", () => this.view.clear()],
             [["c"], "cut across X, Y, Z, or not", () => this.controls.nextCut()],
         ];
-        if (pieces) keys.push([["e"], "pieces apart, together", () => pieces.toggleExplode()]);
+        if (apart)
+            keys.push([["e"], "pieces apart, together", () => this.view.toggleExplode?.()]);
         if (morph)
             keys.push([
                 [" "],

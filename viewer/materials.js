@@ -21,6 +21,9 @@ attribute float piece;
 uniform float picked;
 varying float fade;
 #endif
+#ifdef MAPPED
+attribute vec3 source;
+#endif
 #ifdef MOVING
 attribute vec3 positionNext;
 attribute vec3 normalNext;
@@ -44,7 +47,11 @@ void main() {
 #ifdef USE_INSTANCING_COLOR
     tint = instanceColor;
 #endif
+#ifdef MAPPED
+    where = source;
+#else
     where = p;
+#endif
     vec4 seen = modelViewMatrix * vec4(p, 1.0);
     direction = normalMatrix * n;
     view = -seen.xyz;
@@ -59,6 +66,23 @@ varying vec3 where, direction, view, tint;
 #ifdef PIECES
 varying float fade;
 #endif
+#ifdef MAPPED
+uniform int pattern;
+uniform vec4 grid;
+/* Lines where a coordinate is whole, each coordinate in a colour, 1.5 pixels wide. */
+vec3 lines(vec3 cell) {
+    vec3 to = abs(fract(cell - 0.5) - 0.5) / max(fwidth(cell), 1e-6);
+    vec3 on = 1.0 - smoothstep(0.9 * pixels, 1.9 * pixels, to);
+    vec3 c = mix(vec3(0.93), vec3(0.80, 0.16, 0.14), on.x);
+    c = mix(c, vec3(0.10, 0.52, 0.20), on.y);
+    return mix(c, vec3(0.13, 0.32, 0.80), on.z);
+}
+/* Colours by place, darker in every other cube. */
+vec3 checker(vec3 cell) {
+    float odd = mod(floor(cell.x) + floor(cell.y) + floor(cell.z), 2.0);
+    return mix(1.0, 0.6, odd) * (0.4 + 0.6 * clamp(cell / 16.0, 0.0, 1.0));
+}
+#endif
 void main() {
     if (dot(where, cut.xyz) > cut.w) discard;
     vec3 n = normalize(direction), v = normalize(view);
@@ -66,7 +90,13 @@ void main() {
     float facing = clamp(dot(n, v), 0.0, 1.0);
     float key = max(dot(n, normalize(vec3(-0.45, 0.65, 0.7))), 0.0);
     float light = 0.50 + 0.40 * key + 0.16 * facing;
-    vec3 c = base * tint * light + 0.10 * pow(key, 24.0);
+    vec3 paint = base * tint;
+#ifdef MAPPED
+    vec3 cell = (where - grid.xyz) * grid.w;
+    if (pattern == 1) paint = checker(cell);
+    if (pattern == 2) paint = lines(cell);
+#endif
+    vec3 c = paint * light + 0.10 * pow(key, 24.0);
 #ifdef STRIPED
     c *= mix(1.0, 0.45, step(0.5, fract((gl_FragCoord.x - gl_FragCoord.y) / (8.0 * pixels))));
 #endif
@@ -75,7 +105,7 @@ void main() {
 #ifdef SOLID
         /* what a cut lays open of a closed surface looks filled */
         float hatch = step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / (9.0 * pixels)));
-        c = base * tint * (0.72 + 0.05 * hatch);
+        c = paint * (0.72 + 0.05 * hatch);
 #else
         c *= 0.74;
 #endif
@@ -90,7 +120,10 @@ void main() {
     gl_FragColor = vec4(c, a);
 }`;
 
-/** A lit surface; `defines` may contain PIECES, MOVING, SOLID (closed: cuts look filled) or STRIPED. */
+/**
+ * A lit surface; `defines` may contain PIECES, MOVING, SOLID (closed: cuts look filled), STRIPED, or
+ * MAPPED: cuts and patterns follow the attribute `source` (pattern: 0 none, 1 checker, 2 lines).
+ */
 export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defines = {} } = {}) {
     const material = new ShaderMaterial({
         vertexShader: SURFACE_VERTEX,
@@ -102,6 +135,8 @@ export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defin
             opacity: { value: opacity },
             rim: { value: rim },
             picked: { value: -1 },
+            pattern: { value: 0 },
+            grid: { value: new Vector4(0, 0, 0, 1) }, // origin, and cells in a unit
         },
         side: FrontSide,
     });
@@ -125,7 +160,7 @@ export function setCutOpen(material, open) {
 }
 
 const POINT_VERTEX = `
-attribute vec3 color, away;
+attribute vec3 color, away, source;
 attribute float size;
 uniform float pixels, explode;
 uniform vec4 cut;
@@ -135,7 +170,7 @@ void main() {
     tint = color;
     large = size * pixels;
     vec3 p = position + explode * away;
-    kept = dot(p, cut.xyz) > cut.w ? 0.35 : 1.0;
+    kept = dot(source + explode * away, cut.xyz) > cut.w ? 0.35 : 1.0;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(p, 1.0);
     gl_PointSize = large;
 }`;

@@ -8,8 +8,11 @@ const SIZE = 15,
 const REACH = { mouse: 12, touch: 24 };
 
 export class PickPoints {
-    /** `away` is the direction of each when pieces are moved apart, or null. */
-    constructor(points, colors, away = null) {
+    /**
+     * `away` is the direction of each when pieces are moved apart, or null; what is cut off is pale,
+     * by `sources` instead of the points themselves if they are given.
+     */
+    constructor(points, colors, away = null, sources = points) {
         const count = points.length / 3;
         this.points = points;
         this.away = away ?? new Float32Array(points.length);
@@ -18,6 +21,7 @@ export class PickPoints {
         colors.slice(0, count).forEach((color, i) => new Color(color).toArray(tints, 3 * i));
         const geometry = new BufferGeometry();
         geometry.setAttribute("position", new BufferAttribute(points, 3));
+        geometry.setAttribute("source", new BufferAttribute(sources, 3));
         geometry.setAttribute("away", new BufferAttribute(this.away, 3));
         geometry.setAttribute("color", new BufferAttribute(tints, 3));
         geometry.setAttribute("size", new BufferAttribute(this.sizes, 1));
@@ -49,12 +53,12 @@ export class PickPoints {
     }
 
     /** The point nearest to a place on the stage, -1 if none is close. */
-    under(stage, at) {
+    under(stage, at, side = 0) {
         let best = -1,
             nearest = at.touch ? REACH.touch : REACH.mouse;
         const shown = Math.min(this.count, this.geometry.drawRange.count);
         for (let i = 0; i < shown; i++) {
-            const p = stage.project(...this.place(i));
+            const p = stage.project(...this.place(i), side);
             const distance = p ? Math.hypot(p.x - at.x, p.y - at.y) : Infinity;
             if (distance < nearest) {
                 nearest = distance;

@@ -25,6 +25,7 @@ export class Stage {
         this.camera = new PerspectiveCamera(VIEW_ANGLE, 1, 0.01, 100);
         this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
         this.renderer.outputColorSpace = LinearSRGBColorSpace;
+        this.sides = 1; // 2: the left and the right half show objects of their own, by one camera
         this.controls = this.makeControls();
         this.ball = { center: [0, 0, 0], radius: 1 }; // contains everything shown
         this.onBall = () => {};
@@ -38,7 +39,7 @@ export class Stage {
     makeControls() {
         const controls = new OrbitControls(this.camera, this.canvas);
         controls.rotateSpeed = 0.9;
-        controls.zoomToCursor = true;
+        controls.zoomToCursor = this.sides === 1;
         controls.addEventListener("change", () => this.request());
         return controls;
     }
@@ -50,7 +51,7 @@ export class Stage {
         this.renderer.setPixelRatio(ratio);
         this.renderer.setSize(width, height, false);
         shared.pixels.value = ratio;
-        this.camera.aspect = width / height;
+        this.camera.aspect = width / this.sides / height;
         this.camera.updateProjectionMatrix();
         this.draw(); // at once: a resized canvas is empty
     }
@@ -66,9 +67,29 @@ export class Stage {
     }
 
     draw() {
+        const { clientWidth, clientHeight: height } = this.place;
+        const width = clientWidth / this.sides;
         this.beforeDraw.forEach((work) => work());
-        this.renderer.render(this.scene, this.camera);
+        this.renderer.setScissorTest(this.sides > 1);
+        for (let side = 0; side < this.sides; side++) {
+            this.renderer.setViewport(side * width, 0, width, height);
+            this.renderer.setScissor(side * width, 0, width, height);
+            this.camera.layers.set(this.layerOf(side));
+            this.renderer.render(this.scene, this.camera);
+        }
         this.frames++;
+    }
+
+    /** Objects on this layer are drawn in a side; those on layer 1 nowhere. */
+    layerOf(side) {
+        return this.sides === 1 ? 0 : 2 + side;
+    }
+
+    setSides(sides) {
+        if (sides === this.sides) return;
+        this.sides = sides;
+        this.controls.zoomToCursor = sides === 1; // the cursor is over one of two pictures
+        this.resize();
     }
 
     /** Shows all of a ball from the initial direction. */
@@ -138,24 +159,26 @@ export class Stage {
     }
 
     /** Projection of a point, in pixels of the place; null behind the camera. */
-    project(x, y, z) {
+    project(x, y, z, side = 0) {
         const p = new Vector3(x, y, z).project(this.camera);
         if (p.z > 1) return null;
         return {
-            x: ((p.x + 1) / 2) * this.place.clientWidth,
+            x: (((p.x + 1) / 2 + side) * this.place.clientWidth) / this.sides,
             y: ((1 - p.y) / 2) * this.place.clientHeight,
         };
     }
 
-    /** The ray under a pixel of the place. */
+    /** The ray under a pixel of the place, and the side that it is in. */
     ray(x, y) {
+        const along = (x / this.place.clientWidth) * this.sides;
+        const side = Math.min(Math.max(Math.floor(along), 0), this.sides - 1);
         const near = new Vector3(
-            (x / this.place.clientWidth) * 2 - 1,
+            (along - side) * 2 - 1,
             1 - (y / this.place.clientHeight) * 2,
             0.5,
         ).unproject(this.camera);
         const origin = this.camera.position.clone();
-        return { origin, direction: near.sub(origin).normalize() };
+        return { origin, direction: near.sub(origin).normalize(), side };
     }
 
     /** Calls `click` for presses without a drag, `hover` for moves with no button down. */

@@ -12,6 +12,7 @@ export class View {
     objects = [];
     withSurface = false; // show the glass model as well?
     flat = false; // does it cover the 3D stage?
+    sides = null; // two lists of objects, for the left and the right half of the stage
     trial = "Drag to turn the model"; // what to try first
 
     enter() {}
@@ -24,7 +25,7 @@ export class View {
     /** A click on the stage at { x, y, touch }. */
     click() {}
 
-    /** Text next to a point, { text, place, over }, for a pointer at a place or null. */
+    /** Text next to a point, { text, place, side, over }, for a pointer at a place or null. */
     tag() {
         return null;
     }

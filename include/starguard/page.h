@@ -39,6 +39,7 @@ typedef struct starg_page {
     const starg_pieces_mesh *pieces;
     const starg_pieces_report *report; /* of the pieces */
     const char *pieces_command;        /* line that makes pieces and report again, or NULL */
+    const starg_solid_map *map;        /* between solids */
     const starg_skeleton *skeleton;    /* uses positions, edges and radii; radii may be NULL */
     const starg_mesh *const *frames;   /* of a morph: 2 or more meshes with the same faces */
     size_t frame_count;

@@ -35,9 +35,10 @@ typedef struct frame {
 /* What a page is made of. */
 typedef struct book {
     const starg_page *page;
-    frame frame;
-    starg_piece_surfaces surfaces;
-    char **names; /* of shapes, as text that JSON can hold */
+    frame frame, image_frame; /* of everything in the model's space; of a map's images */
+    starg_piece_surfaces surfaces, map_surfaces;
+    size_t *map_tetrahedra; /* of each piece of the map */
+    char **names;           /* of shapes, as text that JSON can hold */
     char *title, *model_name;
     bool broken; /* a part of the description could not be made: memory is out */
 } book;
@@ -100,6 +101,18 @@ static starg_status check_pieces(starg_context *context, const starg_page *p,
     return STARG_OK;
 }
 
+/* Files of maps are read without any guarantee. */
+static starg_status check_map(starg_context *context, const starg_page *p,
+                              const starg_piece_surfaces *surfaces) {
+    if (p->map != NULL && p->map->piece_count != surfaces->piece_count)
+        return starg_fail(
+            context, STARG_ERROR_ARGUMENT, STAGE,
+            "the map has guards of %zu pieces, its tetrahedra belong to %zu; check it "
+            "with 'starguard verify'",
+            p->map->piece_count, surfaces->piece_count);
+    return STARG_OK;
+}
+
 static starg_status check_frames(starg_context *context, const starg_page *p) {
     if (p->frame_count == 1)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
@@ -140,12 +153,13 @@ static starg_status check_shapes(starg_context *context, const starg_page *p) {
 static starg_status check(starg_context *context, const book *b) {
     starg_status status = STARG_OK;
     const starg_page *p = b->page;
-    if (p->model == NULL && p->guards == NULL && p->pieces == NULL && p->skeleton == NULL &&
-        p->frame_count == 0 && p->shape_count == 0)
+    if (p->model == NULL && p->guards == NULL && p->pieces == NULL && p->map == NULL &&
+        p->skeleton == NULL && p->frame_count == 0 && p->shape_count == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "the page has no content");
     STARG_TRY(check_guards(context, p));
     STARG_TRY(check_proof(context, p));
     STARG_TRY(check_pieces(context, p, &b->surfaces));
+    STARG_TRY(check_map(context, p, &b->map_surfaces));
     STARG_TRY(check_frames(context, p));
     STARG_TRY(check_ends(context, p));
     STARG_TRY(check_shapes(context, p));
@@ -169,20 +183,8 @@ static void cover_mesh(frame *f, const starg_mesh *mesh) {
     cover_points(f, starg_mesh_vertices(mesh), starg_mesh_vertex_count(mesh));
 }
 
-static void find_frame(const starg_page *p, frame *f) {
+static void close_frame(frame *f) {
     double span[3];
-    if (p->model != NULL)
-        cover_mesh(f, p->model);
-    if (p->guards != NULL)
-        cover_points(f, p->guards->positions, p->guards->count);
-    if (p->pieces != NULL)
-        cover_points(f, p->pieces->vertices, p->pieces->vertex_count);
-    if (p->skeleton != NULL)
-        cover_points(f, p->skeleton->positions, p->skeleton->node_count);
-    for (size_t i = 0; i < p->frame_count; i++)
-        cover_mesh(f, p->frames[i]);
-    for (int i = 0; i < 2 && p->ends[0] != NULL; i++)
-        cover_points(f, p->ends[i]->positions, p->ends[i]->count);
     for (int k = 0; k < 3; k++) {
         span[k] = f->upper[k] - f->lower[k];
         f->center[k] = f->lower[k] + 0.5 * span[k];
@@ -190,6 +192,30 @@ static void find_frame(const starg_page *p, frame *f) {
     f->scale = 0.5 * hypot(hypot(span[0], span[1]), span[2]);
     if (!(f->scale > 0))
         f->scale = 1;
+}
+
+static void find_frame(const starg_page *p, frame *f) {
+    if (p->model != NULL)
+        cover_mesh(f, p->model);
+    if (p->guards != NULL)
+        cover_points(f, p->guards->positions, p->guards->count);
+    if (p->pieces != NULL)
+        cover_points(f, p->pieces->vertices, p->pieces->vertex_count);
+    if (p->map != NULL)
+        cover_points(f, p->map->vertices, p->map->vertex_count);
+    if (p->skeleton != NULL)
+        cover_points(f, p->skeleton->positions, p->skeleton->node_count);
+    for (size_t i = 0; i < p->frame_count; i++)
+        cover_mesh(f, p->frames[i]);
+    for (int i = 0; i < 2 && p->ends[0] != NULL; i++)
+        cover_points(f, p->ends[i]->positions, p->ends[i]->count);
+    close_frame(f);
+}
+
+/* The other solid of a map may be of any size, in any place. */
+static void find_image_frame(const starg_solid_map *map, frame *f) {
+    cover_points(f, map->images, map->vertex_count);
+    close_frame(f);
 }
 
 /* ---- blocks ---- */
@@ -241,12 +267,29 @@ static void put_guards(FILE *stream, const book *b) {
                    2 * b->page->proof->cell_count);
 }
 
+/* Those of the vertices that the surfaces use. */
+static void put_used(FILE *stream, const char *name, size_t index, const frame *f,
+                     const starg_piece_surfaces *s, const double *vertices) {
+    starg_page_block block = starg_page_block_open(stream, name, index);
+    for (size_t i = 0; i < s->vertex_count; i++)
+        put_point(&block, f, vertices + 3 * (size_t)s->vertices[i]);
+    starg_page_block_close(&block);
+}
+
+static void put_map(FILE *stream, const book *b) {
+    const starg_solid_map *map = b->page->map;
+    const starg_piece_surfaces *s = &b->map_surfaces;
+    put_used(stream, "map-points", 0, &b->frame, s, map->vertices);
+    put_used(stream, "map-points", 1, &b->image_frame, s, map->images);
+    put_indices(stream, "map-faces", s->faces, 3 * s->first_face[s->piece_count]);
+    put_points(stream, "map-guards", 0, &b->frame, map->guards, map->piece_count);
+    put_points(stream, "map-guards", 1, &b->image_frame, map->guard_images, map->piece_count);
+}
+
 static void put_pieces(FILE *stream, const book *b) {
     const starg_piece_surfaces *s = &b->surfaces;
-    starg_page_block block = starg_page_block_open(stream, "piece-points", STARG_PAGE_SINGLE);
-    for (size_t i = 0; i < s->vertex_count; i++)
-        put_point(&block, &b->frame, b->page->pieces->vertices + 3 * s->vertices[i]);
-    starg_page_block_close(&block);
+    starg_page_block block;
+    put_used(stream, "piece-points", STARG_PAGE_SINGLE, &b->frame, s, b->page->pieces->vertices);
     put_indices(stream, "piece-faces", s->faces, 3 * s->first_face[s->piece_count]);
     if (b->page->report == NULL)
         return;
@@ -301,6 +344,8 @@ static void put_blocks(FILE *stream, const book *b) {
         put_guards(stream, b);
     if (b->page->pieces != NULL)
         put_pieces(stream, b);
+    if (b->page->map != NULL)
+        put_map(stream, b);
     if (b->page->skeleton != NULL)
         put_skeleton(stream, b);
     if (b->page->frame_count > 0)
@@ -435,6 +480,20 @@ static json_t *pieces_json(book *b) {
     return pieces;
 }
 
+static json_t *map_json(book *b) {
+    const starg_solid_map *map = b->page->map;
+    const starg_piece_surfaces *s = &b->map_surfaces;
+    json_t *list = json_array();
+    for (size_t i = 0; i < s->piece_count; i++)
+        append(b, list,
+               json_pack("{s:I, s:I}", "faces",
+                         (json_int_t)(s->first_face[i + 1] - s->first_face[i]), "tetrahedra",
+                         (json_int_t)b->map_tetrahedra[i]));
+    return json_pack("{s:o, s:I, s:f, s:f, s:f}", "list", list, "tetrahedra",
+                     (json_int_t)map->count, "mean", map->mean, "worst", map->worst, "above_10",
+                     map->above_10);
+}
+
 static json_t *skeleton_json(const starg_skeleton *s) {
     return json_pack("{s:I, s:I, s:b}", "nodes", (json_int_t)s->node_count, "edges",
                      (json_int_t)s->edge_count, "radii", (int)(s->radii != NULL));
@@ -462,6 +521,8 @@ static json_t *colors_json(book *b) {
     size_t count = b->page->guards != NULL ? b->page->guards->count : 0;
     if (count < b->surfaces.piece_count)
         count = b->surfaces.piece_count;
+    if (count < b->map_surfaces.piece_count)
+        count = b->map_surfaces.piece_count;
     if (b->page->ends[0] != NULL && count < b->page->ends[0]->count)
         count = b->page->ends[0]->count;
     json_t *list = json_array();
@@ -487,6 +548,8 @@ static json_t *describe(book *b) {
         put(b, root, "guards", guards_json(b));
     if (p->pieces != NULL)
         put(b, root, "pieces", pieces_json(b));
+    if (p->map != NULL)
+        put(b, root, "map", map_json(b));
     if (p->skeleton != NULL)
         put(b, root, "skeleton", skeleton_json(p->skeleton));
     if (p->frame_count > 0)
@@ -515,9 +578,11 @@ static void free_book(starg_context *context, book *b) {
     for (size_t i = 0; b->names != NULL && i < b->page->shape_count; i++)
         starg_release(context, b->names[i]);
     starg_release(context, b->names);
+    starg_release(context, b->map_tetrahedra);
     starg_release(context, b->title);
     starg_release(context, b->model_name);
     starg_piece_surfaces_free(context, &b->surfaces);
+    starg_piece_surfaces_free(context, &b->map_surfaces);
 }
 
 /* False when memory is out; errors of the stream are found when it is committed. */
@@ -530,6 +595,22 @@ static bool put_page(FILE *stream, book *b) {
     return true;
 }
 
+static starg_status take_map(starg_context *context, const starg_solid_map *map, book *b) {
+    starg_status status = STARG_OK;
+    const starg_pieces_mesh pieces = {.vertex_count = map->vertex_count,
+                                      .count = map->count,
+                                      .vertices = map->vertices,
+                                      .tetrahedra = map->tetrahedra,
+                                      .labels = map->labels};
+    STARG_TRY(starg_piece_surfaces_create(context, &pieces, &b->map_surfaces));
+    STARG_NEW_ZERO(context, STAGE, b->map_tetrahedra, b->map_surfaces.piece_count);
+    for (size_t t = 0; t < map->count; t++)
+        b->map_tetrahedra[map->labels[t]]++;
+    find_image_frame(map, &b->image_frame);
+done:
+    return status;
+}
+
 starg_status starg_page_write(starg_context *context, const starg_page *page, const char *path) {
     starg_status status = STARG_OK;
     book b = {.page = page};
@@ -538,6 +619,8 @@ starg_status starg_page_write(starg_context *context, const starg_page *page, co
         return starg_fail(context, STARG_ERROR_WRITE, STAGE, "%s", NO_VIEWER);
     if (page->pieces != NULL)
         STARG_TRY(starg_piece_surfaces_create(context, page->pieces, &b.surfaces));
+    if (page->map != NULL)
+        STARG_TRY(take_map(context, page->map, &b));
     STARG_TRY(check(context, &b));
     find_frame(page, &b.frame);
     STARG_TRY(copy_names(context, &b));

@@ -566,6 +566,101 @@ test("a proof shows its witnesses and the boxes of guards", async () => {
     });
 });
 
+test("a map shows both solids by one camera, alike in colours, patterns and cuts", async () => {
+    starguard("sample", "human", "--vertices", "500", "-o", "a.off");
+    starguard("sample", "human", "--pose", "1", "--vertices", "500", "-o", "b.off");
+    starguard("map", "--solid", "a.off", "b.off", "-o", "map.vtu");
+    starguard("view", "map.vtu", "-o", "map.html");
+    /** Colours of the pixels of either half that are not the background: their number. */
+    const colors = (page) =>
+        page.evaluate(() => {
+            const { stage } = window.starguard;
+            stage.draw();
+            const gl = stage.renderer.getContext();
+            const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+            const pixels = new Uint8Array(4 * w * h);
+            gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+            const counts = [0, 0];
+            for (let i = 0; i < w * h; i++)
+                if (pixels[4 * i + 3] > 0) counts[i % w < w / 2 ? 0 : 1]++;
+            return counts;
+        });
+    await look("map.html", {}, async (page) => {
+        await settle(page);
+        const told = await page.evaluate(() => {
+            const { ends, told } = window.starguard.views[0];
+            const ofEnd = ({ parts }) => ({
+                position: [...parts.position],
+                source: [...parts.source],
+            });
+            return { list: told.list, ends: ends.map(ofEnd) };
+        });
+        // A's own places, of which those of the images are a selection too
+        assert.deepEqual(told.ends[0].position, told.ends[0].source);
+        const places = new Set(told.ends[0].source.map(String));
+        assert.ok(told.ends[1].source.every((x) => places.has(String(x))));
+        assert.notDeepEqual(told.ends[1].position, told.ends[1].source);
+        const whole = await colors(page);
+        assert.ok(whole[0] > 1000 && whole[1] > 1000, `both are drawn: ${whole}`);
+        // one camera: a turn changes both halves
+        const before = await picture(page);
+        await page.locator("#canvas").focus();
+        await page.keyboard.press("ArrowLeft");
+        assert.ok(!before.equals(await picture(page)));
+        // a click on a guard in either half picks the piece in both
+        for (const side of [0, 1]) {
+            const spot = await page.evaluate((end) => {
+                const { stage, views } = window.starguard;
+                return stage.project(...views[0].ends[end].points.place(0), end);
+            }, side);
+            const box = await page.locator("#canvas").boundingBox();
+            assert.ok(side === 0 ? spot.x < box.width / 2 : spot.x > box.width / 2);
+            await page.mouse.click(box.x + spot.x, box.y + spot.y);
+            assert.match(await said(page), /^Piece 0: \d+ tetrahedra, in A and in B$/);
+            const picked = await page.evaluate(() =>
+                window.starguard.views[0].ends.map(
+                    ({ parts }) => parts.material.uniforms.picked.value,
+                ),
+            );
+            assert.deepEqual(picked, [0, 0]);
+            await page.keyboard.press("Escape");
+        }
+        // patterns, and a cut that takes from both
+        const plain = await picture(page);
+        for (const name of ["Checker", "Lines"]) {
+            await page.getByRole("radio", { name }).click();
+            assert.equal(await said(page), `Colours: ${name.toLowerCase()}`);
+            assert.ok(!plain.equals(await picture(page)), name);
+        }
+        await page.keyboard.press("c");
+        await settle(page);
+        const cut = await colors(page);
+        assert.ok(cut[0] < 0.9 * whole[0] && cut[1] < 0.9 * whole[1], `${cut} of ${whole}`);
+        await page.getByRole("radio", { name: "Pieces" }).click();
+        await page.keyboard.press("e");
+        assert.equal(await page.locator("#map-explode").inputValue(), "0.5");
+    });
+});
+
+test("a map beside pieces: tabs change between one picture and two", async () => {
+    starguard("view", "map.vtu", "pieces.vtk", "pieces.json", "-o", "both.html");
+    await look("both.html", {}, async (page) => {
+        const told = () =>
+            page.evaluate(() => {
+                const { stage } = window.starguard;
+                return { sides: stage.sides, aspect: stage.camera.aspect };
+            });
+        await openTab(page, "Map");
+        const two = await told();
+        await page.keyboard.press("e");
+        await openTab(page, "Pieces");
+        const one = await told();
+        assert.deepEqual([two.sides, one.sides], [2, 1]);
+        assert.ok(Math.abs(one.aspect - 2 * two.aspect) < 1e-9);
+        assert.equal(await page.locator(".sides").isVisible(), false);
+    });
+});
+
 test("a model alone, and a skeleton alone, are shown", async () => {
     starguard("view", "horse.off", "-o", "model.html");
     starguard("view", "skeleton.obj", "-o", "skeleton.html");
