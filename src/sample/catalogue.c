@@ -16,7 +16,7 @@ typedef starg_status make_solid(starg_context *context, size_t vertex_count, sta
 
 typedef struct entry {
     starg_sample_info info;
-    int figure; /* or RIGID */
+    int figure; /* or RIGID, which may be bent all the same */
     make_solid *make;
 } entry;
 
@@ -33,8 +33,9 @@ static const entry CATALOGUE[] = {
     {{"gallery", "a hall with niches and eight round columns", 1, false}, RIGID, solid_gallery},
     {{"labyrinth", "a corridor wound into a spiral", 1, false}, RIGID, solid_labyrinth},
     {{"plate", "a plate with six round holes", 1, false}, RIGID, solid_plate},
+    {{"eight", "a plate with two round holes", SOLID_BENDS, false}, RIGID, solid_eight},
     {{"knot", "a tube tied into a trefoil knot", 1, false}, RIGID, solid_knot},
-    {{"torus", "a torus", 1, false}, RIGID, solid_torus},
+    {{"torus", "a torus", SOLID_BENDS, false}, RIGID, solid_torus},
     {{"star", "an icosahedron with a spike on every face", 1, false}, RIGID, solid_star},
     {{"shell", "a ball with a ball-shaped cavity", 1, false}, RIGID, solid_shell},
     {{"sphere", "a ball", 1, false}, RIGID, solid_sphere},
@@ -111,7 +112,11 @@ starg_status starg_sample_create(starg_context *context, const char *name,
         status = starg_check_cancel(context, STAGE);
     if (status != STARG_OK)
         return status;
-    if (e->figure == RIGID)
-        return e->make(context, o->vertex_count, out);
+    if (e->figure == RIGID) {
+        status = e->make(context, o->vertex_count, out);
+        if (status == STARG_OK)
+            solid_bend(*out, o->pose);
+        return status;
+    }
     return solid_figure(context, (figure_kind)e->figure, o->pose, o->vertex_count, out);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Vertical prisms over a plan of rectangles: rooms (the solid is the air), halls with round
- * columns, a plate with holes.
+ * columns, plates with holes.
  *
  * The plan is a table of characters: '#' solid, ' ' empty, 'o' solid with a round hole through it.
  * Each strip of the plan and the height are divided into a whole number of steps, and every surface
@@ -345,4 +345,17 @@ starg_status solid_plate(starg_context *context, size_t vertex_count, starg_mesh
                                          "#o#o#o#", /**/
                                          "#######"}};
     return make_prism(context, &plate, vertex_count, out);
+}
+
+starg_status solid_eight(starg_context *context, size_t vertex_count, starg_mesh **out) {
+    static const plan eight = {.columns = 5,
+                               .rows = 3,
+                               .widths = {0.3, 1, 0.3, 1, 0.3},
+                               .depths = {0.3, 1, 0.3},
+                               .height = 0.35,
+                               .hole = 0.72,
+                               .cells = {"#####", /**/
+                                         "#o#o#", /**/
+                                         "#####"}};
+    return make_prism(context, &eight, vertex_count, out);
 }

@@ -249,7 +249,8 @@ static long expected_euler(const char *name) {
     static const struct {
         const char *name;
         long value;
-    } special[] = {{"torus", 0}, {"knot", 0}, {"plate", -10}, {"gallery", -14}, {"shell", 4}};
+    } special[] = {{"torus", 0},  {"knot", 0},      {"plate", -10},
+                   {"eight", -2}, {"gallery", -14}, {"shell", 4}};
     for (size_t i = 0; i < sizeof special / sizeof *special; i++)
         if (strcmp(special[i].name, name) == 0)
             return special[i].value;
@@ -417,10 +418,13 @@ static void volumes_are_right(void **state) {
                  {"shell", 4.18879020 * (1 - 0.58 * 0.58 * 0.58), 0.002}};
     starg_context *context = test_context(2);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        starg_mesh *mesh = make(context, known[i].name, 0, 20000);
-        assert_true(fabs(volume_of(mesh) - known[i].volume) <=
-                    known[i].tolerance * known[i].volume);
-        starg_mesh_free(mesh);
+        /* bends and twists keep the volume */
+        for (int pose = 0; pose < (strcmp(known[i].name, "torus") == 0 ? 3 : 1); pose++) {
+            starg_mesh *mesh = make(context, known[i].name, pose, 20000);
+            assert_true(fabs(volume_of(mesh) - known[i].volume) <=
+                        known[i].tolerance * known[i].volume);
+            starg_mesh_free(mesh);
+        }
     }
     test_context_free(context);
 }
@@ -435,7 +439,7 @@ static void bad_requests_are_explained(void **state) {
         const char *word;
     } bad[] = {{"unicorn", 0, 5000, "unicorn"},   {"", 0, 5000, "''"},
                {"horse", 5, 5000, "pose 5"},      {"horse", -1, 5000, "pose -1"},
-               {"torus", 1, 5000, "pose 1"},      {"horse", 0, 499, "499"},
+               {"knot", 1, 5000, "pose 1"},       {"horse", 0, 499, "499"},
                {"star", 0, 10000001, "10000001"}, {"star", 0, SIZE_MAX, "vertex count"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         starg_sample_options options = {.pose = bad[i].pose, .vertex_count = bad[i].vertex_count};
