@@ -4,7 +4,7 @@
 
 usage: solid_maps.py STARGUARD [--shared FOLDER] [--samples-only] [--vertices N] [--only WORD]
 
-Pairs: the first pose of each sample to each of its other four, and poses/ of the shared data. Columns:
+Pairs: the first pose of each sample to each of its others, and poses/ of the shared data. Columns:
 tetrahedra; pieces, and pieces of A and of B alone; mean and worst ratio of singular values; whether
 `verify` accepts the map; processor seconds. A pair that is refused has the reason instead.
 """
@@ -39,12 +39,12 @@ def measure(program, folder, files):
 
 
 def pairs(arguments, folder):
-    for name in morph.SAMPLES:
-        files = [os.path.join(folder, f"{name}_{pose}.off") for pose in range(5)]
+    for name, poses in [(name, 5) for name in morph.SAMPLES] + [("torus", 3), ("eight", 3)]:
+        files = [os.path.join(folder, f"{name}_{pose}.off") for pose in range(poses)]
         for pose, file in enumerate(files):
             morph.run(arguments.starguard, "sample", name, "--pose", str(pose), "--vertices",
                       str(arguments.vertices), "-o", file)
-        for pose in range(1, 5):
+        for pose in range(1, poses):
             yield f"{name} 0 {pose}", [files[0], files[pose]]
     poses = os.path.join(arguments.shared, "data", "poses")
     names = sorted(os.listdir(poses)) if os.path.isdir(poses) and not arguments.samples_only else []

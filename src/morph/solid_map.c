@@ -122,7 +122,6 @@ done:
     return status;
 }
 
-/* The pieces' tetrahedra are the given ones, in their order. */
 static starg_status take_pieces(starg_context *context, const starg_decomposition *const pieces[2],
                                 starg_solid_map *map) {
     starg_status status = STARG_OK;
@@ -192,14 +191,15 @@ static void measure(starg_solid_map *map) {
     map->above_10 = fmin(high / all, 1);
 }
 
-starg_status solid_map_finish(starg_context *context, const deform_mesh *c, starg_solid_map **out) {
+starg_status solid_map_finish(starg_context *context, const deform_mesh *c, bool cut,
+                              starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_tetmesh *places[2] = {NULL, NULL};
     starg_decomposition *pieces[2] = {NULL, NULL};
     starg_solid_map *map = NULL;
     STARG_TRY(solids_place(c, c->rest.data, &places[0]));
     STARG_TRY(solids_place(c, c->now.data, &places[1]));
-    STARG_TRY(compatible_decompose(context, places[0], places[1], pieces));
+    STARG_TRY(compatible_decompose(context, places[0], places[1], cut, pieces));
     STARG_NEW_ZERO(context, STAGE, map, 1);
     STARG_TRY(take_pieces(context, (const starg_decomposition *const *)pieces, map));
     measure(map);
@@ -235,7 +235,7 @@ static starg_status make_map(starg_context *context, const starg_mesh *a, const 
     STARG_TRY(starg_morph_create(context, a, images, &way, &m));
     STARG_TRY(solids_fill(m, options->density, &c, &solid, &surface));
     STARG_TRY(spread(m, options, &c));
-    STARG_TRY(solid_map_finish(context, &c, out));
+    STARG_TRY(solid_map_finish(context, &c, true, out));
 done:
     deform_free(&c);
     starg_solid_free(solid);

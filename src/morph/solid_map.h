@@ -11,9 +11,10 @@
 starg_status solid_map_shape(starg_context *context, const starg_mesh *a, starg_solid_shape shape,
                              double **images);
 
-/* Divides tetrahedra, positive in both places, into pieces, and measures. Errors: MESH, MEMORY,
- * CANCELLED. */
-starg_status solid_map_finish(starg_context *context, const deform_mesh *c, starg_solid_map **out);
+/* Puts tetrahedra, positive in both places, into pieces, and measures; `cut`: divides them where
+ * that saves pieces. Errors: MESH, MEMORY, CANCELLED. */
+starg_status solid_map_finish(starg_context *context, const deform_mesh *c, bool cut,
+                              starg_solid_map **out);
 
 /* Exponents of the extents of both places, as units of length. */
 void solid_map_exponents(const starg_solid_map *map, int out[2]);

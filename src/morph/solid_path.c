@@ -91,7 +91,7 @@ starg_status starg_morph_solid_map(const starg_morph *m, starg_solid_map **out) 
         return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE,
                           "only morphs of method solid have a map of their solids");
     starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
-    STARG_TRY(solid_map_finish(m->context, &own->mesh, &map));
+    STARG_TRY(solid_map_finish(m->context, &own->mesh, false, &map));
     map->key_count = own->keys.times.count - 1; /* the last one is B */
     STARG_NEW(m->context, STAGE, map->times, map->key_count);
     STARG_NEW(m->context, STAGE, map->keys, map->key_count * own->mesh.rest.count);

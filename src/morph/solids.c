@@ -140,7 +140,7 @@ static starg_status cut(const starg_morph *m, const deform_mesh *c, starg_decomp
     starg_tetmesh *meshes[2] = {NULL, NULL};
     STARG_TRY(solids_place(c, c->rest.data, &meshes[0]));
     STARG_TRY(solids_place(c, c->now.data, &meshes[1]));
-    STARG_TRY(compatible_decompose(m->context, meshes[0], meshes[1], out));
+    STARG_TRY(compatible_decompose(m->context, meshes[0], meshes[1], true, out));
     for (int end = 0; end < 2; end++) {
         out[end]->model_vertices = m->mesh->vertex_count;
         out[end]->model_faces = m->mesh->face_count;

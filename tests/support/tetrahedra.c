@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "tetrahedra.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/rng.h"
 #include "geometry/delaunay.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
 #include "starguard/sample.h"
 #include "starguard/solid.h"
 #include "support.h"
@@ -51,4 +54,44 @@ starg_tetmesh *sample_tetmesh(starg_context *context, const char *name, size_t t
     starg_solid_free(solid);
     starg_mesh_free(surface);
     return mesh;
+}
+
+/* Is p within `near` of the triangle's plane, and in it by its areas with the corners? */
+static bool is_on_triangle(const double *p, const double *const corner[3], double near) {
+    double whole = vec3_triangle_area(corner[0], corner[1], corner[2]), parts = 0, length = 0;
+    double normal[3], offset[3];
+    vec3_triangle_normal(corner[0], corner[1], corner[2], normal);
+    vec3_subtract(p, corner[0], offset);
+    if (fabs(vec3_dot(normal, offset)) > near * vec3_length(normal))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        parts += vec3_triangle_area(p, corner[k], corner[(k + 1) % 3]);
+        length += vec3_distance(corner[k], corner[(k + 1) % 3]);
+    }
+    return parts - whole < near * length;
+}
+
+void assert_subdivides(const starg_mesh *surface, const starg_mesh *a, const double *positions) {
+    size_t count = a->vertex_count;
+    double area = 0, near = 0;
+    assert_true(surface->vertex_count >= count);
+    assert_memory_equal(surface->vertices, positions, 3 * count * sizeof *positions);
+    for (size_t i = 0; i < 3 * count; i++)
+        near = fmax(near, 1e-9 * fabs(positions[i]));
+    for (size_t v = count; v < surface->vertex_count; v++) {
+        bool found = false;
+        for (size_t f = 0; f < a->face_count && !found; f++) {
+            const double *corner[3];
+            for (size_t k = 0; k < 3; k++)
+                corner[k] = positions + 3 * (size_t)a->faces[3 * f + k];
+            found = is_on_triangle(surface->vertices + 3 * v, corner, near);
+        }
+        if (!found)
+            fail_msg("vertex %zu of the boundary is not on the surface", v);
+    }
+    for (size_t f = 0; f < a->face_count; f++)
+        area += vec3_triangle_area(positions + 3 * (size_t)a->faces[3 * f],
+                                   positions + 3 * (size_t)a->faces[3 * f + 1],
+                                   positions + 3 * (size_t)a->faces[3 * f + 2]);
+    assert_true(fabs(starg_mesh_area(surface) - area) < 1e-9 * area);
 }

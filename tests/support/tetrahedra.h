@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Random tetrahedral meshes for tests. */
+/* Tetrahedral meshes for tests, and their boundaries. */
 #ifndef TESTS_TETRAHEDRA_H
 #define TESTS_TETRAHEDRA_H
 
@@ -14,5 +14,9 @@ starg_tetmesh *random_tetmesh(starg_context *context, uint64_t seed, size_t poin
 
 /* Isosurface stuffing of a procedural sample with about `target` tetrahedra. */
 starg_tetmesh *sample_tetmesh(starg_context *context, const char *name, size_t target);
+
+/* `surface` is `a` with its vertices at `positions`, which come first, subdivided or not: further
+ * vertices are on its faces, and the area is the same, up to rounding. */
+void assert_subdivides(const starg_mesh *surface, const starg_mesh *a, const double *positions);
 
 #endif

@@ -2,14 +2,17 @@
 /* Pieces that are star-shaped in two embeddings at once, against their definition in rationals. */
 #include "support.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/rng.h"
 #include "decomposition_oracle.h"
 #include "exact_oracle.h"
+#include "geometry/vec3.h"
 #include "star/strict/start/compatible.h"
 #include "star/strict/start/region_growing.h"
+#include "star/strict/start/through.h"
 #include "tetra/tetmesh.h"
 #include "tetrahedra.h"
 
@@ -50,6 +53,14 @@ static bool all_positive(const starg_tetmesh *mesh, const double *places) {
             return false;
     }
     return true;
+}
+
+/* Bent by the square of x. */
+static starg_tetmesh *bend(starg_context *context, const starg_tetmesh *mesh) {
+    double *places = copy_places(mesh);
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        places[3 * v + 1] += 0.35 * places[3 * v] * places[3 * v];
+    return image_of(context, mesh, places);
 }
 
 /* Vertices moved one by one wherever all tetrahedra stay positive. The random meshes have holes,
@@ -107,8 +118,8 @@ static void test_random(void **state) {
         starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + 3 * seed, false, 1);
         starg_tetmesh *image = seed % 4 == 0 ? shear(context, mesh) : shake(context, mesh, seed);
         starg_decomposition *one[2], *three[2];
-        test_ok(context, compatible_decompose(context, mesh, image, one));
-        test_ok(many, compatible_decompose(many, mesh, image, three));
+        test_ok(context, compatible_decompose(context, mesh, image, false, one));
+        test_ok(many, compatible_decompose(many, mesh, image, false, three));
         check(mesh, image, one);
         assert_int_equal(one[0]->piece_count, three[0]->piece_count);
         for (int i = 0; i < 2; i++) {
@@ -135,7 +146,7 @@ static void test_affine(void **state) {
     starg_context *context = test_context(1);
     starg_tetmesh *mesh = sample_tetmesh(context, "sphere", 1500), *image = shear(context, mesh);
     starg_decomposition *out[2];
-    test_ok(context, compatible_decompose(context, mesh, image, out));
+    test_ok(context, compatible_decompose(context, mesh, image, false, out));
     check(mesh, image, out);
     assert_int_equal(out[0]->piece_count, 1);
     free_both(context, out);
@@ -153,12 +164,127 @@ static void test_saves(void **state) {
     starg_decomposition *out[2];
     grown_regions grown;
     test_ok(context, grow_compatible_regions(context, mesh, image, &grown));
-    test_ok(context, compatible_decompose(context, mesh, image, out));
+    test_ok(context, compatible_decompose(context, mesh, image, false, out));
     check(mesh, image, out);
     print_message("%zu regions, %zu pieces\n", grown.count, out[0]->piece_count);
     assert_true(3 * out[0]->piece_count < 2 * grown.count);
     grown_regions_free(context, &grown);
     free_both(context, out);
+    starg_tetmesh_free(mesh);
+    starg_tetmesh_free(image);
+    test_context_free(context);
+}
+
+/* ---- cuts ---- */
+
+static double volume_of(const starg_tetmesh *mesh) {
+    int exponent = tetmesh_exponent(mesh);
+    double sum = 0;
+    for (size_t t = 0; t < mesh->count; t++)
+        sum += tetmesh_scaled_volume(mesh, t, exponent);
+    return ldexp(sum, 3 * exponent);
+}
+
+/* Tetrahedra that the cut leaves are positive, conforming, without overlap, and fill the same
+ * volume; the given vertices come first. */
+static void check_divided(starg_context *context, const starg_tetmesh *mesh,
+                          const starg_tetmesh *made) {
+    starg_tetmesh *again;
+    assert_true(made->vertex_count > mesh->vertex_count && made->count > mesh->count);
+    assert_memory_equal(made->vertices, mesh->vertices, 3 * mesh->vertex_count * sizeof(double));
+    assert_true(all_positive(made, made->vertices));
+    test_ok(context, starg_tetmesh_create(context, made->vertices, made->vertex_count,
+                                          made->tetrahedra, made->count, NULL, &again));
+    assert_int_equal(starg_tetmesh_turned(again), 0);
+    assert_true(fabs(volume_of(made) - volume_of(mesh)) < 1e-9 * volume_of(mesh));
+    starg_tetmesh_free(again);
+}
+
+/* Are all faces around a part seen from the guard's inner side? In rationals. */
+static void check_part(const starg_tetmesh *made, const uint32_t *labels, int part,
+                       const double *guard) {
+    size_t count = 0;
+    for (size_t face = 0; face < 4 * made->count; face++) {
+        uint32_t u = made->neighbours[face];
+        const double *p[3];
+        if (labels[face / 4] != THROUGH_PART + (uint32_t)part ||
+            (u != STARG_TETMESH_NONE && labels[u] == labels[face / 4]))
+            continue;
+        for (int k = 0; k < 3; k++)
+            p[k] = tetmesh_corner(made, face / 4, TETMESH_FACE[face % 4][k]);
+        assert_int_equal(oracle_orient3d(p[0], p[1], p[2], guard), 1);
+        count++;
+    }
+    assert_true(count > 0);
+}
+
+/* Points on edges are at the same ratio in both places: the map stays as it was. */
+static void check_ratios(const through_cut *cut, starg_tetmesh *const made[2]) {
+    size_t first = cut->meshes[0]->vertex_count;
+    for (size_t e = 0; e < cut->edges.count; e++) {
+        size_t ends[2] = {(size_t)(cut->edges.data[e] >> 32), (uint32_t)cut->edges.data[e]};
+        double ratio[2];
+        for (int i = 0; i < 2; i++) {
+            const double *p = made[i]->vertices;
+            double whole = vec3_distance(p + 3 * ends[0], p + 3 * ends[1]);
+            ratio[i] = vec3_distance(p + 3 * ends[0], p + 3 * (first + e)) / whole;
+        }
+        assert_true(fabs(ratio[0] - ratio[1]) < 1e-9);
+    }
+}
+
+/* A random plane through a ball or, with `half`, through the tetrahedra on one side of it. Returns
+ * whether there are guards. */
+static bool check_plane(starg_context *context, const starg_tetmesh *mesh,
+                        const starg_tetmesh *image, bool half, uint64_t seed) {
+    through_cut cut = {.context = context, .meshes = {mesh, image}};
+    uint8_t *inside = calloc(mesh->count, 1);
+    uint32_t *labels = calloc(mesh->count, sizeof *labels), *made_labels;
+    starg_tetmesh *made[2];
+    double normal[3], offset, guards[2][2][3];
+    bool found, good;
+    starg_rng rng = starg_rng_make(seed, 2, 0);
+    cut.levels = calloc(mesh->vertex_count, sizeof *cut.levels);
+    assert_true(inside != NULL && labels != NULL && cut.levels != NULL);
+    for (int k = 0; k < 3; k++)
+        normal[k] = starg_rng_unit(&rng) - 0.5;
+    offset = 0.1 * (starg_rng_unit(&rng) - 0.5);
+    for (size_t t = 0; t < mesh->count; t++) {
+        inside[t] = !half || tetmesh_corner(mesh, t, 0)[0] < 0;
+        for (int k = 0; k < 4 && inside[t]; k++) {
+            const double *p = tetmesh_corner(mesh, t, k);
+            cut.levels[mesh->tetrahedra[4 * t + (size_t)k]] =
+                p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2] - offset;
+        }
+    }
+    cut.inside = inside;
+    test_ok(context, through_find(&cut, guards, &found));
+    test_ok(context, through_divide(&cut, labels, made, &made_labels, &good));
+    assert_true(good);
+    check_ratios(&cut, made);
+    for (int i = 0; i < 2; i++) {
+        check_divided(context, cut.meshes[i], made[i]);
+        for (int part = 0; part < 2 && found; part++)
+            check_part(made[i], made_labels, part, guards[part][i]);
+        starg_tetmesh_free(made[i]);
+    }
+    starg_release(context, made_labels);
+    through_free(&cut);
+    free(cut.levels);
+    free(inside);
+    free(labels);
+    return found;
+}
+
+/* Convex, or nearly: both halves have guards in both places. */
+static void test_cuts(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_tetmesh *mesh = sample_tetmesh(context, "sphere", 1500), *image = bend(context, mesh);
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        assert_true(check_plane(context, mesh, image, false, seed));
+        check_plane(context, mesh, image, true, seed);
+    }
     starg_tetmesh_free(mesh);
     starg_tetmesh_free(image);
     test_context_free(context);
@@ -175,7 +301,7 @@ static void test_memory(void **state) {
         starg_tetmesh *image = shake(context, mesh, 5);
         starg_decomposition *out[2];
         left = ration;
-        status = compatible_decompose(context, mesh, image, out);
+        status = compatible_decompose(context, mesh, image, true, out);
         left = SIZE_MAX;
         if (status != STARG_OK) {
             assert_int_equal(status, STARG_ERROR_MEMORY);
@@ -193,6 +319,7 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_affine),
-                                       cmocka_unit_test(test_saves), cmocka_unit_test(test_memory)};
+                                       cmocka_unit_test(test_saves), cmocka_unit_test(test_cuts),
+                                       cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,12 +9,12 @@
  * whose union has a kernel with an interior in both places become one, those that touch over the
  * largest area first, until no two can be joined. Then a random group of pieces that hang together
  * is given up, its tetrahedra are grown and joined anew, and the outcome stays if there are no more
- * pieces than before (ruin and recreate: Schrimpf et al. 2000), until that has long saved nothing;
- * then every guard goes to the middle of its kernel.
+ * pieces than before (ruin and recreate: Schrimpf et al. 2000), until that has long saved nothing.
+ * Where tetrahedra may be cut, three and more pieces that hang together become two by a random
+ * plane in one of the places (through.c), if the kernels allow it. At last every guard goes to the
+ * middle of its kernel.
  *
  * Invariants: after each stage every set is proven to be star-shaped in both, by exact signs.
- * Planes cannot help here as they do for one solid (repartition.c): what is plane in one place is
- * not in the other. So pieces consist of the tetrahedra that were given.
  *
  * Cost: that of the region growing, for the whole and for a fixed number of tetrahedra of groups,
  * and two linear programs for each pair of neighbours that is tried; a pair is tried again only
@@ -30,6 +30,7 @@
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
 #include "star/strict/start/region_growing.h"
+#include "star/strict/start/through.h"
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "join";
@@ -39,7 +40,11 @@ enum {
     IDLE_MOST = 150,     /* groups in a row that saved nothing: then no more                 */
     WORK_LEAST = 400000, /* tetrahedra of all groups                                        */
     WORK_EACH = 30,      /* and as many more for each tetrahedron that there is             */
-    PASSES = 60          /* as many looked at once take as long as one of a group           */
+    PASSES = 60,         /* as many looked at once take as long as one of a group           */
+    CUT_MOST = 7,        /* pieces that become two at a time, from 3 on                     */
+    CUT_TRIES = 8,       /* planes for a group                                              */
+    CUT_IDLE = 250,      /* groups in a row that no plane divided: then no more             */
+    CUT_WORK = 1500      /* tetrahedra of all planes, for each that there is                */
 };
 
 #define LAST UINT32_MAX /* ends a list */
@@ -48,6 +53,7 @@ enum {
 typedef struct compatible {
     starg_context *context;
     const starg_tetmesh *meshes[2];
+    starg_tetmesh *own[2]; /* the same, if they were divided; else NULL */
     grown_regions pieces;
     uint32_t *next;          /* per tetrahedron */
     uint32_t *heads, *tails; /* per piece; a piece that was joined to another has LAST */
@@ -67,6 +73,8 @@ static void compatible_free(compatible *w) {
     void *const blocks[] = {w->next, w->heads, w->tails, w->fresh, w->joined, w->faces.data};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(w->context, blocks[i]);
+    for (int i = 0; i < 2; i++)
+        starg_tetmesh_free(w->own[i]);
     grown_regions_free(w->context, &w->pieces);
 }
 
@@ -356,6 +364,166 @@ done:
     return status;
 }
 
+/* ---- cuts ---- */
+
+/* A plane about across from one piece of the group to another. */
+static void choose_plane(const compatible *w, const uint8_t *dropped, starg_rng *rng,
+                         double *levels) {
+    int place = (int)starg_rng_below(rng, 2);
+    const starg_tetmesh *mesh = w->meshes[place];
+    const double *guards = place == 0 ? w->pieces.guards.data : w->pieces.counterparts.data;
+    uint32_t pair[2];
+    for (int i = 0; i < 2; i++)
+        do
+            pair[i] = (uint32_t)starg_rng_below(rng, w->pieces.count);
+        while (!dropped[pair[i]] || (i == 1 && pair[1] == pair[0]));
+    const double *from = guards + 3 * (size_t)pair[0], *to = guards + 3 * (size_t)pair[1];
+    double normal[3], tilt[3], point[3], at = 1.4 * starg_rng_unit(rng) - 0.2;
+    double most = 0.6 * starg_rng_unit(rng) * vec3_distance(from, to);
+    vec3_subtract(to, from, normal);
+    vec3_along(from, at, normal, point);
+    for (int k = 0; k < 3; k++)
+        tilt[k] = 2 * starg_rng_unit(rng) - 1;
+    vec3_along(normal, most, tilt, normal);
+    memset(levels, 0, mesh->vertex_count * sizeof *levels);
+    for (size_t t = 0; t < mesh->count; t++)
+        for (size_t k = 0; dropped[w->pieces.labels[t]] && k < 4; k++) {
+            uint32_t v = mesh->tetrahedra[4 * t + k];
+            double offset[3];
+            vec3_subtract(mesh->vertices + 3 * (size_t)v, point, offset);
+            levels[v] = vec3_dot(offset, normal);
+        }
+}
+
+/* The pieces that are kept, and the two parts. */
+static starg_status number_parts(const compatible *w, const uint8_t *dropped,
+                                 double guards[2][2][3], compatible *out) {
+    starg_status status = STARG_OK;
+    uint32_t *numbers = NULL;
+    grown_regions *pieces = &out->pieces;
+    STARG_NEW(w->context, STAGE, numbers, w->pieces.count);
+    for (size_t p = 0; p < w->pieces.count; p++) {
+        if (dropped[p])
+            continue;
+        numbers[p] = (uint32_t)pieces->count++;
+        for (size_t k = 3 * p; k < 3 * p + 3; k++) {
+            STARG_PUSH(w->context, STAGE, &pieces->guards, w->pieces.guards.data[k]);
+            STARG_PUSH(w->context, STAGE, &pieces->counterparts, w->pieces.counterparts.data[k]);
+        }
+    }
+    for (int part = 0; part < 2; part++)
+        for (int k = 0; k < 3; k++) {
+            STARG_PUSH(w->context, STAGE, &pieces->guards, guards[part][0][k]);
+            STARG_PUSH(w->context, STAGE, &pieces->counterparts, guards[part][1][k]);
+        }
+    for (size_t t = 0; t < out->meshes[0]->count; t++) {
+        uint32_t label = pieces->labels[t];
+        pieces->labels[t] = label >= THROUGH_PART ? (uint32_t)pieces->count + (label - THROUGH_PART)
+                                                  : numbers[label];
+    }
+    pieces->count += 2;
+done:
+    starg_release(w->context, numbers);
+    return status;
+}
+
+/* Are all pieces seen from their guards, in both places? Rounding of new vertices may spoil it. */
+static starg_status prove_all(compatible *w, bool *proven) {
+    starg_status status = STARG_OK;
+    *proven = true;
+    for (uint32_t piece = 0; piece < w->pieces.count && *proven; piece++) {
+        w->faces.count = 0;
+        STARG_TRY(add_faces(w, piece, piece));
+        *proven = w->faces.count > 0;
+        for (int i = 0; i < 2 && *proven; i++) {
+            const double *guards = i == 0 ? w->pieces.guards.data : w->pieces.counterparts.data;
+            const kernel_faces surface = {w->meshes[i]->vertices, w->faces.data,
+                                          w->faces.count / 3};
+            *proven = kernel_sees_all(&surface, guards + 3 * (size_t)piece);
+        }
+    }
+done:
+    return status;
+}
+
+/* Tries planes for a group; *out has no pieces if none will do. */
+static starg_status divide_group(const compatible *w, const uint8_t *dropped, starg_rng *rng,
+                                 through_cut *cut, compatible *out) {
+    starg_status status = STARG_OK;
+    double guards[2][2][3];
+    bool found = false;
+    for (int i = 0; i < CUT_TRIES && !found; i++) {
+        choose_plane(w, dropped, rng, cut->levels);
+        STARG_TRY(through_find(cut, guards, &found));
+    }
+    if (found)
+        STARG_TRY(through_divide(cut, w->pieces.labels, out->own, &out->pieces.labels, &found));
+    if (!found)
+        goto done;
+    for (int i = 0; i < 2; i++)
+        out->meshes[i] = out->own[i];
+    STARG_TRY(number_parts(w, dropped, guards, out));
+    STARG_TRY(list_pieces(out));
+    STARG_TRY(prove_all(out, &found));
+    if (!found)
+        out->pieces.count = 0;
+done:
+    return status;
+}
+
+/* One group: *saved says whether it has become two pieces. */
+static starg_status cut_group(compatible *w, uint64_t round, size_t *work, bool *saved) {
+    starg_status status = STARG_OK;
+    starg_context *context = w->context;
+    starg_rng rng = starg_rng_make(context->seed, 1, round);
+    through_cut cut = {.context = context, .meshes = {w->meshes[0], w->meshes[1]}};
+    compatible next = {.context = context};
+    uint8_t *dropped = NULL, *inside = NULL;
+    size_t tetrahedra = 0, group = 0;
+    *saved = false;
+    STARG_NEW(context, STAGE, dropped, w->pieces.count);
+    STARG_NEW(context, STAGE, inside, w->meshes[0]->count);
+    STARG_NEW(context, STAGE, cut.levels, w->meshes[0]->vertex_count);
+    STARG_TRY(drop_group(w, 3 + starg_rng_below(&rng, CUT_MOST - 2), &rng, dropped, &tetrahedra));
+    for (size_t p = 0; p < w->pieces.count; p++)
+        group += dropped[p];
+    for (size_t t = 0; t < w->meshes[0]->count; t++)
+        inside[t] = dropped[w->pieces.labels[t]];
+    cut.inside = inside;
+    if (group > 2)
+        STARG_TRY(divide_group(w, dropped, &rng, &cut, &next));
+    *work += CUT_TRIES * tetrahedra + w->meshes[0]->count / 10;
+    if (next.pieces.count > 0) {
+        compatible former = *w;
+        *w = next;
+        next = former;
+        *saved = true;
+    }
+done:
+    through_free(&cut);
+    starg_release(context, cut.levels);
+    starg_release(context, dropped);
+    starg_release(context, inside);
+    compatible_free(&next);
+    return status;
+}
+
+static starg_status cut_groups(compatible *w) {
+    starg_status status = STARG_OK;
+    size_t idle = 0, work = 0, most = CUT_WORK * w->meshes[0]->count;
+    starg_progress_begin(w->context, STAGE);
+    for (uint64_t round = 1; idle < CUT_IDLE && work < most && w->pieces.count > 2; round++) {
+        bool saved;
+        STARG_TRY(starg_check_cancel(w->context, STAGE));
+        STARG_TRY(cut_group(w, round, &work, &saved));
+        idle = saved ? 0 : idle + 1;
+        starg_progress_step(w->context, work, most);
+    }
+done:
+    starg_progress_end(w->context);
+    return status;
+}
+
 /* ---- the result ---- */
 
 static starg_status finish(const compatible *w, int place, starg_decomposition **out) {
@@ -378,7 +546,8 @@ done:
 }
 
 starg_status compatible_decompose(starg_context *context, const starg_tetmesh *mesh,
-                                  const starg_tetmesh *image, starg_decomposition *out[2]) {
+                                  const starg_tetmesh *image, bool cut,
+                                  starg_decomposition *out[2]) {
     starg_status status = STARG_OK;
     compatible w = {.context = context, .meshes = {mesh, image}};
     out[0] = out[1] = NULL;
@@ -387,6 +556,8 @@ starg_status compatible_decompose(starg_context *context, const starg_tetmesh *m
     STARG_TRY(join_all(&w));
     renumber(&w);
     STARG_TRY(renew_groups(&w));
+    if (cut)
+        STARG_TRY(cut_groups(&w));
     STARG_TRY(center_guards(&w));
     for (int i = 0; i < 2; i++)
         STARG_TRY(finish(&w, i, &out[i]));
