@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Singular values of a map between two frames of three vectors: the matrix of the map, then
- * one-sided Jacobi rotations (Hestenes 1958), which keep small values relatively precise. */
+ * one-sided Jacobi rotations (Hestenes 1958). Where frames are flat, the matrix is off by a share
+ * of its largest value, which may be more than the smallest; that is taken from the inverse map,
+ * whose largest value it is, where rounding spoils it less. */
 #include "geometry/singular_values.h"
 
 #include <math.h>
@@ -46,7 +48,7 @@ static void swap_if_less(double *a, double *b) {
     *a = larger;
 }
 
-void singular_values(double from[3][3], double to[3][3], double out[3]) {
+static void values_of(double from[3][3], double to[3][3], double out[3]) {
     double columns[3][3];
     matrix_of(from, to, columns);
     for (int sweep = 0; sweep < SWEEPS; sweep++)
@@ -57,4 +59,21 @@ void singular_values(double from[3][3], double to[3][3], double out[3]) {
     swap_if_less(&out[0], &out[1]);
     swap_if_less(&out[1], &out[2]);
     swap_if_less(&out[0], &out[1]);
+}
+
+/* Determinant over the product of lengths: rounding is divided by it. */
+static double flatness(double m[3][3]) {
+    double across[3];
+    vec3_cross(m[1], m[2], across);
+    return fabs(vec3_dot(m[0], across)) /
+           (vec3_length(m[0]) * vec3_length(m[1]) * vec3_length(m[2]));
+}
+
+void singular_values(double from[3][3], double to[3][3], double out[3]) {
+    double inverse[3];
+    values_of(from, to, out);
+    if (!(out[2] * flatness(from) < out[0] * flatness(to)))
+        return;
+    values_of(to, from, inverse);
+    out[2] = fmin(1 / inverse[0], out[1]);
 }

@@ -108,12 +108,16 @@ static void claim_distortion(const verify_context *own) {
         verify_add_distortion(&found, corners, own->pieces->scale, images, 0);
     }
     const starg_pieces_report *r = own->report;
-    verify_claim(own->verdict, verify_near_distortion(r->ball_worst, found.worst),
+    verify_claim(own->verdict, verify_near_distortion(r->ball_worst, found.worst, found.worst_room),
                  "maps to balls stretch by a ratio of %.9g at most (found: %.9g)", r->ball_worst,
                  found.worst);
-    verify_claim(own->verdict, verify_near_distortion(r->ball_mean, found.sum / found.all),
-                 "their mean ratio is %.9g (found: %.9g)", r->ball_mean, found.sum / found.all);
-    verify_claim(own->verdict, verify_near_distortion(r->ball_above_10, found.above / found.all),
+    verify_claim(
+        own->verdict,
+        verify_near_distortion(r->ball_mean, found.sum / found.all, found.sum_room / found.all),
+        "their mean ratio is %.9g (found: %.9g)", r->ball_mean, found.sum / found.all);
+    verify_claim(own->verdict,
+                 verify_near_distortion(r->ball_above_10, found.above / found.all,
+                                        found.above_room / found.all),
                  "a share of %.9g of the volume has a ratio above 10 (found: %.9g)",
                  r->ball_above_10, found.above / found.all);
 }

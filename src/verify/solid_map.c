@@ -146,14 +146,14 @@ static void claim_distortion(starg_verdict *verdict, const starg_solid_map *map,
                               ends[1].own.pieces->scale);
     }
     double mean = found.sum / found.all, above = found.above / found.all;
-    verify_claim(verdict, verify_near_distortion(map->worst, found.worst),
+    verify_claim(verdict, verify_near_distortion(map->worst, found.worst, found.worst_room),
                  "tetrahedra are stretched by a ratio of %.9g at most (found: %.9g)", map->worst,
                  found.worst);
-    verify_claim(verdict, verify_near_distortion(map->mean, mean),
+    verify_claim(verdict, verify_near_distortion(map->mean, mean, found.sum_room / found.all),
                  "their mean ratio is %.9g (found: %.9g)", map->mean, mean);
-    verify_claim(verdict, verify_near_distortion(map->above_10, above),
-                 "a share of %.9g of A's volume has a ratio above 10 (found: %.9g)", map->above_10,
-                 above);
+    verify_claim(
+        verdict, verify_near_distortion(map->above_10, above, found.above_room / found.all),
+        "a share of %.9g of A's volume has a ratio above 10 (found: %.9g)", map->above_10, above);
 }
 
 /* ---- all of it ---- */
