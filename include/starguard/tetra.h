@@ -72,7 +72,7 @@ typedef struct starg_tetra_options {
                        0: as few as possible with TetGen, else 17.5 */
     size_t target;  /* target number of tetrahedra; above 0 it replaces density */
     const char *tetgen;  /* path of the program; NULL: "tetgen" on the search path */
-    double tetgen_limit; /* its time limit in seconds (default 30) */
+    double tetgen_limit; /* its limit in seconds of processor time (default 30) */
 } starg_tetra_options;
 
 STARG_API void starg_tetra_options_default(starg_tetra_options *options);

@@ -8,6 +8,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,13 +26,22 @@
 
 enum { NOT_FOUND = 127, FIRST_NAP = 1000000, LONGEST_NAP = 20000000 }; /* naps in nanoseconds */
 
+/* Of processor time: how busy the machine is does not count. A program that goes on after the
+ * signal is killed a second later. */
+static void limit_time(double seconds) {
+    const rlim_t whole = seconds < 1e9 ? (rlim_t)ceil(seconds) : RLIM_INFINITY - 1;
+    setrlimit(RLIMIT_CPU, &(struct rlimit){whole, whole + 1});
+    signal(SIGXCPU, SIG_DFL);
+}
+
 /* Runs in the child; never returns. Where supported, the child dies with its parent. */
-static void exec_child(const char *const *arguments) {
+static void exec_child(const char *const *arguments, double seconds) {
     setpgid(0, 0);
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+    limit_time(seconds);
     int nothing = open("/dev/null", O_RDWR);
     for (int stream = 0; stream < 3 && nothing >= 0; stream++)
         dup2(nothing, stream);
@@ -45,8 +55,15 @@ static void exec_child(const char *const *arguments) {
     _exit(NOT_FOUND);
 }
 
+static starg_status took_too_long(starg_context *context, const char *stage, const char *program) {
+    return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' took too long and was stopped",
+                      program);
+}
+
 static starg_status explain(starg_context *context, const char *stage, const char *program,
                             int status) {
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+        return took_too_long(context, stage, program);
     if (WIFSIGNALED(status))
         return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was terminated by signal %d",
                           program, WTERMSIG(status));
@@ -60,18 +77,15 @@ static starg_status explain(starg_context *context, const char *stage, const cha
 }
 
 /* Checks cancellation and time while waiting. */
-static starg_status check_stop(starg_context *context, const char *stage, const char *program,
-                               double deadline) {
+static starg_status check_stop(starg_context *context, const char *stage, const char *program) {
     starg_status status = starg_check_cancel(context, stage);
-    if (status == STARG_OK && (starg_clock() > deadline || starg_time_is_over(context)))
-        status = starg_fail(context, STARG_ERROR_SOLVER, stage,
-                            "'%s' took too long and was stopped", program);
+    if (status == STARG_OK && starg_time_is_over(context))
+        status = took_too_long(context, stage, program);
     return status;
 }
 
 static starg_status await(starg_context *context, const char *stage, const char *program,
-                          pid_t child, double seconds) {
-    double deadline = starg_clock() + seconds;
+                          pid_t child) {
     struct timespec nap = {0, FIRST_NAP};
     for (;;) {
         int status;
@@ -81,7 +95,7 @@ static starg_status await(starg_context *context, const char *stage, const char 
         if (ended < 0 && errno != EINTR)
             return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was lost: %s", program,
                               strerror(errno));
-        starg_status reason = check_stop(context, stage, program, deadline);
+        starg_status reason = check_stop(context, stage, program);
         if (reason != STARG_OK) {
             kill(-child, SIGKILL);
             kill(child, SIGKILL); /* it may have no group yet */
@@ -102,8 +116,8 @@ starg_status starg_process_run(starg_context *context, const char *stage,
         return starg_fail(context, STARG_ERROR_SOLVER, stage, "cannot start '%s': %s", arguments[0],
                           strerror(errno));
     if (child == 0)
-        exec_child(arguments);
-    return await(context, stage, arguments[0], child, seconds);
+        exec_child(arguments, seconds);
+    return await(context, stage, arguments[0], child);
 }
 
 starg_status starg_scratch_create(starg_context *context, const char *stage, char **path) {
