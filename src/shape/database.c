@@ -225,6 +225,7 @@ static starg_status write_schema(starg_database *d) {
              APPLICATION, SCHEMA_VERSION);
     STARG_TRY(database_begin(d));
     STARG_TRY(database_run(d, SCHEMA));
+    STARG_TRY(database_run(d, DATABASE_SKETCHES));
     STARG_TRY(database_run(d, marks));
     STARG_TRY(database_commit(d));
 done:

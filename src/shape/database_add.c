@@ -28,7 +28,7 @@ typedef struct adding {
     database_digest *stored;
     size_t stored_files; /* files processed so far */
     double stored_at;    /* time of the last transaction, on starg_clock() */
-    sqlite3_stmt *insert_model, *insert_signature, *find_model;
+    sqlite3_stmt *insert_model, *insert_signature, *insert_sketch, *find_model;
     starg_database_report *report;
 } adding;
 
@@ -89,6 +89,7 @@ static starg_status prepare_statements(adding *a) {
         a->database,
         "INSERT OR REPLACE INTO signature (model, kind, version, numbers) VALUES (?, ?, ?, ?)",
         &a->insert_signature));
+    STARG_TRY(database_prepare(a->database, DATABASE_INSERT_SKETCH, &a->insert_sketch));
     STARG_TRY(
         database_prepare(a->database, "SELECT id, path FROM model WHERE hash = ?", &a->find_model));
 done:
@@ -116,6 +117,9 @@ static starg_status store_signatures(adding *a, int64_t model, const database_fi
         sqlite3_bind_int(s, 3, starg_signature_version((starg_signature_kind)kind));
         sqlite3_bind_blob64(s, 4, d->numbers[kind], d->sizes[kind], SQLITE_STATIC);
         STARG_TRY(database_step(a->database, s, &row));
+        STARG_TRY(database_store_sketch(a->database, a->insert_sketch, model,
+                                        (starg_signature_kind)kind, d->numbers[kind],
+                                        d->sizes[kind]));
     }
 done:
     return status;
@@ -244,6 +248,7 @@ starg_status starg_database_add(starg_database *database, const char *const *fil
     a.report->count = count;
     STARG_NEW_ZERO(context, DATABASE_STAGE, a.report->results, count);
     STARG_NEW_ZERO(context, DATABASE_STAGE, a.files.files, count);
+    STARG_TRY(database_add_sketches(database));
     STARG_TRY(load_stored(&a));
     STARG_TRY(prepare_statements(&a));
     STARG_TRY(describe_and_store(&a));
@@ -252,6 +257,7 @@ starg_status starg_database_add(starg_database *database, const char *const *fil
 done:
     sqlite3_finalize(a.insert_model);
     sqlite3_finalize(a.insert_signature);
+    sqlite3_finalize(a.insert_sketch);
     sqlite3_finalize(a.find_model);
     starg_release(context, a.stored);
     for (size_t i = a.stored_files; a.files.files != NULL && i < count; i++)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reads a database, and removes models from it.
  *
- * Numbers are stored as IEEE doubles, little-endian. A query scans all signatures of its kind once
- * and keeps the best in order: an index pays only with millions of models. */
+ * Numbers are stored as IEEE doubles, little-endian. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -10,14 +9,12 @@
 #include "shape/database.h"
 #include "shape/sha256.h"
 
-typedef STARG_ARRAY(starg_database_model) model_array;
-
 static void clear_model(starg_context *context, starg_database_model *model) {
     starg_release(context, model->path);
     starg_signature_free(context, model->signature);
 }
 
-static void clear_models(starg_context *context, model_array *list) {
+void database_models_clear(starg_context *context, database_models *list) {
     for (size_t i = 0; i < list->count; i++)
         clear_model(context, &list->data[i]);
     STARG_ARRAY_FREE(context, list);
@@ -26,18 +23,18 @@ static void clear_models(starg_context *context, model_array *list) {
 void starg_database_models_free(starg_context *context, starg_database_models *models) {
     if (models == NULL)
         return;
-    clear_models(context, &(model_array){.data = models->items, .count = models->count});
+    database_models_clear(context,
+                          &(database_models){.data = models->items, .count = models->count});
     starg_release(context, models);
 }
 
-/* Moves the list to the result. */
-static starg_status hand_over(starg_context *context, model_array *list,
-                              starg_database_models **out) {
+starg_status database_models_hand_over(starg_context *context, database_models *list,
+                                       starg_database_models **out) {
     starg_status status = STARG_OK;
     starg_database_models *models = NULL;
     STARG_NEW(context, DATABASE_STAGE, models, 1);
     *models = (starg_database_models){.count = list->count, .items = list->data};
-    *list = (model_array){0};
+    *list = (database_models){0};
     *out = models;
 done:
     return status;
@@ -73,26 +70,24 @@ static starg_status read_model(starg_database *d, sqlite3_stmt *row, starg_datab
     return STARG_OK;
 }
 
-static double read_double(const uint8_t *bytes) {
-    uint64_t bits = 0;
-    double value;
-    for (int i = 7; i >= 0; i--)
-        bits = bits << 8 | bytes[i];
-    memcpy(&value, &bits, sizeof value);
-    return value;
+void database_read_doubles(const uint8_t *bytes, size_t count, double *out) {
+    for (size_t i = 0; i < count; i++, bytes += 8) {
+        uint64_t bits = 0;
+        for (int k = 7; k >= 0; k--)
+            bits = bits << 8 | bytes[k];
+        memcpy(&out[i], &bits, sizeof bits);
+    }
 }
 
-/* Columns from `first`: version, numbers. */
-static starg_status read_signature(starg_database *d, sqlite3_stmt *row, int first,
-                                   starg_signature_kind kind, starg_signature **out) {
+starg_status database_read_signature(starg_database *d, sqlite3_stmt *row, int first,
+                                     starg_signature_kind kind, starg_signature **out) {
     starg_context *context = d->context;
     starg_status status = STARG_OK;
     double *numbers = NULL;
     const uint8_t *bytes = sqlite3_column_blob(row, first + 1);
     size_t count = (size_t)sqlite3_column_bytes(row, first + 1) / 8;
     STARG_NEW(context, DATABASE_STAGE, numbers, count);
-    for (size_t i = 0; i < count; i++)
-        numbers[i] = read_double(bytes + 8 * i);
+    database_read_doubles(bytes, count, numbers);
     status =
         starg_signature_restore(context, kind, sqlite3_column_int(row, first), numbers, count, out);
     if (status == STARG_ERROR_FORMAT)
@@ -113,9 +108,8 @@ static int by_name(const void *a, const void *b) {
     return order != 0 ? order : (x->id > y->id) - (x->id < y->id);
 }
 
-/* Reads all rows of a statement; with signatures of a kind if `kind` is not negative. */
-static starg_status read_rows(starg_database *d, sqlite3_stmt *statement, int kind,
-                              model_array *list) {
+starg_status database_read_rows(starg_database *d, sqlite3_stmt *statement, int kind,
+                                database_models *list) {
     starg_status status = STARG_OK;
     starg_database_model model = {0};
     bool row;
@@ -126,8 +120,8 @@ static starg_status read_rows(starg_database *d, sqlite3_stmt *statement, int ki
             break;
         STARG_TRY(read_model(d, statement, &model));
         if (kind >= 0)
-            STARG_TRY(
-                read_signature(d, statement, 5, (starg_signature_kind)kind, &model.signature));
+            STARG_TRY(database_read_signature(d, statement, 5, (starg_signature_kind)kind,
+                                              &model.signature));
         STARG_PUSH(d->context, DATABASE_STAGE, list, model);
         model = (starg_database_model){0};
     }
@@ -140,19 +134,19 @@ static starg_status read_list(starg_database *d, const char *sql, int kind,
                               starg_database_models **out) {
     starg_status status = STARG_OK;
     sqlite3_stmt *statement = NULL;
-    model_array list = {0};
+    database_models list = {0};
     *out = NULL;
     STARG_TRY(database_prepare(d, sql, &statement));
     if (kind >= 0)
         sqlite3_bind_text(statement, 1, starg_signature_name((starg_signature_kind)kind), -1,
                           SQLITE_STATIC);
-    STARG_TRY(read_rows(d, statement, kind, &list));
+    STARG_TRY(database_read_rows(d, statement, kind, &list));
     if (list.count > 0)
         qsort(list.data, list.count, sizeof *list.data, by_name);
-    STARG_TRY(hand_over(d->context, &list, out));
+    STARG_TRY(database_models_hand_over(d->context, &list, out));
 done:
     sqlite3_finalize(statement);
-    clear_models(d->context, &list);
+    database_models_clear(d->context, &list);
     return status;
 }
 
@@ -160,7 +154,7 @@ starg_status starg_database_list(starg_database *d, starg_database_models **out)
     return read_list(d, "SELECT id, path, hash, vertices, faces FROM model ORDER BY id", -1, out);
 }
 
-static starg_status check_kind(starg_database *d, starg_signature_kind kind) {
+starg_status database_check_kind(starg_database *d, starg_signature_kind kind) {
     if (starg_signature_name(kind) != NULL)
         return STARG_OK;
     return starg_fail(d->context, STARG_ERROR_ARGUMENT, DATABASE_STAGE,
@@ -169,7 +163,7 @@ static starg_status check_kind(starg_database *d, starg_signature_kind kind) {
 
 starg_status starg_database_signatures(starg_database *d, starg_signature_kind kind,
                                        starg_database_models **out) {
-    starg_status status = check_kind(d, kind);
+    starg_status status = database_check_kind(d, kind);
     *out = NULL;
     if (status != STARG_OK)
         return status;
@@ -178,113 +172,6 @@ starg_status starg_database_signatures(starg_database *d, starg_signature_kind k
         "SELECT id, path, hash, vertices, faces, version, numbers FROM model LEFT JOIN "
         "signature ON model = id AND kind = ? ORDER BY id",
         (int)kind, out);
-}
-
-/* ---- query ---- */
-
-typedef struct candidate {
-    double distance;
-    int64_t id;
-} candidate;
-
-/* The nearest so far, sorted. */
-typedef struct shortlist {
-    candidate *items;
-    size_t count, capacity;
-} shortlist;
-
-/* Rows come by ascending id: ties keep the earlier one first. */
-static void consider(shortlist *s, candidate c) {
-    if (s->count == s->capacity && !(c.distance < s->items[s->count - 1].distance))
-        return;
-    size_t place = s->count < s->capacity ? s->count++ : s->count - 1;
-    for (; place > 0 && s->items[place - 1].distance > c.distance; place--)
-        s->items[place] = s->items[place - 1];
-    s->items[place] = c;
-}
-
-static starg_status scan(starg_database *d, const starg_signature *wanted, shortlist *nearest) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
-    starg_signature *other = NULL;
-    bool row;
-    STARG_TRY(
-        database_prepare(d,
-                         "SELECT id, version, numbers FROM model LEFT JOIN signature ON model "
-                         "= id AND kind = ? ORDER BY id",
-                         &statement));
-    sqlite3_bind_text(statement, 1, starg_signature_name(wanted->kind), -1, SQLITE_STATIC);
-    for (;;) {
-        candidate c;
-        STARG_TRY(starg_check_cancel(d->context, DATABASE_STAGE));
-        STARG_TRY(database_step(d, statement, &row));
-        if (!row)
-            break;
-        STARG_TRY(read_signature(d, statement, 1, wanted->kind, &other));
-        STARG_TRY(starg_signature_distance(d->context, wanted, other, &c.distance));
-        c.id = sqlite3_column_int64(statement, 0);
-        consider(nearest, c);
-        starg_signature_free(d->context, other);
-        other = NULL;
-    }
-done:
-    starg_signature_free(d->context, other);
-    sqlite3_finalize(statement);
-    return status;
-}
-
-static starg_status count_models(starg_database *d, size_t *count) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
-    bool row;
-    STARG_TRY(database_prepare(d, "SELECT count(*) FROM model", &statement));
-    STARG_TRY(database_step(d, statement, &row));
-    *count = row ? (size_t)sqlite3_column_int64(statement, 0) : 0;
-done:
-    sqlite3_finalize(statement);
-    return status;
-}
-
-/* Reads the models of the shortlist. */
-static starg_status fetch(starg_database *d, const shortlist *nearest, model_array *list) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
-    STARG_TRY(database_prepare(d, "SELECT id, path, hash, vertices, faces FROM model WHERE id = ?",
-                               &statement));
-    for (size_t i = 0; i < nearest->count; i++) {
-        size_t before = list->count;
-        sqlite3_bind_int64(statement, 1, nearest->items[i].id);
-        STARG_TRY(read_rows(d, statement, -1, list));
-        if (list->count > before)
-            list->data[before].distance = nearest->items[i].distance;
-    }
-done:
-    sqlite3_finalize(statement);
-    return status;
-}
-
-starg_status starg_database_query(starg_database *d, const starg_signature *signature,
-                                  size_t wanted, starg_database_models **out) {
-    starg_status status = STARG_OK;
-    shortlist nearest = {0};
-    model_array list = {0};
-    size_t count = 0;
-    *out = NULL;
-    STARG_TRY(check_kind(d, signature->kind));
-    /* one transaction, so that no other process changes anything in between */
-    STARG_TRY(database_run(d, "BEGIN"));
-    STARG_TRY(count_models(d, &count));
-    nearest.capacity = wanted < count ? wanted : count;
-    STARG_NEW(d->context, DATABASE_STAGE, nearest.items, nearest.capacity);
-    if (nearest.capacity > 0)
-        STARG_TRY(scan(d, signature, &nearest));
-    STARG_TRY(fetch(d, &nearest, &list));
-    STARG_TRY(hand_over(d->context, &list, out));
-done:
-    database_roll_back(d);
-    starg_release(d->context, nearest.items);
-    clear_models(d->context, &list);
-    return status;
 }
 
 /* ---- removing ---- */

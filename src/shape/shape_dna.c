@@ -60,5 +60,17 @@ static starg_status compare(starg_context *context, const double *a, size_t a_co
     return STARG_OK;
 }
 
-const signature_method signature_shape_dna = {
-    .name = "shape-dna", .version = 1, .compute = compute, .check = check, .compare = compare};
+static void weigh(const double *numbers, double *out) {
+    for (size_t i = 0; i < EIGENVALUES; i++)
+        out[i] = numbers[i] / (double)(i + 1);
+}
+
+const signature_method signature_shape_dna = {.name = "shape-dna",
+                                              .version = 1,
+                                              .compute = compute,
+                                              .check = check,
+                                              .compare = compare,
+                                              .weigh = weigh,
+                                              .count = EIGENVALUES,
+                                              .run = 5,
+                                              .euclidean = true};

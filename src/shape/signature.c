@@ -19,6 +19,10 @@ static const signature_method *method_of(starg_signature_kind kind) {
     return (size_t)kind < STARG_SIGNATURE_KINDS ? methods[kind] : NULL;
 }
 
+const signature_method *signature_method_of(starg_signature_kind kind) {
+    return methods[kind];
+}
+
 const char *starg_signature_name(starg_signature_kind kind) {
     const signature_method *method = method_of(kind);
     return method != NULL ? method->name : NULL;

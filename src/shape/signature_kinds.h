@@ -21,7 +21,12 @@ typedef bool signature_check(const double *numbers, size_t count);
 typedef starg_status signature_compare(starg_context *context, const double *a, size_t a_count,
                                        const double *b, size_t b_count, double *out);
 
-/* Either `compute` or `derive` makes the numbers; the other is NULL. */
+/* Multiplies the numbers by their weights: the distance is the L1 or L2 norm of the difference. */
+typedef void signature_weigh(const double *numbers, double *out);
+
+/* Either `compute` or `derive` makes the numbers; the other is NULL. Kinds whose distance is a
+ * weighted norm have sketches (sketch.h), of sums over runs of `run` numbers; whoever changes
+ * weights or runs raises the version. */
 typedef struct signature_method {
     const char *name;
     int version;
@@ -29,7 +34,13 @@ typedef struct signature_method {
     signature_derive *derive;
     signature_check *check;
     signature_compare *compare;
+    signature_weigh *weigh; /* NULL: no norm */
+    size_t count, run;      /* numbers in all, and in a run */
+    bool euclidean;         /* L2 instead of L1 */
 } signature_method;
+
+/* Of a valid kind. */
+const signature_method *signature_method_of(starg_signature_kind kind);
 
 extern const signature_method signature_d2;
 extern const signature_method signature_shape_dna;

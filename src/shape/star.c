@@ -111,5 +111,20 @@ static starg_status compare(starg_context *context, const double *a, size_t a_co
     return STARG_OK;
 }
 
-const signature_method signature_star = {
-    .name = "star", .version = 3, .derive = derive, .check = check, .compare = compare};
+static void weigh(const double *numbers, double *out) {
+    for (size_t i = 0; i < VIEWS; i++)
+        out[i] = numbers[i] / ((double)(i + 1) * 3 * SPECTRUM_UNIT * EIGENVALUES);
+    for (size_t i = VIEWS; i < WKS; i++)
+        out[i] = numbers[i] / (3 * VIEWS_UNIT * VIEWS_COUNT);
+    for (size_t i = WKS; i < NUMBERS; i++)
+        out[i] = numbers[i] / (3 * WKS_UNIT * WKS_COUNT);
+}
+
+const signature_method signature_star = {.name = "star",
+                                         .version = 3,
+                                         .derive = derive,
+                                         .check = check,
+                                         .compare = compare,
+                                         .weigh = weigh,
+                                         .count = NUMBERS,
+                                         .run = 8};

@@ -301,6 +301,149 @@ static void queries(void **state) {
     test_context_free(context);
 }
 
+enum { CROWD = 400, CROWD_WANTED = 9 };
+
+/* Numbers near those of `of`, valid for every kind but `paper`; every seventh is a copy of them. */
+static void vary(const starg_signature *of, size_t item, uint8_t *bytes) {
+    starg_rng rng = starg_rng_make(7, of->kind, item);
+    double last = 0, all = item % 7 == 0 ? 1 : 0.9 + 0.2 * starg_rng_unit(&rng);
+    for (size_t i = 0; i < of->count; i++) {
+        double factor = item % 7 == 0 ? 1 : all * (0.98 + 0.04 * starg_rng_unit(&rng));
+        double value = of->numbers[i] * factor;
+        if (of->kind == STARG_SIGNATURE_SHAPE_DNA || (of->kind == STARG_SIGNATURE_STAR && i < 40))
+            value = last = value > last ? value : last; /* spectra ascend */
+        uint64_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        for (int k = 0; k < 8; k++)
+            bytes[8 * i + (size_t)k] = (uint8_t)(bits >> (8 * k));
+    }
+}
+
+/* Adds CROWD models with signatures of one kind, without sketches. */
+static void add_crowd(const char *path, const starg_database_models *known,
+                      starg_signature_kind kind) {
+    sqlite3 *handle = NULL;
+    sqlite3_stmt *model = NULL, *signature = NULL;
+    assert_int_equal(sqlite3_open(path, &handle), SQLITE_OK);
+    sqlite3_exec(handle, "BEGIN", NULL, NULL, NULL);
+    sqlite3_prepare_v2(handle, "INSERT INTO model VALUES (?, ?, randomblob(32), 1, 1)", -1, &model,
+                       NULL);
+    sqlite3_prepare_v2(handle, "INSERT INTO signature VALUES (?, ?, ?, ?)", -1, &signature, NULL);
+    for (size_t i = 0; i < CROWD; i++) {
+        const starg_signature *of = known->items[i % MODELS].signature;
+        uint8_t bytes[8 * 512];
+        char name[32];
+        snprintf(name, sizeof name, "crowd_%zu.off", i);
+        vary(of, i, bytes);
+        sqlite3_bind_int64(model, 1, (sqlite3_int64)(100 + i));
+        sqlite3_bind_text(model, 2, name, -1, SQLITE_STATIC);
+        assert_int_equal(sqlite3_step(model), SQLITE_DONE);
+        sqlite3_reset(model);
+        sqlite3_bind_int64(signature, 1, (sqlite3_int64)(100 + i));
+        sqlite3_bind_text(signature, 2, starg_signature_name(kind), -1, SQLITE_STATIC);
+        sqlite3_bind_int(signature, 3, of->version);
+        sqlite3_bind_blob(signature, 4, bytes, (int)(8 * of->count), SQLITE_STATIC);
+        assert_int_equal(sqlite3_step(signature), SQLITE_DONE);
+        sqlite3_reset(signature);
+    }
+    sqlite3_finalize(model);
+    sqlite3_finalize(signature);
+    assert_int_equal(sqlite3_exec(handle, "COMMIT", NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(handle);
+}
+
+typedef struct ranked {
+    double distance;
+    int64_t id;
+} ranked;
+
+static int by_rank(const void *a, const void *b) {
+    const ranked *x = a, *y = b;
+    return x->distance != y->distance ? (x->distance > y->distance) - (x->distance < y->distance)
+                                      : (x->id > y->id) - (x->id < y->id);
+}
+
+/* A query finds what comparing with every signature finds: a slow scan, ties by id. */
+static void check_against_scan(starg_context *context, starg_database *database,
+                               starg_signature_kind kind) {
+    starg_database_models *all = NULL, *found = NULL;
+    static ranked expected[MODELS + CROWD];
+    test_ok(context, starg_database_signatures(database, kind, &all));
+    for (size_t q = 0; q < all->count; q += all->count / 5) {
+        for (size_t i = 0; i < all->count; i++) {
+            expected[i].id = all->items[i].id;
+            test_ok(context,
+                    starg_signature_distance(context, all->items[q].signature,
+                                             all->items[i].signature, &expected[i].distance));
+        }
+        qsort(expected, all->count, sizeof *expected, by_rank);
+        test_ok(context,
+                starg_database_query(database, all->items[q].signature, CROWD_WANTED, &found));
+        assert_int_equal(found->count, CROWD_WANTED);
+        for (size_t i = 0; i < found->count; i++) {
+            assert_int_equal(found->items[i].id, expected[i].id);
+            assert_true(found->items[i].distance == expected[i].distance);
+        }
+        starg_database_models_free(context, found);
+    }
+    starg_database_models_free(context, all);
+}
+
+static size_t count_sketches(const char *path) {
+    sqlite3 *handle = NULL;
+    sqlite3_stmt *statement = NULL;
+    assert_int_equal(sqlite3_open(path, &handle), SQLITE_OK);
+    assert_int_equal(
+        sqlite3_prepare_v2(handle, "SELECT count(*) FROM sketch", -1, &statement, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+    size_t count = (size_t)sqlite3_column_int64(statement, 0);
+    sqlite3_finalize(statement);
+    sqlite3_close(handle);
+    return count;
+}
+
+/* Without the table of sketches (files of version 0.2), with sketches of a few models, and of all.
+ */
+static void queries_of_many(void **state) {
+    (void)state;
+    static const starg_signature_kind kinds[] = {STARG_SIGNATURE_D2, STARG_SIGNATURE_SHAPE_DNA,
+                                                 STARG_SIGNATURE_STAR};
+    starg_context *context = test_context(1);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        starg_database *database = open_copy(context, "many.db");
+        starg_database_models *known = NULL;
+        test_ok(context, starg_database_signatures(database, kinds[k], &known));
+        assert_int_equal(count_sketches(path_of("many.db")), 3 * MODELS);
+        add_crowd(path_of("many.db"), known, kinds[k]);
+        check_against_scan(context, database, kinds[k]); /* the crowd has none */
+        run_sql(path_of("many.db"), "DROP TABLE sketch");
+        check_against_scan(context, database, kinds[k]);
+        starg_database_report_free(context, add(context, database, NULL, 0));
+        assert_int_equal(count_sketches(path_of("many.db")), 3 * MODELS + CROWD);
+        check_against_scan(context, database, kinds[k]);
+        starg_database_models_free(context, known);
+        starg_database_close(database);
+    }
+    unlink(path_of("many.db"));
+    test_context_free(context);
+}
+
+/* A replaced or removed signature takes its sketch along, whoever does it. */
+static void sketches_follow(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_database *database = open_copy(context, "s.db");
+    run_sql(path_of("s.db"), "PRAGMA foreign_keys = ON; INSERT OR REPLACE INTO signature SELECT "
+                             "2, kind, version, numbers FROM signature WHERE model = 1");
+    assert_int_equal(count_sketches(path_of("s.db")), 3 * (MODELS - 1));
+    const char *const first[] = {"id:1"};
+    test_ok(context, starg_database_remove(database, first, 1));
+    assert_int_equal(count_sketches(path_of("s.db")), 3 * (MODELS - 2));
+    starg_database_close(database);
+    unlink(path_of("s.db"));
+    test_context_free(context);
+}
+
 static void removal(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -506,6 +649,8 @@ int main(void) {
         cmocka_unit_test(old_and_damaged_signatures),
         cmocka_unit_test(views_and_triggers),
         cmocka_unit_test(queries),
+        cmocka_unit_test(queries_of_many),
+        cmocka_unit_test(sketches_follow),
         cmocka_unit_test(removal),
         cmocka_unit_test(no_databases),
         cmocka_unit_test(damaged_files),

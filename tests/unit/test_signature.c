@@ -10,6 +10,8 @@
 #include "core/rng.h"
 #include "models.h"
 #include "shape/laplacian.h"
+#include "shape/signature_kinds.h"
+#include "shape/sketch.h"
 #include "shape/spectrum.h"
 
 enum { BINS = 64 };
@@ -570,6 +572,52 @@ static void cancelled(void **state) {
     test_context_free(context);
 }
 
+/* Random numbers of any size, and others near them, in steps of 8: what a signature's neighbours
+ * do. */
+static void random_pair(starg_rng *rng, size_t count, double *a, double *b) {
+    double size = exp(150 * (starg_rng_unit(rng) - 0.5)), near = exp(-30 * starg_rng_unit(rng));
+    double shift = 0;
+    for (size_t i = 0; i < count; i++) {
+        shift = i % 8 == 0 ? starg_rng_unit(rng) - 0.5 : shift;
+        a[i] = size * (starg_rng_unit(rng) - 0.3);
+        b[i] = a[i] + size * near * (shift + 0.3 * starg_rng_unit(rng));
+    }
+}
+
+/* A sketch's bound is at most the distance, of numbers of any size; and mostly not much less. */
+static void sketches_bound_distances(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    double a[512], b[512], tightness = 0;
+    size_t trials = 0;
+    for (int k = 0; k < STARG_SIGNATURE_KINDS; k++) {
+        starg_signature_kind kind = (starg_signature_kind)k;
+        const signature_method *method = signature_method_of(kind);
+        assert_int_equal(sketch_count(kind) > 0, kind != STARG_SIGNATURE_PAPER);
+        for (uint64_t i = 0; i < 3000 && sketch_count(kind) > 0; i++) {
+            starg_rng rng = starg_rng_make(3, (uint64_t)k, i);
+            uint8_t bytes[SKETCH_MOST_BYTES];
+            sketch x, y, stored;
+            double between;
+            random_pair(&rng, method->count, a, b);
+            sketch_make(kind, a, method->count, &x);
+            sketch_make(kind, b, method->count, &stored);
+            sketch_store(&stored, bytes);
+            sketch_load(bytes, stored.count, &y);
+            test_ok(context,
+                    method->compare(context, a, method->count, b, method->count, &between));
+            double bound = sketch_bound(kind, &x, &y);
+            assert_true(bound >= 0 && bound <= between);
+            assert_true(sketch_bound(kind, &y, &x) == bound);
+            assert_true(sketch_bound(kind, &x, &x) == 0);
+            tightness += between > 0 ? bound / between : 1;
+            trials++;
+        }
+    }
+    assert_true(tightness > 0.2 * (double)trials);
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(d2_of_a_sphere),
@@ -584,6 +632,7 @@ int main(void) {
         cmocka_unit_test(poor_meshes),
         cmocka_unit_test(adversarial_meshes),
         cmocka_unit_test(kinds_and_versions),
+        cmocka_unit_test(sketches_bound_distances),
         cmocka_unit_test(memory_may_give_out),
         cmocka_unit_test(cancelled),
     };
