@@ -11,6 +11,10 @@ usage: retrieval.py COMMAND STARGUARD FOLDER... [--distances star,paper,shape-dn
   growth   processor seconds of a query against the folder, mainly for describing the query, and
            against 1,000 to 100,000 signatures derived from it by random factors
   points   distance of a descriptor's points from the surface, by their number
+  families FOLDER: makes the samples that weights are chosen by, 10 members of each family and 5
+           poses of each animal
+  robustness  disguises of every fifth model of the folder among all of its models: how often the
+           original is the nearest, how often another of its class
 
 Tables are Markdown.
 """
@@ -61,19 +65,24 @@ def prefix(name):
     return os.path.splitext(name)[0].rsplit("_", 1)[0]
 
 
-def group_means(program, name, distance, scratch):
-    """For each of the paper's groups: mean distance of its classes to each other, and to the rest."""
+def read_matrix(program, name, distance, scratch):
     table = os.path.join(scratch, "matrix.csv")
     run(program, "db", "matrix", name, "-o", table, "--distance", distance)
     with open(table, encoding="utf-8") as file:
         lines = [line.strip().split(",") for line in file]
-    classes = [prefix(n) for n in lines[0][1:]]
+    return lines[0][1:], [[float(x) for x in line[1:]] for line in lines[1:]]
+
+
+def group_means(program, name, distance, scratch):
+    """For each of the paper's groups: mean distance of its classes to each other, and to the rest."""
+    names, matrix = read_matrix(program, name, distance, scratch)
+    classes = [prefix(n) for n in names]
     for group in GROUPS:
         inside, outside = [], []
-        for i, line in enumerate(lines[1:]):
-            for k, cell in enumerate(line[1:]):
+        for i, line in enumerate(matrix):
+            for k, cell in enumerate(line):
                 if classes[i] in group and classes[k] != classes[i]:
-                    (inside if classes[k] in group else outside).append(float(cell))
+                    (inside if classes[k] in group else outside).append(cell)
         if inside:
             yield ", ".join(group), sum(inside) / len(inside), sum(outside) / len(outside)
 
@@ -151,9 +160,9 @@ def quadric_error(q, p):
         q[1] * x * y + q[2] * x * z + q[3] * x + q[5] * y * z + q[6] * y + q[8] * z))
 
 
-def halved(vertices, faces, _):
-    """Half the vertices: collapses the edges of least quadric error to an end or the midpoint where
-    that preserves the topology."""
+def thinned(vertices, faces, wanted):
+    """Collapses the edges of least quadric error to an end or the midpoint where that preserves the
+    topology."""
     points, live = [list(v) for v in vertices], dict(enumerate(map(tuple, faces)))
     around, quadrics, changes = [set() for _ in points], [[0] * 10 for _ in points], [0] * len(points)
     for f, corners in live.items():
@@ -174,7 +183,7 @@ def halved(vertices, faces, _):
     heap = [entry(a, b) for f in faces for a, b in zip(f, f[1:] + f[:1]) if a < b]
     heapq.heapify(heap)
     left = len(points)
-    while left > len(vertices) // 2 and heap:
+    while left > wanted and heap:
         _, a, b, change_a, change_b, place = heapq.heappop(heap)
         if (changes[a], changes[b]) != (change_a, change_b) or \
                 len(neighbours(a) & neighbours(b)) != 2:
@@ -197,6 +206,10 @@ def halved(vertices, faces, _):
     used = sorted({v for corners in live.values() for v in corners})
     number = {v: i for i, v in enumerate(used)}
     return [points[v] for v in used], [[number[v] for v in live[f]] for f in sorted(live)]
+
+
+def halved(vertices, faces, _):
+    return thinned(vertices, faces, len(vertices) // 2)
 
 
 def shaken(vertices, faces, chance):
@@ -232,6 +245,123 @@ def copies(program, folders, distances):
                     *(f"{hits[d]} of {len(models(folder))}" for d in distances))
 
 
+# ---- families ----
+
+FAMILIES = {"vase": 10, "bust": 10, "bearing": 10, "table": 10, "tool": 10, "bird": 5, "cat": 5, "dinosaur": 5,
+            "dog": 5, "giraffe": 5, "horse": 5, "human": 5, "octopus": 5}
+
+
+def families(program, folders, _):
+    os.makedirs(folders[0], exist_ok=True)
+    for name, members in FAMILIES.items():
+        for i in range(members):
+            run(program, "sample", name, "--pose", str(i), "--vertices", "5000", "-o",
+                os.path.join(folders[0], f"{name}_{i}.off"))
+
+
+# ---- robustness ----
+
+def used_only(vertices, faces):
+    used = sorted({v for f in faces for v in f})
+    number = {v: i for i, v in enumerate(used)}
+    return [vertices[v] for v in used], [[number[v] for v in f] for f in faces]
+
+
+def tenth(vertices, faces, _):
+    return thinned(vertices, faces, len(vertices) // 10)
+
+
+def neighbours_of(faces):
+    around = {}
+    for i, f in enumerate(faces):
+        for v in f:
+            around.setdefault(v, []).append(i)
+    return around
+
+
+def holed(vertices, faces, chance):
+    """Without five discs of a hundredth of the faces each: the surface is open."""
+    around, gone = neighbours_of(faces), set()
+    for _ in range(5):
+        disc, border = set(), [chance.randrange(len(faces))]
+        while border and len(disc) < len(faces) // 100:
+            f = border.pop(0)
+            if f not in disc:
+                disc.add(f)
+                border += [g for v in faces[f] for g in around[v] if g not in disc]
+        gone |= disc
+    return used_only(vertices, [f for i, f in enumerate(faces) if i not in gone])
+
+
+def stretched(vertices, faces, chance):
+    factors = [math.exp(chance.gauss(0, 0.15)) for _ in range(3)]
+    return [[x * k for x, k in zip(v, factors)] for v in vertices], faces
+
+
+def remeshed(vertices, faces, chance):
+    """Cuts all edges at random and collapses to as many vertices as before: other, uneven triangles."""
+    middle, points, fine = {}, [list(v) for v in vertices], []
+    for f in faces:
+        for a, b in zip(f, f[1:] + f[:1]):
+            if a < b:
+                t = chance.uniform(0.3, 0.7)
+                middle[a, b] = middle[b, a] = len(points)
+                points.append([x + t * (y - x) for x, y in zip(vertices[a], vertices[b])])
+    for a, b, c in faces:
+        ab, bc, ca = middle[a, b], middle[b, c], middle[c, a]
+        fine += [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+    return thinned(points, fine, len(vertices))
+
+
+def cut(vertices, faces, chance):
+    """Without what is beyond a random plane, a fifth of the vertices: the surface is open."""
+    axis = [chance.gauss(0, 1) for _ in range(3)]
+    heights = [sum(a * x for a, x in zip(axis, v)) for v in vertices]
+    level = sorted(heights)[4 * len(heights) // 5]
+    return used_only(vertices, [f for f in faces if max(heights[v] for v in f) <= level])
+
+
+DISGUISES = {"noise of 0.5 % of the diagonal": lambda v, f, c: noisy(v, f, c, 0.005),
+             "noise of 1 %": lambda v, f, c: noisy(v, f, c, 0.01),
+             "a tenth of the vertices": tenth,
+             "holes, 5 % of the faces": holed,
+             "stretched": stretched,
+             "remeshed": remeshed,
+             "a fifth cut away": cut}
+
+
+def robustness(program, folders, distances):
+    head("disguise", *(f"`{d}`: original" for d in distances), *(f"`{d}`: class" for d in distances))
+    for folder in folders:
+        originals = models(folder)
+        names = {os.path.basename(m) for m in originals}
+        with tempfile.TemporaryDirectory() as scratch:
+            name = database(program, folder, scratch)
+            marks = {}
+            for i, model in enumerate(originals[::5]):
+                for k, (word, change) in enumerate(DISGUISES.items()):
+                    copy = f"~{k}_{os.path.basename(model)}"
+                    marks[copy] = word, os.path.basename(model)
+                    write_off(os.path.join(scratch, copy), *change(*read_off(model), random.Random(i)))
+            subprocess.run([program, "db", "add", name, *(os.path.join(scratch, c) for c in marks), "--quiet"],
+                           check=False)
+            hits = {(w, d, c): [] for w in DISGUISES for d in distances for c in range(2)}
+            for d in distances:
+                labels, matrix = read_matrix(program, name, d, scratch)
+                there = [i for i, label in enumerate(labels) if label in names]
+                for label, line in zip(labels, matrix):
+                    if label in marks:
+                        word, original = marks[label]
+                        first = min(there, key=lambda i, r=line: r[i])
+                        others = [i for i in there if labels[i] != original]
+                        second = min(others, key=lambda i, r=line: r[i])
+                        hits[word, d, 0].append(labels[first] == original)
+                        hits[word, d, 1].append(prefix(labels[second]) == prefix(original))
+            for word in DISGUISES:
+                row(word, *(f"{sum(hits[word, d, c])} of {len(hits[word, d, c])}" for c in range(2)
+                            for d in distances))
+
+
 # ---- growth ----
 
 def growth(program, folders, distances):
@@ -259,7 +389,9 @@ def growth(program, folders, distances):
                         connection.execute("INSERT INTO signature VALUES (?, ?, ?, ?)",
                                            (row_id, kind, version, changed.tobytes()))
                 count += 1
+            connection.execute("DROP TABLE IF EXISTS sketch")
             connection.commit()
+            subprocess.run([program, "db", "add", name, query, "--quiet"], check=True)  # sketches
             cells = []
             for d in distances:
                 before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -288,12 +420,13 @@ def points(program, folders, _):
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("command", choices=["table", "copies", "growth", "points"])
+    parser.add_argument("command", choices=["table", "copies", "growth", "points", "families", "robustness"])
     parser.add_argument("starguard")
     parser.add_argument("folders", nargs="+")
     parser.add_argument("--distances", default="star,paper,shape-dna,d2")
     wanted = parser.parse_args()
-    commands = {"table": table, "copies": copies, "growth": growth, "points": points}
+    commands = {"table": table, "copies": copies, "growth": growth, "points": points,
+                "families": families, "robustness": robustness}
     commands[wanted.command](wanted.starguard, wanted.folders, wanted.distances.split(","))
 
 

@@ -84,11 +84,14 @@ const cli_command cli_command_sample = {
     .usage = "[NAME] -o FILE [--pose K] [--vertices N] [--list]",
     .summary = "generate a sample solid",
     .description = "Generates a closed solid for experiments: animals and a person in several "
-                   "poses, rooms and machine parts. The same options give the same file.",
+                   "poses, families of ten different vases, busts, bearings, tables and tools, "
+                   "rooms and machine parts. The same options give the same file.",
     .examples = "# list the samples\n"
                 "starguard sample --list\n"
                 "# a horse in its third pose with about 20,000 vertices\n"
                 "starguard sample horse --pose 2 --vertices 20000 -o horse.off\n"
+                "# the fourth of ten vases\n"
+                "starguard sample vase --pose 3 -o vase.off\n"
                 "# piped into another command\n"
                 "starguard sample gallery -o - | starguard check -",
     CLI_OPTIONS(options),

@@ -18,7 +18,8 @@ extern "C" {
 typedef struct starg_sample_info {
     const char *name;        /* lower case, for example "horse"                             */
     const char *description; /* one line                                                    */
-    int poses;               /* 1 for rigid solids; poses of one sample share connectivity  */
+    int poses;               /* 1 for rigid solids; those of an animal share connectivity, those of
+                                a family (vase, bust, bearing, table, tool) are its members */
     bool scene;              /* not one embedded shell: shells that touch or overlap, open sheets */
 } starg_sample_info;
 

@@ -25,7 +25,7 @@ class SampleInfo:
 
     name: str
     description: str
-    #: 1 for rigid solids; all poses of a sample have the same faces.
+    #: 1 for rigid solids; all poses of an animal have the same faces, those of a family are its members.
     poses: int
 
 

@@ -10,39 +10,48 @@
 
 static const char STAGE[] = "sample";
 
-enum { MIN_VERTICES = 500, MAX_VERTICES = 10000000, RIGID = -1 };
+enum { MIN_VERTICES = 500, MAX_VERTICES = 10000000 };
 
 typedef starg_status make_solid(starg_context *context, size_t vertex_count, starg_mesh **out);
 
+typedef enum origin { FIGURE, WARE, RIGID } origin;
+
 typedef struct entry {
     starg_sample_info info;
-    int figure; /* or RIGID */
-    make_solid *make;
+    origin origin;
+    int kind;         /* figure_kind or ware_kind */
+    make_solid *make; /* if RIGID */
 } entry;
 
 static const entry CATALOGUE[] = {
-    {{"horse", "a horse", FIGURE_POSES, false}, FIGURE_HORSE, NULL},
-    {{"dog", "a dog with hanging ears", FIGURE_POSES, false}, FIGURE_DOG, NULL},
-    {{"cat", "a cat", FIGURE_POSES, false}, FIGURE_CAT, NULL},
-    {{"giraffe", "a giraffe", FIGURE_POSES, false}, FIGURE_GIRAFFE, NULL},
-    {{"dinosaur", "a dinosaur on two legs", FIGURE_POSES, false}, FIGURE_DINOSAUR, NULL},
-    {{"bird", "a bird with spread wings", FIGURE_POSES, false}, FIGURE_BIRD, NULL},
-    {{"human", "a person", FIGURE_POSES, false}, FIGURE_HUMAN, NULL},
-    {{"octopus", "an octopus", FIGURE_POSES, false}, FIGURE_OCTOPUS, NULL},
-    {{"l-room", "an L-shaped room", 1, false}, RIGID, solid_l_room},
-    {{"gallery", "a hall with niches and eight round columns", 1, false}, RIGID, solid_gallery},
-    {{"labyrinth", "a corridor wound into a spiral", 1, false}, RIGID, solid_labyrinth},
-    {{"plate", "a plate with six round holes", 1, false}, RIGID, solid_plate},
-    {{"knot", "a tube tied into a trefoil knot", 1, false}, RIGID, solid_knot},
-    {{"torus", "a torus", 1, false}, RIGID, solid_torus},
-    {{"star", "an icosahedron with a spike on every face", 1, false}, RIGID, solid_star},
-    {{"shell", "a ball with a ball-shaped cavity", 1, false}, RIGID, solid_shell},
-    {{"sphere", "a ball", 1, false}, RIGID, solid_sphere},
+    {{"horse", "a horse", FIGURE_POSES, false}, FIGURE, FIGURE_HORSE, NULL},
+    {{"dog", "a dog with hanging ears", FIGURE_POSES, false}, FIGURE, FIGURE_DOG, NULL},
+    {{"cat", "a cat", FIGURE_POSES, false}, FIGURE, FIGURE_CAT, NULL},
+    {{"giraffe", "a giraffe", FIGURE_POSES, false}, FIGURE, FIGURE_GIRAFFE, NULL},
+    {{"dinosaur", "a dinosaur on two legs", FIGURE_POSES, false}, FIGURE, FIGURE_DINOSAUR, NULL},
+    {{"bird", "a bird with spread wings", FIGURE_POSES, false}, FIGURE, FIGURE_BIRD, NULL},
+    {{"human", "a person", FIGURE_POSES, false}, FIGURE, FIGURE_HUMAN, NULL},
+    {{"octopus", "an octopus", FIGURE_POSES, false}, FIGURE, FIGURE_OCTOPUS, NULL},
+    {{"vase", "a vase, with or without handles", WARE_MEMBERS, false}, WARE, WARE_VASE, NULL},
+    {{"bust", "a bust on its foot", WARE_MEMBERS, false}, WARE, WARE_BUST, NULL},
+    {{"bearing", "a bearing with screw holes", WARE_MEMBERS, false}, WARE, WARE_BEARING, NULL},
+    {{"table", "a table on legs or a pillar", WARE_MEMBERS, false}, WARE, WARE_TABLE, NULL},
+    {{"tool", "a spanner", WARE_MEMBERS, false}, WARE, WARE_TOOL, NULL},
+    {{"l-room", "an L-shaped room", 1, false}, RIGID, 0, solid_l_room},
+    {{"gallery", "a hall with niches and eight round columns", 1, false}, RIGID, 0, solid_gallery},
+    {{"labyrinth", "a corridor wound into a spiral", 1, false}, RIGID, 0, solid_labyrinth},
+    {{"plate", "a plate with six round holes", 1, false}, RIGID, 0, solid_plate},
+    {{"knot", "a tube tied into a trefoil knot", 1, false}, RIGID, 0, solid_knot},
+    {{"torus", "a torus", 1, false}, RIGID, 0, solid_torus},
+    {{"star", "an icosahedron with a spike on every face", 1, false}, RIGID, 0, solid_star},
+    {{"shell", "a ball with a ball-shaped cavity", 1, false}, RIGID, 0, solid_shell},
+    {{"sphere", "a ball", 1, false}, RIGID, 0, solid_sphere},
     {{"office", "an office building with furniture (--orientation keep)", 1, true},
      RIGID,
+     0,
      solid_office},
-    {{"level", "a level of a game, open triangles (--soup)", 1, true}, RIGID, solid_level},
-    {{"statue", "a person on a plinth, to be seen from outside", 1, true}, RIGID, solid_statue},
+    {{"level", "a level of a game, open triangles (--soup)", 1, true}, RIGID, 0, solid_level},
+    {{"statue", "a person on a plinth, to be seen from outside", 1, true}, RIGID, 0, solid_statue},
 };
 
 enum { COUNT = sizeof CATALOGUE / sizeof *CATALOGUE };
@@ -62,7 +71,7 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_sample_options, pose),
      .most = 1000,
      .value = "K",
-     .help = "Pose. All poses of a sample have the same faces."},
+     .help = "Pose of an animal (all have the same faces), or member of a family such as vases."},
     {.key = "vertex_count",
      .option = "vertices",
      .kind = STARG_FIELD_COUNT,
@@ -111,7 +120,9 @@ starg_status starg_sample_create(starg_context *context, const char *name,
         status = starg_check_cancel(context, STAGE);
     if (status != STARG_OK)
         return status;
-    if (e->figure == RIGID)
-        return e->make(context, o->vertex_count, out);
-    return solid_figure(context, (figure_kind)e->figure, o->pose, o->vertex_count, out);
+    if (e->origin == FIGURE)
+        return solid_figure(context, (figure_kind)e->kind, o->pose, o->vertex_count, out);
+    if (e->origin == WARE)
+        return solid_ware(context, (ware_kind)e->kind, o->pose, o->vertex_count, out);
+    return e->make(context, o->vertex_count, out);
 }

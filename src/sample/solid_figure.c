@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Articulated figures as meshes: an isosurface of the rest pose, coarsened to the wanted number of
- * vertices, bent by skinning, with the resulting folds removed. All poses of one size share their
+/* Figures and wares as meshes: an isosurface, coarsened to the wanted number of vertices. Figures
+ * are then bent by skinning, and the resulting folds removed; all poses of one size share their
  * connectivity, because the mesh is made from the rest pose only.
  *
  * The isosurface starts finer than wanted, so that coarsening can remove its thin triangles; its
@@ -43,17 +43,17 @@ done:
     return status;
 }
 
-/* All figures are topological balls. A web between two fingers becomes arbitrarily thin near its
- * edge, so a lattice may see holes in it: then a slightly finer one is tried. */
-static starg_status extract_ball(starg_context *context, const implicit_field *field,
-                                 double spacing, starg_mesh **out) {
+/* A web between two fingers becomes arbitrarily thin near its edge, so a lattice may see holes in
+ * it: then a slightly finer one is tried. */
+static starg_status extract_genus(starg_context *context, const implicit_field *field, int genus,
+                                  double spacing, starg_mesh **out) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     for (int attempt = 0; attempt < MAX_ATTEMPTS; attempt++) {
         starg_mesh_free(mesh);
         mesh = NULL;
         STARG_TRY(extract(context, field, spacing, &mesh));
-        if (2 * mesh->vertex_count == mesh->face_count + 4)
+        if (2 * mesh->vertex_count + 4 * (size_t)genus == mesh->face_count + 4)
             break;
         spacing *= 0.95;
     }
@@ -64,18 +64,18 @@ done:
     return status;
 }
 
-static starg_status rest_mesh(starg_context *context, const implicit_field *field,
-                              size_t vertex_count, starg_mesh **out) {
+static starg_status mesh_field(starg_context *context, const implicit_field *field, int genus,
+                               size_t vertex_count, starg_mesh **out) {
     starg_status status = STARG_OK;
     starg_mesh *raw = NULL;
     double spacing = FIRST_SPACING * box_diagonal(field);
-    STARG_TRY(extract_ball(context, field, spacing, &raw));
+    STARG_TRY(extract_genus(context, field, genus, spacing, &raw));
     double wanted = EXCESS * (double)vertex_count;
     if ((double)raw->vertex_count < wanted) {
         spacing *= sqrt((double)raw->vertex_count / wanted);
         starg_mesh_free(raw);
         raw = NULL;
-        STARG_TRY(extract_ball(context, field, spacing, &raw));
+        STARG_TRY(extract_genus(context, field, genus, spacing, &raw));
     }
     STARG_TRY(remesh_isosurface(context, field, raw, vertex_count, out));
 done:
@@ -106,7 +106,7 @@ starg_status solid_figure(starg_context *context, figure_kind kind, int pose, si
     starg_mesh *rest = NULL;
     STARG_NEW(context, STAGE, f, 1);
     figure_build(kind, f);
-    STARG_TRY(rest_mesh(context, &f->field, vertex_count, &rest));
+    STARG_TRY(mesh_field(context, &f->field, 0, vertex_count, &rest));
     if (pose == 0) {
         *out = rest;
         rest = NULL;
@@ -116,5 +116,17 @@ starg_status solid_figure(starg_context *context, figure_kind kind, int pose, si
 done:
     starg_mesh_free(rest);
     starg_release(context, f);
+    return status;
+}
+
+starg_status solid_ware(starg_context *context, ware_kind kind, int member, size_t vertex_count,
+                        starg_mesh **out) {
+    starg_status status = STARG_OK;
+    ware *w = NULL;
+    STARG_NEW(context, STAGE, w, 1);
+    ware_build(kind, member, w);
+    STARG_TRY(mesh_field(context, &w->field, w->genus, vertex_count, out));
+done:
+    starg_release(context, w);
     return status;
 }

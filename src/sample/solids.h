@@ -6,10 +6,15 @@
 
 #include "mesh/mesh.h"
 #include "sample/figure.h"
+#include "sample/ware.h"
 
 /* Articulated figures (figure.h): an isosurface, posed. */
 starg_status solid_figure(starg_context *context, figure_kind kind, int pose, size_t vertex_count,
                           starg_mesh **out);
+
+/* Members of a family (ware.h): an isosurface. */
+starg_status solid_ware(starg_context *context, ware_kind kind, int member, size_t vertex_count,
+                        starg_mesh **out);
 
 /* Vertical prisms over a plan of rectangles (prism.c). */
 starg_status solid_l_room(starg_context *context, size_t vertex_count, starg_mesh **out);
