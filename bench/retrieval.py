@@ -16,11 +16,10 @@ usage: retrieval.py COMMAND STARGUARD FOLDER... [--distances star,paper,shape-dn
   robustness  disguises of every fifth model of the folder among all of its models: how often the
            original is the nearest, how often another of its class
 
-Tables are Markdown.
+Tables are Markdown. Needs the package: PYTHONPATH=build/python.
 """
 import argparse
 import array
-import heapq
 import json
 import math
 import os
@@ -30,6 +29,8 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+
+import starguard
 
 MEASURES = ("nearest_neighbour", "first_tier", "second_tier", "e_measure", "dcg")
 GROUPS = (("cat", "dog", "wolf"), ("david", "michael", "victoria"), ("horse", "centaur"))
@@ -143,69 +144,10 @@ def moved(vertices, faces, chance):
     return out, faces
 
 
-def plane_quadric(a, b, c):
-    """The squared distance from a triangle's plane, weighted by its area: the upper half of a
-    symmetric 4 x 4 matrix [Garland, Heckbert 1997]."""
-    u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
-    n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    area = math.hypot(*n) or 1
-    plane = [x / area for x in n]
-    plane.append(-sum(x * y for x, y in zip(plane, a)))
-    return [area * plane[i] * plane[k] for i in range(4) for k in range(i, 4)]
-
-
-def quadric_error(q, p):
-    x, y, z = p
-    return (q[0] * x * x + q[4] * y * y + q[7] * z * z + q[9] + 2 * (
-        q[1] * x * y + q[2] * x * z + q[3] * x + q[5] * y * z + q[6] * y + q[8] * z))
-
-
 def thinned(vertices, faces, wanted):
-    """Collapses the edges of least quadric error to an end or the midpoint where that preserves the
-    topology."""
-    points, live = [list(v) for v in vertices], dict(enumerate(map(tuple, faces)))
-    around, quadrics, changes = [set() for _ in points], [[0] * 10 for _ in points], [0] * len(points)
-    for f, corners in live.items():
-        q = plane_quadric(*(points[v] for v in corners))
-        for v in corners:
-            around[v].add(f)
-            quadrics[v] = [x + y for x, y in zip(quadrics[v], q)]
-
-    def neighbours(v):
-        return {c for f in around[v] for c in live[f]} - {v}
-
-    def entry(a, b):
-        q = [x + y for x, y in zip(quadrics[a], quadrics[b])]
-        middle = [(x + y) / 2 for x, y in zip(points[a], points[b])]
-        error, place = min((quadric_error(q, p), p) for p in (middle, points[a], points[b]))
-        return error, a, b, changes[a], changes[b], place
-
-    heap = [entry(a, b) for f in faces for a, b in zip(f, f[1:] + f[:1]) if a < b]
-    heapq.heapify(heap)
-    left = len(points)
-    while left > wanted and heap:
-        _, a, b, change_a, change_b, place = heapq.heappop(heap)
-        if (changes[a], changes[b]) != (change_a, change_b) or \
-                len(neighbours(a) & neighbours(b)) != 2:
-            continue
-        points[a] = place
-        quadrics[a] = [x + y for x, y in zip(quadrics[a], quadrics[b])]
-        for f in list(around[b]):
-            if a in live[f]:
-                for v in live.pop(f):
-                    around[v].discard(f)
-            else:
-                live[f] = tuple(a if v == b else v for v in live[f])
-                around[a].add(f)
-        around[b] = set()
-        changes[a] += 1
-        changes[b] += 1
-        left -= 1
-        for v in neighbours(a):
-            heapq.heappush(heap, entry(a, v))
-    used = sorted({v for corners in live.values() for v in corners})
-    number = {v: i for i, v in enumerate(used)}
-    return [points[v] for v in used], [[number[v] for v in live[f]] for f in sorted(live)]
+    """By the package's edge collapses."""
+    mesh, _ = starguard.Mesh(vertices, faces).simplify(wanted)
+    return mesh.vertices.tolist(), mesh.faces.tolist()
 
 
 def halved(vertices, faces, _):

@@ -54,11 +54,17 @@ static void revolve(ware *w, const implicit_outline *o, const double a[3], doubl
     add(w, &part);
 }
 
+/* Of edges, where the solid is that thick; less would come out jagged at a few thousand vertices.
+ */
+static double rounding(double thickness) {
+    return fmin(0.08, 0.4 * thickness);
+}
+
 /* An upright cylinder around (x, z). */
 static void cylinder(ware *w, double x, double z, double radius, double low, double high,
                      bool carve) {
     implicit_outline *o = new_outline(w);
-    double round = carve ? 0.01 : 0.03, a[3] = {x, 0, z};
+    double round = carve ? 0.01 : rounding(fmin(radius, high - low)), a[3] = {x, 0, z};
     add_point(o, -1, low + round);
     add_point(o, radius - round, low + round);
     add_point(o, radius - round, high - round);
@@ -71,7 +77,7 @@ static void cylinder(ware *w, double x, double z, double radius, double low, dou
 static void block(ware *w, const double center[3], double x, double y, double z, double turn,
                   bool carve) {
     implicit_outline *o = new_outline(w);
-    double round = carve ? 0.01 : 0.03;
+    double round = carve ? 0.01 : rounding(2 * fmin(x, fmin(y, z)));
     o->extruded = true;
     add_point(o, round - x, round - z);
     add_point(o, x - round, round - z);
@@ -110,7 +116,7 @@ static double curve_at(const curve *c, double height) {
 static void add_vessel(ware *w, const curve *c, double wall) {
     implicit_outline *o = new_outline(w);
     int steps = 3 * CURVE_STEPS;
-    double top = c->heights[3], floor = 1.5 * wall;
+    double top = c->heights[3], floor = 1.5 * wall, round = rounding(wall);
     add_point(o, -1, 0);
     for (int i = 0; i <= steps; i++)
         add_point(o, curve_at(c, top * i / steps), top * i / steps);
@@ -119,7 +125,7 @@ static void add_vessel(ware *w, const curve *c, double wall) {
         add_point(o, curve_at(c, y) - wall, y);
     }
     add_point(o, -1, floor);
-    revolve(w, o, (const double[3]){0, 0, 0}, 0.02, wall, 0.05);
+    revolve(w, o, (const double[3]){0, 0, 0}, round, wall, 0.05);
 }
 
 /* A bow in the plane at `angle` from the wall at one height to that at another. */
@@ -139,13 +145,13 @@ static void add_handle(ware *w, const curve *c, double low, double high, double 
 }
 
 static void build_vase(int member, starg_rng *rng, ware *w) {
-    double height = between(rng, 1.6, 3), belly = between(rng, 0.7, 1.1), wall = 0.2;
+    double height = between(rng, 1.6, 3), belly = between(rng, 0.7, 1.1), wall = 0.1;
     curve c = {
         .heights = {0, height * between(rng, 0.3, 0.55), height * between(rng, 0.75, 0.85), height},
         .radii = {belly * between(rng, 0.5, 0.8), belly, belly * between(rng, 0.5, 0.75), 0}};
     c.radii[3] = c.radii[2] * between(rng, 1, 1.5);
     add_vessel(w, &c, wall);
-    double out = belly * between(rng, 0.35, 0.6), radius = between(rng, 0.07, 0.1);
+    double out = belly * between(rng, 0.45, 0.7), radius = between(rng, 0.1, 0.14);
     w->genus = member % 3;
     for (int i = 0; i < w->genus; i++)
         add_handle(w, &c, c.heights[1], c.heights[2], wall, 0.5 * TURN * i, out, radius);
@@ -155,22 +161,17 @@ static void build_vase(int member, starg_rng *rng, ware *w) {
 
 static void build_bust(int member, starg_rng *rng, ware *w) {
     double foot = between(rng, 0.45, 0.75), plinth = between(rng, 0.25, 0.6);
-    double broad = between(rng, 0.55, 0.95), deep = between(rng, 1.4, 2),
-           neck = between(rng, 0.24, 0.36);
+    double broad = between(rng, 0.45, 0.75), thick = between(rng, 0.2, 0.3),
+           drop = between(rng, 0.05, 0.2), neck = between(rng, 0.24, 0.36);
     double head = between(rng, 0.42, 0.55), lean = between(rng, -0.1, 0.2);
     double chest = plinth + between(rng, 0.35, 0.8), throat = chest + between(rng, 0.35, 0.6);
     double crown = throat + between(rng, 0.55, 0.8);
     cylinder(w, 0, 0, foot, 0, 0.5 * plinth, false);
     add_cone(w, (const double[3]){0, 0.2, 0}, 0.6 * foot, (const double[3]){0, plinth, 0},
              0.5 * foot, 0.1);
-    implicit_part trunk = {.a = {0, chest, -broad},
-                           .ra = 0.35,
-                           .b = {0, chest, broad},
-                           .rb = 0.35,
-                           .blend = 0.25,
-                           .flat = {1, 0, 0},
-                           .flatten = deep / 1.4};
-    add(w, &trunk);
+    for (int side = -1; side <= 1; side += 2) /* shoulders */
+        add_cone(w, (const double[3]){0, chest, 0}, 0.42,
+                 (const double[3]){0, chest - drop, side * broad}, thick, 0.25);
     add_cone(w, (const double[3]){0, plinth, 0}, 0.35, (const double[3]){0.05, chest, 0}, 0.5, 0.2);
     add_cone(w, (const double[3]){0, chest, 0}, 1.3 * neck, (const double[3]){lean, throat, 0},
              neck, 0.2);
@@ -195,7 +196,7 @@ static void build_bust(int member, starg_rng *rng, ware *w) {
 static void build_bearing(int member, starg_rng *rng, ware *w) {
     double boss = between(rng, 0.55, 0.8), bore = boss * between(rng, 0.45, 0.7);
     double high = between(rng, 0.5, 1.2), thin = between(rng, 0.15, 0.3);
-    double hole = between(rng, 0.1, 0.16), far = boss + hole + between(rng, 0.25, 0.7);
+    double hole = between(rng, 0.14, 0.2), far = boss + hole + between(rng, 0.25, 0.7);
     int holes = (const int[]){2, 4, 3, 5}[member % 4];
     if (member % 4 < 2)
         block(w, (const double[3]){0, 0.5 * thin, 0}, far + hole + 0.15, 0.5 * thin,
@@ -226,14 +227,15 @@ static void build_table(int member, starg_rng *rng, ware *w) {
     bool round = member % 2 == 0, pillar = member % 5 == 4, shelf = member % 3 == 2 && !pillar;
     double x = between(rng, 0.7, 1.5), z = round ? x : between(rng, 0.5, 1),
            high = between(rng, 0.7, 1.4);
-    double thin = between(rng, 0.05, 0.1), radius = between(rng, 0.06, 0.1);
+    double thin = between(rng, 0.07, 0.12), radius = between(rng, 0.06, 0.1);
     int legs = round ? 3 : 4;
     if (round)
         cylinder(w, 0, 0, x, high - thin, high + thin, false);
     else
         block(w, (const double[3]){0, high, 0}, x, thin, z, 0, false);
     if (pillar) {
-        add_leg(w, (const double[3]){0, high, 0}, (const double[3]){0, 0.1, 0}, 2 * radius);
+        add_leg(w, (const double[3]){0, high + 0.5 * thin - 2 * radius, 0},
+                (const double[3]){0, 0.1, 0}, 2 * radius);
         cylinder(w, 0, 0, 0.5 * x, 0, 0.14, false);
         return;
     }
@@ -244,8 +246,8 @@ static void build_table(int member, starg_rng *rng, ware *w) {
         double angle =
             round ? TURN * i / legs : (i % 2 == 0 ? corner : -corner) + (i < 2 ? 0 : 0.5 * TURN);
         double c = reach * cos(angle), s = reach * sin(angle);
-        add_leg(w, (const double[3]){c, high, s}, (const double[3]){spread * c, radius, spread * s},
-                radius);
+        add_leg(w, (const double[3]){c, high + 0.5 * thin - radius, s},
+                (const double[3]){spread * c, radius, spread * s}, radius);
     }
     if (!shelf)
         return;

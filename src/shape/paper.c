@@ -412,4 +412,4 @@ done:
 }
 
 const signature_method signature_paper = {
-    .name = "paper", .version = 2, .derive = derive, .check = check, .compare = compare};
+    .name = "paper", .version = 3, .derive = derive, .check = check, .compare = compare};

@@ -66,7 +66,7 @@ static void weigh(const double *numbers, double *out) {
 }
 
 const signature_method signature_shape_dna = {.name = "shape-dna",
-                                              .version = 1,
+                                              .version = 2,
                                               .compute = compute,
                                               .check = check,
                                               .compare = compare,

@@ -121,7 +121,7 @@ static void weigh(const double *numbers, double *out) {
 }
 
 const signature_method signature_star = {.name = "star",
-                                         .version = 3,
+                                         .version = 4,
                                          .derive = derive,
                                          .check = check,
                                          .compare = compare,

@@ -501,25 +501,32 @@ static void kinds_and_versions(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     double d2[BINS] = {1}, dna[50], far;
+    const int d2_version = starg_signature_version(STARG_SIGNATURE_D2),
+              dna_version = starg_signature_version(STARG_SIGNATURE_SHAPE_DNA);
     starg_signature *a = NULL, *b = NULL, *none = NULL;
     for (size_t i = 0; i < 50; i++)
         dna[i] = (double)i;
-    test_ok(context, starg_signature_restore(context, STARG_SIGNATURE_D2, 1, d2, BINS, &a));
-    test_ok(context, starg_signature_restore(context, STARG_SIGNATURE_SHAPE_DNA, 1, dna, 50, &b));
+    test_ok(context,
+            starg_signature_restore(context, STARG_SIGNATURE_D2, d2_version, d2, BINS, &a));
+    test_ok(context,
+            starg_signature_restore(context, STARG_SIGNATURE_SHAPE_DNA, dna_version, dna, 50, &b));
     assert_int_equal(starg_signature_distance(context, a, b, &far), STARG_ERROR_ARGUMENT);
     starg_signature *const both[] = {a, b};
     double table[4];
     assert_int_equal(starg_signature_distances(context, both, 2, table), STARG_ERROR_ARGUMENT);
-    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_D2, 2, d2, BINS, &none),
-                     STARG_ERROR_FORMAT);
-    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_D2, 1, d2, 3, &none),
+    assert_int_equal(
+        starg_signature_restore(context, STARG_SIGNATURE_D2, d2_version - 1, d2, BINS, &none),
+        STARG_ERROR_FORMAT);
+    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_D2, d2_version, d2, 3, &none),
                      STARG_ERROR_FORMAT);
     d2[5] = NAN;
-    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_D2, 1, d2, BINS, &none),
-                     STARG_ERROR_FORMAT);
+    assert_int_equal(
+        starg_signature_restore(context, STARG_SIGNATURE_D2, d2_version, d2, BINS, &none),
+        STARG_ERROR_FORMAT);
     dna[7] = 1;
-    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_SHAPE_DNA, 1, dna, 50, &none),
-                     STARG_ERROR_FORMAT);
+    assert_int_equal(
+        starg_signature_restore(context, STARG_SIGNATURE_SHAPE_DNA, dna_version, dna, 50, &none),
+        STARG_ERROR_FORMAT);
     assert_null(none);
     assert_null(starg_signature_name((starg_signature_kind)99));
     assert_string_equal(starg_signature_name(STARG_SIGNATURE_D2), "d2");
