@@ -64,7 +64,7 @@ typedef struct starg_descriptor {
 
 enum {
     STARG_DESCRIPTOR_DIRECTIONS = 256,
-    STARG_DESCRIPTOR_EFFORT = 200,
+    STARG_DESCRIPTOR_EFFORT = 50,
     STARG_DESCRIPTOR_DETAIL = 3000
 };
 
@@ -73,7 +73,8 @@ typedef struct starg_descriptor_options {
     uint64_t effort; /* trials of the strict decomposition, 1 or more: more trials give fewer guards
                         and take longer */
     size_t detail;   /* vertices after smoothing, simplifying and repairing the model, which reduces
-                        the influence of noise and resolution; 0: keep the model. Default 3,000 */
+                        the influence of noise and resolution; a third of them for the pieces; 0:
+                        keep the model. Default 3,000 */
 } starg_descriptor_options;
 
 STARG_API void starg_descriptor_options_default(starg_descriptor_options *options);

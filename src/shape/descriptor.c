@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Descriptor of a shape [YL11, section 5.1]: what its guards see, and how they are connected.
  *
- * Stages: the model at a standard level of detail (level.c); a strict star decomposition within a
- * trial budget; its guards with the volumes of their pieces; an edge between pieces in contact,
- * with the centroid of their common faces; from each guard the distance to the boundary in
- * directions that cover the sphere evenly; the spectrum of the boundary (vibrations.c) and its wave
- * kernel signature (wks.c), which do not depend on the positions of guards.
+ * Stages: the model at two standard levels of detail (level.c); a strict star decomposition of the
+ * coarser one within a trial budget; its guards with the volumes of their pieces; an edge between
+ * pieces in contact, with the centroid of their common faces; from each guard the distance to the
+ * boundary in directions that cover the sphere evenly; the spectrum of the finer level
+ * (vibrations.c) and its wave kernel signature (wks.c), which do not depend on the positions of
+ * guards.
  *
  * The paper's graph follows the curve skeleton that contains its guards. Here guards lie anywhere
  * in the kernels of their pieces and edges are contacts of pieces, so the graph has a component per
@@ -35,7 +36,12 @@
 
 static const char STAGE[] = "descriptor";
 
-enum { LEAST_DIRECTIONS = 12, MOST_DIRECTIONS = 65536, LEAST_DETAIL = 100 };
+enum {
+    LEAST_DIRECTIONS = 12,
+    MOST_DIRECTIONS = 65536,
+    LEAST_DETAIL = 100,
+    FINER = 3 /* vertices of the surface for each of the pieces */
+};
 
 static const starg_field OPTIONS[] = {
     {.key = "directions",
@@ -63,8 +69,8 @@ static const starg_field OPTIONS[] = {
      .most = STARG_MESH_LIMIT / 8,
      .initial = STARG_DESCRIPTOR_DETAIL,
      .value = "N",
-     .help = "Simplify the model to N vertices first, to reduce the influence of noise and "
-             "resolution; 0 keeps the model."},
+     .help = "Simplify the model to N vertices for its spectrum and to a third for its pieces, to "
+             "reduce the influence of noise and resolution; 0 keeps the model."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "descriptor options", .size = sizeof(starg_descriptor_options), FIELD_ROWS(OPTIONS)};
@@ -112,29 +118,34 @@ static starg_status decompose_mesh(starg_context *context, const starg_mesh *mes
 
 /* The described object. */
 typedef struct subject {
-    starg_mesh *level; /* NULL: the model itself */
+    starg_mesh *level, *coarse; /* NULL: there is none */
     starg_decomposition *pieces;
     const starg_mesh *surface; /* before it was cut; NULL if holes were filled */
 } subject;
 
 static void subject_free(starg_context *context, subject *s) {
     starg_mesh_free(s->level);
+    starg_mesh_free(s->coarse);
     starg_decomposition_free(context, s->pieces);
 }
 
-/* If nothing of the model is left at its level of detail, the model itself is used. */
+/* The spectrum needs more vertices than the pieces, whose views come from inside. If nothing is
+ * left of the model at a level of detail, the next finer one is used, at last the model. */
 static starg_status decompose(starg_context *context, const starg_mesh *mesh,
                               const starg_descriptor_options *options, subject *out) {
     starg_status status = STARG_OK;
-    bool closed = false;
+    bool closed = false, found = false;
     if (options->detail > 0)
         STARG_TRY(level_create(context, mesh, options->detail, &out->level));
-    out->surface = out->level;
     if (out->level != NULL)
-        status = decompose_mesh(context, out->level, options, &out->pieces, &closed);
-    if (out->level == NULL || status == STARG_ERROR_MESH || status == STARG_ERROR_SOLVER) {
-        out->surface = mesh;
-        status = decompose_mesh(context, mesh, options, &out->pieces, &closed);
+        STARG_TRY(level_coarsen(context, out->level, options->detail / FINER, &out->coarse));
+    const starg_mesh *const levels[] = {out->coarse, out->level, mesh};
+    for (size_t i = 0; i < 3 && !found; i++) {
+        if (levels[i] == NULL)
+            continue;
+        out->surface = i == 0 ? out->level : levels[i];
+        status = decompose_mesh(context, levels[i], options, &out->pieces, &closed);
+        found = status != STARG_ERROR_MESH && status != STARG_ERROR_SOLVER;
     }
     if (!closed)
         out->surface = NULL;

@@ -76,34 +76,48 @@ done:
 
 /* ---- public function ---- */
 
+/* A mesh without a level is no error. */
+static starg_status level_status(starg_status status) {
+    return status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE ? STARG_OK : status;
+}
+
 /* Replaces a mesh by another. */
 static void replace(starg_mesh **mesh, starg_mesh *by) {
     starg_mesh_free(*mesh);
     *mesh = by;
 }
 
+/* Simplification need not keep intersections out, as they are repaired afterwards. */
+static const starg_simplify_options SIMPLIFY = {.allow_intersections = true};
+
 static starg_status refine(starg_context *context, const starg_mesh *mesh, size_t vertices,
                            starg_mesh **out) {
     starg_status status = STARG_OK;
     starg_mesh *level = NULL, *next = NULL;
-    STARG_TRY(starg_mesh_simplify(context, mesh, MOST * vertices, NULL, NULL, &level));
+    STARG_TRY(starg_mesh_simplify(context, mesh, MOST * vertices, &SIMPLIFY, NULL, &level));
     size_t rounds = (ROUNDS * starg_mesh_vertex_count(level) + vertices / 2) / vertices;
     STARG_TRY(smooth(context, level, rounds, &next));
     replace(&level, next);
-    STARG_TRY(starg_mesh_simplify(context, level, vertices, NULL, NULL, &next));
-    replace(&level, next);
-    STARG_TRY(starg_mesh_repair(context, level, NULL, &next, &(starg_repair_report){0}));
-    replace(&level, next);
-    *out = level;
-    level = NULL;
+    STARG_TRY(level_coarsen(context, level, vertices, out));
 done:
     starg_mesh_free(level);
     return status;
 }
 
+starg_status level_coarsen(starg_context *context, const starg_mesh *mesh, size_t vertices,
+                           starg_mesh **out) {
+    starg_status status = STARG_OK;
+    starg_mesh *coarse = NULL;
+    *out = NULL;
+    STARG_TRY(starg_mesh_simplify(context, mesh, vertices, &SIMPLIFY, NULL, &coarse));
+    status = starg_mesh_repair(context, coarse, NULL, out, &(starg_repair_report){0});
+done:
+    starg_mesh_free(coarse);
+    return level_status(status);
+}
+
 starg_status level_create(starg_context *context, const starg_mesh *mesh, size_t vertices,
                           starg_mesh **out) {
     *out = NULL;
-    starg_status status = refine(context, mesh, vertices, out);
-    return status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE ? STARG_OK : status;
+    return level_status(refine(context, mesh, vertices, out));
 }

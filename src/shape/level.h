@@ -13,4 +13,8 @@
 starg_status level_create(starg_context *context, const starg_mesh *mesh, size_t vertices,
                           starg_mesh **out);
 
+/* Without smoothing: a closed and oriented 2-manifold simplified and repaired. As above. */
+starg_status level_coarsen(starg_context *context, const starg_mesh *mesh, size_t vertices,
+                           starg_mesh **out);
+
 #endif

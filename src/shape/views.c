@@ -24,7 +24,7 @@
 static const char STAGE[] = "views";
 
 enum {
-    POINTS = 2048,
+    POINTS = 1024,
     DIRECTIONS = 24,
     VIEW = STARG_DESCRIPTOR_VIEW,
     SPREAD = STARG_DESCRIPTOR_SPREAD,
