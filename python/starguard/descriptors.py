@@ -254,7 +254,7 @@ def current_version(kind: str) -> int:
 
     >>> import starguard
     >>> starguard.current_version("d2")
-    1
+    2
     """
     return int(lib.starg_signature_version(choose("kind", kind, KINDS)))
 

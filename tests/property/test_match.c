@@ -273,11 +273,17 @@ static void join(const made_up *g, size_t edge, size_t a, size_t b) {
     guard_of(g, b)[3] += 0.1;
 }
 
+/* Numbers as a signature of the present version. */
+static starg_status restore(starg_context *context, starg_signature_kind kind,
+                            const double *numbers, size_t count, starg_signature **out) {
+    return starg_signature_restore(context, kind, starg_signature_version(kind), numbers, count,
+                                   out);
+}
+
 static starg_signature *paper_of(starg_context *context, const made_up *g) {
     starg_signature *s = NULL;
-    test_ok(context,
-            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 2, g->numbers,
-                                    PAPER_HEAD + PAPER_GUARD * g->guards + 2 * g->edges, &s));
+    test_ok(context, restore(context, STARG_SIGNATURE_PAPER, g->numbers,
+                             PAPER_HEAD + PAPER_GUARD * g->guards + 2 * g->edges, &s));
     return s;
 }
 
@@ -397,20 +403,18 @@ static void damaged_numbers_are_refused(void **state) {
     for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
         double kept = g.numbers[damages[i].place];
         g.numbers[damages[i].place] = damages[i].value;
-        assert_int_equal(
-            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 2, g.numbers, count, &s),
-            STARG_ERROR_FORMAT);
+        assert_int_equal(restore(context, STARG_SIGNATURE_PAPER, g.numbers, count, &s),
+                         STARG_ERROR_FORMAT);
         g.numbers[damages[i].place] = kept;
     }
     for (size_t cut = 0; cut < count; cut += 7)
-        assert_int_equal(
-            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 2, g.numbers, cut, &s),
-            STARG_ERROR_FORMAT);
+        assert_int_equal(restore(context, STARG_SIGNATURE_PAPER, g.numbers, cut, &s),
+                         STARG_ERROR_FORMAT);
     double star[STAR + 1] = {0};
     for (size_t cut = 0; cut <= STAR; cut++)
-        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 3, star,
-                                                 cut < STAR ? cut : STAR + 1, &s),
-                         STARG_ERROR_FORMAT);
+        assert_int_equal(
+            restore(context, STARG_SIGNATURE_STAR, star, cut < STAR ? cut : STAR + 1, &s),
+            STARG_ERROR_FORMAT);
     const struct {
         size_t place;
         double value;
@@ -418,13 +422,16 @@ static void damaged_numbers_are_refused(void **state) {
                         {40, 1e101}, {167, NAN}, {168, -1e101}, {359, INFINITY}};
     for (size_t i = 0; i < sizeof star_damages / sizeof *star_damages; i++) {
         star[star_damages[i].place] = star_damages[i].value;
-        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 3, star, STAR, &s),
+        assert_int_equal(restore(context, STARG_SIGNATURE_STAR, star, STAR, &s),
                          STARG_ERROR_FORMAT);
         star[star_damages[i].place] = 0;
     }
-    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 2, star, STAR, &s),
-                     STARG_ERROR_FORMAT);
     assert_null(s);
+    const int former = starg_signature_version(STARG_SIGNATURE_STAR) - 1;
+    test_ok(context, restore(context, STARG_SIGNATURE_STAR, star, STAR, &s));
+    starg_signature_free(context, s);
+    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, former, star, STAR, &s),
+                     STARG_ERROR_FORMAT);
     free(g.numbers);
     test_context_free(context);
 }
