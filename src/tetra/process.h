@@ -8,8 +8,8 @@
 /* Runs a program: `arguments` ends with NULL, the first is the program (looked up in the search
  * path unless it contains a slash). It gets no input, its output is discarded, and it leaves no
  * core file. It is stopped after `seconds` of processor time (rounded up to whole ones), and killed
- * with its children at the context's time limit or on cancellation. Errors: SOLVER (not found, killed by a signal, status other than 0, too slow; the
- * message says which), CANCELLED. */
+ * with its children at the context's time limit or on cancellation. Errors: SOLVER (not found,
+ * killed by a signal, status other than 0, too slow; the message says which), CANCELLED. */
 starg_status starg_process_run(starg_context *context, const char *stage,
                                const char *const *arguments, double seconds);
 
