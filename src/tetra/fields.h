@@ -39,7 +39,7 @@ enum { TETRA_MACHINE_FIELDS = 2 };
     {                                                                                              \
         .key = "tetgen_limit", .kind = STARG_FIELD_REAL, .flags = STARG_FIELD_ABOVE,               \
         FIELD_MEMBER(T, PREFIX tetgen_limit), .high = 1e100, .standard = 30, .value = "S",         \
-        .help = "Limit of tetgen in seconds of processor time."                                               \
+        .help = "Limit of tetgen in seconds of processor time."                                    \
     }
 
 #endif
