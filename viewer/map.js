@@ -4,37 +4,22 @@
 import page, { floats, indices } from "./data.js";
 import { ballOf } from "./geometry.js";
 import { Labels } from "./labels.js";
-import { shared } from "./materials.js";
-import {
-    check,
-    choice,
-    element,
-    facts,
-    heading,
-    note,
-    pickList,
-    say,
-    slider,
-    swatch,
-} from "./panel.js";
+import { check, choice, element, facts, heading, note, say } from "./panel.js";
 import { Parts } from "./parts.js";
+import { PartsView } from "./parts_view.js";
 import { PickPoints } from "./points.js";
 import { amount, count, percent, real } from "./text.js";
-import { following, View } from "./view.js";
 
 const PATTERNS = ["Pieces", "Checker", "Lines"];
 const CELLS = 16; // of the patterns along A's longest side
 const NAMES = ["A", "B"];
 
-export class MapView extends View {
+export class MapView extends PartsView {
     name = "Map";
     trial = "Drag to turn both; a cut across A is carried over to B";
 
     constructor(stage) {
-        super();
-        this.stage = stage;
-        this.told = page.map;
-        this.picked = -1;
+        super(stage, page.map);
         this.guardsWanted = true;
         const points = [0, 1].map((end) => floats(`map-points-${end}`));
         const guards = [0, 1].map((end) => floats(`map-guards-${end}`));
@@ -42,6 +27,8 @@ export class MapView extends View {
         this.ball = ballOf(points[0]);
         moveInto(this.ball, points[1], guards[1]);
         this.ends = [0, 1].map((end) => this.makeEnd(end, points, guards, faces));
+        this.surfaces = this.ends.map(({ parts }) => parts);
+        this.dots = this.ends.map(({ points: dots }) => dots);
         this.sides = this.ends.map(({ parts, points: dots }) => [parts.object, dots.object]);
         this.objects = this.sides.flat();
         this.captions = element(
@@ -86,26 +73,8 @@ export class MapView extends View {
             value: 0,
             change: (i) => this.setPattern(i),
         });
-        this.explode = slider({
-            name: "Explode",
-            id: "map-explode",
-            value: 0,
-            show: (x) => percent(x),
-            change: (x) => this.setExplode(x),
-        });
-        this.list = pickList({
-            name: "Pieces",
-            pick: (i) => this.pick(this.picked === i ? -1 : i),
-            rows: told.list.map((_, i) => [
-                swatch("square", page.colors[i]),
-                element("span", { className: "name" }, `Piece ${i}`),
-                element(
-                    "span",
-                    { className: "number" },
-                    volumes.map((each) => percent(each[i])).join(", "),
-                ),
-            ]),
-        });
+        this.makeExplode("map-explode");
+        this.makeList((i) => volumes.map((each) => percent(each[i])).join(", "));
         return element(
             "div",
             {},
@@ -158,7 +127,7 @@ export class MapView extends View {
     // ---- what is visible ----
 
     enter() {
-        shared.explode.value = this.explode.value;
+        super.enter();
         this.captions.hidden = false;
         this.ends.forEach(({ labels }) => labels.enter());
     }
@@ -181,46 +150,9 @@ export class MapView extends View {
         this.stage.request();
     }
 
-    /** The camera moves back with the pieces, so that all stay visible. */
-    setExplode(x) {
-        const before = this.ball.radius;
-        shared.explode.value = x;
-        const { center } = this.ball;
-        this.ball = { center, radius: Math.max(...this.ends.map(({ parts }) => parts.reach(x))) };
-        this.stage.setBall(this.ball);
-        this.stage.zoom(this.ball.radius / before);
-    }
-
-    toggleExplode() {
-        this.explode.move(this.explode.value > 0 ? 0 : 0.5);
-    }
-
-    pick(i) {
-        this.picked = i;
-        this.ends.forEach(({ parts, points }) => {
-            parts.pick(i);
-            points.pick(i);
-        });
-        this.list.press(i);
-        this.stage.request();
-        const tetrahedra = i < 0 ? 0 : this.told.list[i].tetrahedra;
-        say(
-            i < 0
-                ? "No piece is picked"
-                : `Piece ${i}: ${amount(tetrahedra, "tetrahedron", "tetrahedra")}, in A and in B`,
-        );
-    }
-
-    step(by) {
-        this.pick(following(this.picked, by, this.told.list.length));
-    }
-
-    clear() {
-        this.pick(-1);
-    }
-
-    setCutOpen(open) {
-        this.ends.forEach(({ parts }) => parts.setCutOpen(open));
+    sentence(i) {
+        const { tetrahedra } = this.told.list[i];
+        return `Piece ${i}: ${amount(tetrahedra, "tetrahedron", "tetrahedra")}, in A and in B`;
     }
 
     // ---- pointer ----
@@ -234,8 +166,7 @@ export class MapView extends View {
     click(at) {
         const ray = this.stage.ray(at.x, at.y);
         const guard = this.guardUnder(at, ray.side);
-        const i = guard >= 0 ? guard : this.ends[ray.side].parts.hit(ray);
-        if (i !== this.picked || i >= 0) this.pick(i === this.picked ? -1 : i);
+        this.toggle(guard >= 0 ? guard : this.surfaces[ray.side].hit(ray));
     }
 
     tag(at) {

@@ -1,34 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Star-shaped pieces in different colours, which can be moved apart; each with its guard.
 import page, { floats, indices } from "./data.js";
-import { shared } from "./materials.js";
-import {
-    check,
-    commandLine,
-    element,
-    facts,
-    heading,
-    note,
-    pickList,
-    say,
-    slider,
-    swatch,
-} from "./panel.js";
+import { check, commandLine, element, facts, heading, note } from "./panel.js";
 import { Labels } from "./labels.js";
 import { Parts } from "./parts.js";
+import { PartsView } from "./parts_view.js";
 import { PickPoints } from "./points.js";
 import { amount, count, percent, real } from "./text.js";
-import { following, View } from "./view.js";
 
-export class PiecesView extends View {
+export class PiecesView extends PartsView {
     name = "Pieces";
     trial = "Click a piece for its share of the volume; the slider moves pieces apart";
 
     constructor(stage) {
-        super();
-        this.stage = stage;
-        this.told = page.pieces;
-        this.picked = -1;
+        super(stage, page.pieces);
         this.parts = new Parts(
             floats("piece-points"),
             indices("piece-faces"),
@@ -38,12 +23,14 @@ export class PiecesView extends View {
         const guards = floats("piece-guards");
         this.points = guards && new PickPoints(guards, page.colors, this.parts.away);
         this.labels = this.points && new Labels(stage, this.points);
-        this.objects = [this.parts.object, ...(this.points ? [this.points.object] : [])];
+        this.surfaces = [this.parts];
+        this.dots = this.points ? [this.points] : [];
+        this.objects = [...this.surfaces, ...this.dots].map(({ object }) => object);
         this.node = this.makePanel();
     }
 
     enter() {
-        shared.explode.value = this.explode.value;
+        super.enter();
         this.labels?.enter();
     }
 
@@ -74,28 +61,12 @@ export class PiecesView extends View {
                     : ["Needed", count(told.lower_bound), "at least, however it is cut"],
             );
         rows.push(["Tetrahedra", count(told.tetrahedra)]);
-        this.explode = slider({
-            name: "Explode",
-            id: "explode",
-            max: 1,
-            value: 0,
-            show: (x) => percent(x),
-            change: (x) => this.setExplode(x),
-        });
-        this.list = pickList({
-            name: "Pieces",
-            pick: (i) => this.pick(this.picked === i ? -1 : i),
-            rows: told.list.map((piece, i) => [
-                swatch("square", page.colors[i]),
-                element("span", { className: "name" }, `Piece ${i}`),
-                element(
-                    "span",
-                    { className: "number" },
-                    piece.volume !== undefined && volume > 0
-                        ? percent(piece.volume / volume)
-                        : amount(piece.faces, "face", "faces"),
-                ),
-            ]),
+        this.makeExplode("explode");
+        this.makeList((i) => {
+            const piece = told.list[i];
+            return piece.volume !== undefined && volume > 0
+                ? percent(piece.volume / volume)
+                : amount(piece.faces, "face", "faces");
         });
         const node = element("div", {}, facts(rows), this.explode.node);
         if (this.points)
@@ -131,38 +102,6 @@ export class PiecesView extends View {
         return `Piece ${i}: volume ${real(piece.volume)}, ${amount(piece.tetrahedra, "tetrahedron", "tetrahedra")}, ${piece.star ? "star-shaped, proven" : "not star-shaped"}`;
     }
 
-    // ---- what is visible ----
-
-    /** The camera moves back with the pieces, so that all stay visible. */
-    setExplode(x) {
-        const before = this.ball.radius;
-        shared.explode.value = x;
-        this.ball = { center: this.parts.rest.center, radius: this.parts.reach(x) };
-        this.stage.setBall(this.ball);
-        this.stage.zoom(this.ball.radius / before);
-    }
-
-    toggleExplode() {
-        this.explode.move(this.explode.value > 0 ? 0 : 0.5);
-    }
-
-    pick(i) {
-        this.picked = i;
-        this.parts.pick(i);
-        this.points?.pick(i);
-        this.list.press(i);
-        this.stage.request();
-        say(i < 0 ? "No piece is picked" : this.sentence(i));
-    }
-
-    step(by) {
-        this.pick(following(this.picked, by, this.told.list.length));
-    }
-
-    clear() {
-        this.pick(-1);
-    }
-
     // ---- pointer ----
 
     under(at) {
@@ -171,8 +110,7 @@ export class PiecesView extends View {
     }
 
     click(at) {
-        const i = this.under(at);
-        if (i !== this.picked || i >= 0) this.pick(i === this.picked ? -1 : i);
+        this.toggle(this.under(at));
     }
 
     tag(at) {
@@ -182,9 +120,5 @@ export class PiecesView extends View {
             return { text: `Guard of piece ${guard}`, place: this.points.place(guard), over: true };
         if (this.picked < 0 || !this.points) return null;
         return { text: `Piece ${this.picked}`, place: this.points.place(this.picked), over: false };
-    }
-
-    setCutOpen(open) {
-        this.parts.setCutOpen(open);
     }
 }

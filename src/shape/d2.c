@@ -188,16 +188,6 @@ static bool check(const double *numbers, size_t count) {
     return count == BINS;
 }
 
-static starg_status compare(starg_context *context, const double *a, size_t a_count,
-                            const double *b, size_t b_count, double *out) {
-    double sum = 0;
-    (void)context, (void)b_count;
-    for (size_t i = 0; i < a_count; i++)
-        sum += fabs(a[i] - b[i]);
-    *out = sum;
-    return STARG_OK;
-}
-
 static void weigh(const double *numbers, double *out) {
     memcpy(out, numbers, BINS * sizeof *out);
 }
@@ -206,7 +196,6 @@ const signature_method signature_d2 = {.name = "d2",
                                        .version = 2,
                                        .compute = compute,
                                        .check = check,
-                                       .compare = compare,
                                        .weigh = weigh,
                                        .count = BINS,
                                        .run = 2};

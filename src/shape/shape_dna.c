@@ -48,18 +48,6 @@ static bool check(const double *numbers, size_t count) {
     return count == EIGENVALUES;
 }
 
-static starg_status compare(starg_context *context, const double *a, size_t a_count,
-                            const double *b, size_t b_count, double *out) {
-    double sum = 0;
-    (void)context, (void)b_count;
-    for (size_t i = 0; i < a_count; i++) {
-        double difference = (a[i] - b[i]) / (double)(i + 1);
-        sum += difference * difference;
-    }
-    *out = sqrt(sum);
-    return STARG_OK;
-}
-
 static void weigh(const double *numbers, double *out) {
     for (size_t i = 0; i < EIGENVALUES; i++)
         out[i] = numbers[i] / (double)(i + 1);
@@ -69,7 +57,6 @@ const signature_method signature_shape_dna = {.name = "shape-dna",
                                               .version = 2,
                                               .compute = compute,
                                               .check = check,
-                                              .compare = compare,
                                               .weigh = weigh,
                                               .count = EIGENVALUES,
                                               .run = 5,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Common interface of all kinds of signatures: the table of kinds, and what is common to them. */
 
+#include <math.h>
+
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "shape/signature_kinds.h"
@@ -166,9 +168,25 @@ static starg_status fail_comparison(starg_context *context) {
                       "only signatures of the same kind and of its present version compare");
 }
 
+/* The norm of the difference of the weighted numbers. */
+static double weighted_distance(const signature_method *method, const double *a, const double *b) {
+    double from[SIGNATURE_MOST_WEIGHTED], to[SIGNATURE_MOST_WEIGHTED], sum = 0;
+    method->weigh(a, from);
+    method->weigh(b, to);
+    for (size_t i = 0; i < method->count; i++) {
+        double difference = from[i] - to[i];
+        sum += method->euclidean ? difference * difference : fabs(difference);
+    }
+    return method->euclidean ? sqrt(sum) : sum;
+}
+
 static starg_status distance(starg_context *context, const starg_signature *a,
                              const starg_signature *b, double *out) {
-    return methods[a->kind]->compare(context, a->numbers, a->count, b->numbers, b->count, out);
+    const signature_method *method = methods[a->kind];
+    if (method->weigh == NULL)
+        return method->compare(context, a->numbers, a->count, b->numbers, b->count, out);
+    *out = weighted_distance(method, a->numbers, b->numbers);
+    return STARG_OK;
 }
 
 starg_status starg_signature_distance(starg_context *context, const starg_signature *a,

@@ -23,10 +23,11 @@ typedef starg_status signature_compare(starg_context *context, const double *a, 
 
 /* Multiplies the numbers by their weights: the distance is the L1 or L2 norm of the difference. */
 typedef void signature_weigh(const double *numbers, double *out);
+enum { SIGNATURE_MOST_WEIGHTED = 512 };
 
-/* Either `compute` or `derive` makes the numbers; the other is NULL. Kinds whose distance is a
- * weighted norm have sketches (sketch.h), of sums over runs of `run` numbers; whoever changes
- * weights or runs raises the version. */
+/* Either `compute` or `derive` makes the numbers, and either `compare` or `weigh` gives the
+ * distance; the other one is NULL. Kinds that weigh have sketches (sketch.h), of sums over runs of
+ * `run` numbers; whoever changes weights or runs raises the version. */
 typedef struct signature_method {
     const char *name;
     int version;
@@ -34,9 +35,9 @@ typedef struct signature_method {
     signature_derive *derive;
     signature_check *check;
     signature_compare *compare;
-    signature_weigh *weigh; /* NULL: no norm */
-    size_t count, run;      /* numbers in all, and in a run */
-    bool euclidean;         /* L2 instead of L1 */
+    signature_weigh *weigh;
+    size_t count, run; /* if it weighs: numbers in all, and in a run */
+    bool euclidean;    /* L2 instead of L1 */
 } signature_method;
 
 /* Of a valid kind. */

@@ -31,8 +31,6 @@ static const double SMALLEST = 1e-30, LARGEST = 1e30;
 static const double SLACK = 0x1p-23;  /* of the sums */
 static const double ROUNDING = 1e-12; /* of a distance, relative */
 
-enum { MOST_NUMBERS = 512 };
-
 size_t sketch_count(starg_signature_kind kind) {
     const signature_method *method = signature_method_of(kind);
     return method->weigh != NULL ? (method->count + method->run - 1) / method->run + 1 : 0;
@@ -40,7 +38,7 @@ size_t sketch_count(starg_signature_kind kind) {
 
 void sketch_make(starg_signature_kind kind, const double *numbers, size_t count, sketch *out) {
     const signature_method *method = signature_method_of(kind);
-    double weighted[MOST_NUMBERS], size = 0;
+    double weighted[SIGNATURE_MOST_WEIGHTED], size = 0;
     *out = (sketch){.count = sketch_count(kind)};
     if (out->count == 0)
         return;

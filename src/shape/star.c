@@ -87,30 +87,6 @@ static bool check(const double *numbers, size_t count) {
     return true;
 }
 
-static double compare_spectra(const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < EIGENVALUES; i++)
-        sum += fabs(a[i] - b[i]) / (double)(i + 1);
-    return sum / EIGENVALUES;
-}
-
-static double compare_quantiles(const double *a, const double *b, size_t count) {
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += fabs(a[i] - b[i]);
-    return sum / (double)count;
-}
-
-static starg_status compare(starg_context *context, const double *a, size_t a_count,
-                            const double *b, size_t b_count, double *out) {
-    (void)context, (void)a_count, (void)b_count;
-    *out = (compare_spectra(a, b) / SPECTRUM_UNIT +
-            compare_quantiles(a + VIEWS, b + VIEWS, VIEWS_COUNT) / VIEWS_UNIT +
-            compare_quantiles(a + WKS, b + WKS, WKS_COUNT) / WKS_UNIT) /
-           3;
-    return STARG_OK;
-}
-
 static void weigh(const double *numbers, double *out) {
     for (size_t i = 0; i < VIEWS; i++)
         out[i] = numbers[i] / ((double)(i + 1) * 3 * SPECTRUM_UNIT * EIGENVALUES);
@@ -124,7 +100,6 @@ const signature_method signature_star = {.name = "star",
                                          .version = 4,
                                          .derive = derive,
                                          .check = check,
-                                         .compare = compare,
                                          .weigh = weigh,
                                          .count = NUMBERS,
                                          .run = 8};

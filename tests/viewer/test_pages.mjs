@@ -108,15 +108,15 @@ function settle(page) {
     });
 }
 
-/** The pixels of the stage, once two pictures in a row have the same: what is drawn may be shown later. */
+/** The pixels of the canvas, and what is behind them. They are read as they are drawn: what a screenshot
+ * shows may be older on a busy machine. */
 async function picture(page) {
     await settle(page);
-    const shoot = () => page.locator("#stage").screenshot();
-    for (let before = await shoot(); ;) {
-        const now = await shoot();
-        if (now.equals(before)) return now;
-        before = now;
-    }
+    return page.evaluate(() => {
+        const { stage } = window.starguard;
+        stage.draw();
+        return stage.canvas.toDataURL() + getComputedStyle(document.body).backgroundColor;
+    });
 }
 
 async function placeOfGuard(page, i) {
@@ -198,12 +198,12 @@ test("pieces move apart, are cut and are picked", async () => {
         const apart = await picture(page);
         await page.keyboard.press("Escape");
         await page.locator("#explode").fill("0");
-        assert.ok(!whole.equals(apart));
+        assert.ok(whole !== apart);
         await page.getByRole("radio", { name: "Y", exact: true }).first().click();
         const cut = await picture(page);
-        assert.ok(!whole.equals(cut));
+        assert.ok(whole !== cut);
         await page.locator("#flip").click();
-        assert.ok(!cut.equals(await picture(page)));
+        assert.ok(cut !== (await picture(page)));
         await page.getByRole("radio", { name: "Off", exact: true }).click();
         const box = await page.locator("#canvas").boundingBox();
         await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
@@ -228,7 +228,7 @@ test("a morph plays, and stands still when it does not", async () => {
         await time.fill("0");
         const first = await picture(page);
         await time.fill("1");
-        assert.ok(!first.equals(await picture(page)));
+        assert.ok(first !== (await picture(page)));
     });
 });
 
@@ -278,10 +278,10 @@ test("every key of the help does what it says", async () => {
         for (const key of ["ArrowLeft", "ArrowUp", "+", "-"]) {
             const before = await picture(page);
             await page.keyboard.press(key);
-            assert.ok(!before.equals(await picture(page)), `${key} changes the view`);
+            assert.ok(before !== (await picture(page)), `${key} changes the view`);
         }
         await page.keyboard.press("0");
-        assert.ok(start.equals(await picture(page)), "0 gives the first view");
+        assert.ok(start === (await picture(page)), "0 gives the first view");
         await page.keyboard.press("n");
         assert.match(await pressed(), /^Guard 0\s/);
         await page.keyboard.press("n");
@@ -312,7 +312,7 @@ test("light and dark follow the system and the switch", async () => {
         const light = await picture(page);
         await page.getByRole("button", { name: "Light or dark" }).click();
         assert.equal(await theme(page), "dark");
-        assert.ok(!light.equals(await picture(page)));
+        assert.ok(light !== (await picture(page)));
     });
 });
 
@@ -606,7 +606,7 @@ test("a map shows both solids by one camera, alike in colours, patterns and cuts
         const before = await picture(page);
         await page.locator("#canvas").focus();
         await page.keyboard.press("ArrowLeft");
-        assert.ok(!before.equals(await picture(page)));
+        assert.ok(before !== (await picture(page)));
         // a click on a guard in either half picks the piece in both
         for (const side of [0, 1]) {
             const spot = await page.evaluate((end) => {
@@ -630,7 +630,7 @@ test("a map shows both solids by one camera, alike in colours, patterns and cuts
         for (const name of ["Checker", "Lines"]) {
             await page.getByRole("radio", { name }).click();
             assert.equal(await said(page), `Colours: ${name.toLowerCase()}`);
-            assert.ok(!plain.equals(await picture(page)), name);
+            assert.ok(plain !== (await picture(page)), name);
         }
         await page.keyboard.press("c");
         await settle(page);
