@@ -96,7 +96,7 @@ export class MapView extends PartsView {
                 },
             }),
             note(
-                "A is on the left, B on the right, each at its own size. Distortion: largest over smallest stretch.",
+                "A is on the left, B on the right, drawn at the same size. Distortion: largest over smallest stretch.",
             ),
             heading("Pieces by number, and their share of A and of B"),
             this.list.node,

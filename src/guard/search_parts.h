@@ -106,7 +106,8 @@ void search_prune_points(search *s, size_t first);
 double search_largest_value(const search *s);
 
 /* Prices of maximal sum by which no point and no small leaf exceeds 1; the list receives the rows
- * of their program, a subset of all. Errors: MEMORY. */
+ * of their program, a subset of all. `prices.work` is that of all programs it took. Errors:
+ * MEMORY. */
 starg_status search_find_prices(search *s, row_list *list);
 
 /* Is a leaf small enough to count as a point? Do such leaves hold the prices down? */
