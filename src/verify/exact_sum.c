@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/exact_sum.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -82,4 +83,23 @@ int exact_sum_sign(const exact_sum *sum) {
         if (sum->plus[i] != sum->minus[i])
             return sum->plus[i] > sum->minus[i] ? 1 : -1;
     return 0;
+}
+
+double exact_sum_value(const exact_sum *sum, int scale) {
+    int sign = exact_sum_sign(sum);
+    const uint64_t *large = sign < 0 ? sum->minus : sum->plus;
+    const uint64_t *small = sign < 0 ? sum->plus : sum->minus;
+    uint64_t rest[EXACT_SUM_WORDS];
+    uint64_t borrow = 0;
+    double value = 0;
+    for (int i = 0; i < EXACT_SUM_WORDS; i++) {
+        starg_uint128 less = (starg_uint128)small[i] + borrow;
+        rest[i] = large[i] - (uint64_t)less;
+        borrow = large[i] < less;
+    }
+    for (int i = EXACT_SUM_WORDS - 1, used = 0; i >= 0 && used < 3; i--) {
+        used += used > 0 || rest[i] != 0;
+        value += ldexp((double)rest[i], 64 * i + 3 * LOWEST_EXPONENT + scale);
+    }
+    return sign * value;
 }

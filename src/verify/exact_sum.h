@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Exact sums of products of three doubles, and their signs.
+/* Exact sums of products of three doubles, their signs and values.
  *
  * A long accumulator [Kulisch, Miranker: Computer Arithmetic in Theory and Practice, 1981]: a
  * fixed-point number wide enough for every product of three doubles below 2^340, subnormals
@@ -32,5 +32,8 @@ void exact_sum_add_sum(exact_sum *sum, const exact_sum *other);
 
 /* -1, 0 or 1. */
 int exact_sum_sign(const exact_sum *sum);
+
+/* The sum times 2^scale, rounded: off by less than 2^-52 of it. */
+double exact_sum_value(const exact_sum *sum, int scale);
 
 #endif

@@ -212,13 +212,18 @@ static void test_singular_values(void **state) {
     }
 }
 
-/* Does `verify` accept a ratio of singular values of a map of tetrahedra? */
-static bool is_accepted(double from[3][3], double to[3][3], double ratio) {
+/* The ratio of singular values that `verify` finds in a map of tetrahedra. */
+static verify_distortion verified_ratio(double from[3][3], double to[3][3]) {
     static const double origin[3] = {0, 0, 0};
     const double *const corners[2][4] = {{from[0], from[1], from[2], origin},
                                          {to[0], to[1], to[2], origin}};
     verify_distortion found = {0};
     verify_add_distortion(&found, corners[0], 0, corners[1], 0);
+    return found;
+}
+
+static bool is_accepted(double from[3][3], double to[3][3], double ratio) {
+    verify_distortion found = verified_ratio(from, to);
     return verify_near_distortion(ratio, found.worst, found.worst_room);
 }
 
@@ -291,6 +296,38 @@ static void test_flat_frames(void **state) {
     }
 }
 
+/* Frames so flat that their determinants in doubles are rounding errors, 0 among them, and exactly
+ * are not: `verify` finds the ratio all the same. */
+static void test_lost_determinants(void **state) {
+    (void)state;
+    starg_rng rng = starg_rng_make(10, 10, 10);
+    size_t lost = 0;
+    for (int round = 0; round < 300; round++) {
+        double from[3][3], to[3][3], map[3][3], inverse[3][3];
+        mpq_t exact;
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++) {
+                from[i][k] = 1 + 0x1p-50 * (double)starg_rng_below(&rng, 16);
+                to[i][k] = starg_rng_unit(&rng) - 0.5 + (i == k);
+            }
+        mpq_init(exact);
+        slow_determinant(exact, from[0], from[1], from[2]);
+        bool flat = mpq_sgn(exact) == 0;
+        mpq_clear(exact);
+        if (flat)
+            continue;
+        lost += from[0][0] * (from[1][1] * from[2][2] - from[1][2] * from[2][1]) -
+                    from[0][1] * (from[1][0] * from[2][2] - from[1][2] * from[2][0]) +
+                    from[0][2] * (from[1][0] * from[2][1] - from[1][1] * from[2][0]) ==
+                0;
+        slow_matrix(from, to, map);
+        slow_matrix(to, from, inverse);
+        double ratio = slow_norm(map) * slow_norm(inverse);
+        assert_true(fabs(verified_ratio(from, to).worst / ratio - 1) < 1e-9);
+    }
+    assert_true(lost > 0);
+}
+
 static void test_paper_mode(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -311,6 +348,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_samples), cmocka_unit_test(test_rays_that_coincide),
         cmocka_unit_test(test_singular_values), cmocka_unit_test(test_flat_frames),
-        cmocka_unit_test(test_paper_mode)};
+        cmocka_unit_test(test_lost_determinants), cmocka_unit_test(test_paper_mode)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

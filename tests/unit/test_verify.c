@@ -59,6 +59,9 @@ static void check_sum(point_family family, points x) {
         mpq_add(total, total, product);
         if (exact_sum_sign(&sum) != mpq_sgn(total))
             refute("exact_sum", family, x);
+        double value = mpq_get_d(total);
+        if (isnormal(value) && !(fabs(exact_sum_value(&sum, 0) - value) <= 0x1p-51 * fabs(value)))
+            refute("exact_sum_value", family, x);
     }
     mpq_clears(total, product, factor, (mpq_ptr)NULL);
 }
