@@ -47,6 +47,7 @@ check-analysis: tests
 
 # 200 kills of each command; every allocation that can fail, and what else sanitizers make slow.
 check-slow: tests sanitize-build
+	@cmake --build $(BUILD)-sanitize -j $(JOBS) --target slow_tests
 	@$(CTEST) --test-dir $(BUILD) -L slow
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
 
