@@ -236,7 +236,7 @@ static double count_volume(const united *u) {
 static void volumes_of_boxes(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    size_t rounds = test_rounds(12, 1000);
+    size_t rounds = test_rounds(6, 1000);
     for (uint64_t round = 0; round < rounds; round++) {
         starg_rng rng = starg_rng_make(2, 0, round);
         size_t count = 2 + (size_t)starg_rng_below(&rng, 5);
@@ -323,7 +323,7 @@ static shape random_solid(starg_rng *rng) {
 static void random_soups(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    size_t rounds = test_rounds(12, 1000);
+    size_t rounds = test_rounds(6, 1000);
     for (uint64_t round = 0; round < rounds; round++) {
         starg_rng rng = starg_rng_make(4, 0, round);
         size_t count = 2 + (size_t)starg_rng_below(&rng, 4);
@@ -350,7 +350,7 @@ static void random_soups(void **state) {
 static void lattice_soups(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    size_t rounds = test_rounds(40, 3000), done = 0;
+    size_t rounds = test_rounds(20, 3000), done = 0;
     for (uint64_t round = 0; round < rounds; round++) {
         starg_rng rng = starg_rng_make(5, 0, round);
         size_t count = 2 + (size_t)starg_rng_below(&rng, 4);

@@ -381,7 +381,7 @@ static void check_lattice(setting *s, const char *name, size_t boxes) {
 
 static void test_lattices(void **state) {
     (void)state;
-    size_t boxes = test_rounds(150, 3000);
+    size_t boxes = test_rounds(60, 3000);
     setting room = setting_of_shape(shape_room()), cavity = setting_of_shape(shape_cavity());
     setting columns = setting_of_shape(shape_columns());
     check_lattice(&room, "room", boxes);
@@ -391,7 +391,7 @@ static void test_lattices(void **state) {
 
 static void test_small_solids(void **state) {
     (void)state;
-    size_t boxes = test_rounds(120, 4000);
+    size_t boxes = test_rounds(50, 4000);
     setting room = setting_of_shape(shape_room()), cavity = setting_of_shape(shape_cavity());
     setting columns = setting_of_shape(shape_columns());
     check_solid(&room, "room", boxes);
@@ -412,7 +412,7 @@ static void test_intersecting_shells(void **state) {
     shape_free(&other);
     setting s = setting_of_shape(both);
     assert_false(starg_solid_check(s.solid)->embedded);
-    check_solid(&s, "intersecting shells", test_rounds(120, 3000));
+    check_solid(&s, "intersecting shells", test_rounds(50, 3000));
 }
 
 /* The same solid, very large, very small, and far from the origin. */
@@ -423,7 +423,7 @@ static void test_scales(void **state) {
         shape made = shape_columns();
         shape_place(&made, scales[i], offsets[i]);
         setting s = setting_of_shape(made);
-        check_solid(&s, "columns, scaled", test_rounds(30, 500));
+        check_solid(&s, "columns, scaled", test_rounds(12, 500));
     }
 }
 

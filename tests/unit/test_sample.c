@@ -365,11 +365,11 @@ static void samples_of_5000(void **state) {
     check_all(5000, 0.05, 2, 2);
 }
 
-/* One pose of each, to stay fast. */
+/* One pose of every third, to stay fast. */
 static void samples_of_20000(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    for (size_t i = 0; i < starg_sample_count(); i++) {
+    for (size_t i = 0; i < starg_sample_count(); i += 3) {
         const starg_sample_info *info = starg_sample_at(i);
         check_sample(context, info, (int)(i % 5) % info->poses, 20000, 0.03);
     }

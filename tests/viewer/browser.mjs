@@ -35,7 +35,7 @@ export async function openBrowser() {
 /** Opens a page, waits until it is ready, and keeps all its errors and requests. */
 export async function openPage(browser, file, options = {}) {
     const context = await browser.newContext({
-        viewport: { width: 1000, height: 700 },
+        viewport: { width: 800, height: 560 },
         ...options,
     });
     const page = await context.newPage();
