@@ -111,7 +111,7 @@ static void test_shared_solids(void **state) {
     const char *data = test_shared_data();
     if (data == NULL)
         skip();
-    size_t most = test_rounds(1500, 20000), pairs = test_rounds(8000, 100000), solids = 0;
+    size_t most = test_rounds(800, 20000), pairs = test_rounds(4000, 100000), solids = 0;
     tally sum = {0};
     FILE *tables = test_tables(data);
     starg_context *context = test_context(2);
