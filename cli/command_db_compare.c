@@ -114,6 +114,15 @@ const cli_command cli_command_db_matrix = {
     .run = run_matrix,
 };
 
+starg_status cli_matrix_command(cli_session *session, const char *database, int distance,
+                                const char *output, char **line) {
+    values v = {.distance = distance};
+    starg_context_options usual; /* distances do not depend on the seed */
+    starg_context_options_default(&usual);
+    return cli_command_print(session, &cli_command_db_matrix, &v, usual.seed, database, output,
+                             line);
+}
+
 /* ---- evaluate ---- */
 
 static const cli_option evaluate_options[] = {

@@ -76,6 +76,9 @@ typedef struct cli_pieces_files {
 } cli_pieces_files;
 starg_status cli_decompose_command(cli_session *session, const struct starg_decomposition *pieces,
                                    const cli_pieces_files *files, char **line);
+/* `distance` is an index of cli_distance_words. */
+starg_status cli_matrix_command(cli_session *session, const char *database, int distance,
+                                const char *output, char **line);
 
 extern const cli_command cli_command_sample;
 extern const cli_command cli_command_check;

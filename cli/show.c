@@ -360,6 +360,7 @@ static void fill_page(const cli_session *session, const char *model, cli_show *s
     page->frame_count = show->frame_count;
     page->shapes = show->shapes;
     page->shape_count = show->shape_count;
+    page->table_command = show->table_command;
     page->distances = show->distances != NULL ? show->distances : show->table.distances;
     const char *result, *named = model != NULL ? model : named_model(show, &result);
     page->title =
@@ -405,6 +406,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
         starg_guards_free(session->context, show->ends[end]);
     free(show->command);
     free(show->pieces_command);
+    free(show->table_command);
     free(show->title);
     starg_skeleton_free(context, show->skeleton);
     starg_bits_free(show->seen);

@@ -22,9 +22,9 @@ typedef struct cli_show {
     starg_guards *ends[2]; /* of a morph */
     bool from_animation;   /* frames come from starg_animation_read */
     size_t frame_count;
-    char *command, *pieces_command; /* that make the guards, the pieces again */
-    char *title;                    /* of a morph that tells its shapes; else NULL */
-    cli_table table;                /* of a database */
+    char *command, *pieces_command, *table_command; /* that make the results again */
+    char *title;     /* of a morph that tells its shapes; else NULL */
+    cli_table table; /* of a database */
     double *distances;
     starg_page_shape *shapes;
     uint8_t **pictures; /* of shapes, where available */

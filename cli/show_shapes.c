@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "commands.h"
 #include "csv.h"
 #include "numbers.h"
 #include "show.h"
@@ -73,6 +74,7 @@ starg_status cli_show_database(cli_session *session, const char *file, int dista
         CLI_TRY(draw_shape(session, models->items[i].path, i, show));
     }
     tell_missing(session, show);
+    CLI_TRY(cli_matrix_command(session, file, distance, "distances.csv", &show->table_command));
 done:
     return status;
 }

@@ -2,7 +2,7 @@
 // Retrieval: the distance table as shades, darkest for the most similar of each shape, and for a picked
 // shape the others by distance, with their pictures.
 import page, { doubles, pictureAddress } from "./data.js";
-import { element, facts, heading, say } from "./panel.js";
+import { commandLine, element, facts, heading, say } from "./panel.js";
 import { themeColor } from "./theme.js";
 import { amount, count, real } from "./text.js";
 import { following, View } from "./view.js";
@@ -80,6 +80,9 @@ export class RetrievalView extends View {
             this.self,
             this.title,
             this.list,
+            ...(page.table_command
+                ? [heading("The table as a file"), commandLine(page.table_command)]
+                : []),
         );
     }
 

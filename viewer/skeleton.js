@@ -100,7 +100,7 @@ export class SkeletonView extends View {
                 ["Ends", count(ends)],
             ]),
         );
-        node.append(note("Joints are red, ends are green."));
+        node.append(note("Joints are red, ends dark, or light on a dark page."));
         if (this.radii)
             node.append(
                 slider({

@@ -46,7 +46,8 @@ typedef struct starg_page {
     const starg_guards *ends[2]; /* corresponding guards of its first and last frame, or NULL */
     const starg_page_shape *shapes;
     size_t shape_count;
-    const double *distances; /* shape_count x shape_count */
+    const double *distances;   /* shape_count x shape_count */
+    const char *table_command; /* line that writes them as a table, or NULL */
 } starg_page;
 
 /* Whether the library was built with the viewer. Without it, no page can be written. */

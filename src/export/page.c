@@ -38,8 +38,9 @@ typedef struct book {
     frame frame, image_frame; /* of everything in the model's space; of a map's images */
     starg_piece_surfaces surfaces, map_surfaces;
     size_t *map_tetrahedra; /* of each piece of the map */
-    char **names;           /* of shapes, as text that JSON can hold */
-    char *title, *model_name;
+    /* As text that JSON can hold: */
+    char **names; /* of shapes */
+    char *title, *model_name, *command, *pieces_command, *table_command;
     bool broken; /* a part of the description could not be made: memory is out */
 } book;
 
@@ -446,8 +447,8 @@ static json_t *guards_json(book *b) {
         put(b, guards, "cone", json_real(g->options.visibility.cone));
     if (b->page->proof != NULL)
         put(b, guards, "proof", proof_json(b));
-    if (b->page->command != NULL)
-        put(b, guards, "command", json_string(b->page->command));
+    if (b->command != NULL)
+        put(b, guards, "command", json_string(b->command));
     return guards;
 }
 
@@ -475,8 +476,8 @@ static json_t *pieces_json(book *b) {
                   (json_int_t)b->page->pieces->count, "reported", (int)(report != NULL),
                   "lower_bound", (json_int_t)(report != NULL ? report->lower_bound : 0), "optimal",
                   (int)(report != NULL && report->optimal));
-    if (b->page->pieces_command != NULL)
-        put(b, pieces, "command", json_string(b->page->pieces_command));
+    if (b->pieces_command != NULL)
+        put(b, pieces, "command", json_string(b->pieces_command));
     return pieces;
 }
 
@@ -556,6 +557,8 @@ static json_t *describe(book *b) {
         put(b, root, "morph", morph_json(p));
     if (p->shape_count > 0)
         put(b, root, "shapes", shapes_json(b));
+    if (b->table_command != NULL)
+        put(b, root, "table_command", json_string(b->table_command));
     return root;
 }
 
@@ -567,6 +570,9 @@ static starg_status copy_names(starg_context *context, book *b) {
     const char *title = p->title != NULL ? p->title : p->model_name;
     STARG_TRY(starg_json_path(context, STAGE, title != NULL ? title : "starguard", &b->title));
     STARG_TRY(starg_json_path(context, STAGE, p->model_name, &b->model_name));
+    STARG_TRY(starg_json_path(context, STAGE, p->command, &b->command));
+    STARG_TRY(starg_json_path(context, STAGE, p->pieces_command, &b->pieces_command));
+    STARG_TRY(starg_json_path(context, STAGE, p->table_command, &b->table_command));
     STARG_NEW_ZERO(context, STAGE, b->names, p->shape_count);
     for (size_t i = 0; i < p->shape_count; i++)
         STARG_TRY(starg_json_path(context, STAGE, p->shapes[i].name, &b->names[i]));
@@ -581,6 +587,9 @@ static void free_book(starg_context *context, book *b) {
     starg_release(context, b->map_tetrahedra);
     starg_release(context, b->title);
     starg_release(context, b->model_name);
+    starg_release(context, b->command);
+    starg_release(context, b->pieces_command);
+    starg_release(context, b->table_command);
     starg_piece_surfaces_free(context, &b->surfaces);
     starg_piece_surfaces_free(context, &b->map_surfaces);
 }

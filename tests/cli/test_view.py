@@ -162,6 +162,17 @@ class View(Case):
         self.run_text("guard", "room.off", "-o", "g.json", "--candidates", "places.txt")
         self.assertIn("CANDIDATES", self.command_of("g.json"))
 
+    def test_names_that_are_no_utf_8(self):
+        folder = os.fsencode(self.folder)
+        self.write("t.off", TETRAHEDRON)
+        self.run_text("guard", "t.off", "-o", "g.json")
+        self.run_text("db", "create", "s.db")
+        self.run_text("db", "add", "s.db", "t.off")
+        for name, key in (b"g.json", "guards"), (b"s.db", "shapes"):
+            os.rename(os.path.join(folder, name), os.path.join(folder, b"\xff" + name))
+            self.run_text("view", b"\xff" + name, "-o", "page.html")
+            self.assertIn(key, data_of(self.read("page.html")))
+
     def test_the_same_bytes(self):
         self.results()
         for threads in "1", "3":
@@ -258,6 +269,14 @@ class View(Case):
         self.assertEqual(block_of(db, "shape-distances"), block_of(csv, "shape-distances"))
         for i in range(3):
             self.assertTrue(block_of(db, f"shape-picture-{i}").startswith(b"\x89PNG"))
+        self.assertNotIn("table_command", data_of(csv))
+        first = self.read("m.csv")
+        for options in [], ["--distance", "d2"]:
+            self.run_text("view", "s.db", "-o", "db.html", *options, "--seed", "7")
+            command = data_of(self.read("db.html"))["table_command"]
+            self.assertEqual(command, " ".join(["starguard db matrix s.db -o distances.csv", *options]))
+            self.run_text(*shlex.split(command)[1:])
+            self.assertEqual(self.read("distances.csv") == first, not options)
         os.remove(self.path("a_1.off"))
         _, err = self.run_text("view", "s.db", "-o", "db.html")
         self.assertIn("1 of 3 models", err)
