@@ -5,8 +5,9 @@
  * squares a row: a cell is the cone of all points q with u0 w <= u <= u1 w and v0 w <= v <= v1 w,
  * where (u, v, w) are the coordinates of q - p in the order of the side. Every triangle is listed
  * in every cell that it may meet: it is omitted only if its corners are certainly all beyond one of
- * the four planes, by more than rounding, which proves it to be outside the cone. A point on the
- * segment from p to a vertex q lies in the same cones as q; so q is seen exactly if no triangle
+ * the four planes, by more than rounding, which proves it to be outside the cone. Where all w are
+ * positive, the ratios u / w and v / w give these cells at once; elsewhere halving does. A point on
+ * the segment from p to a vertex q lies in the same cones as q; so q is seen exactly if no triangle
  * blocks [p, q) among those listed in the cells that may contain q. The same holds for a face:
  * whatever enters the tetrahedron (p, face) is listed in a cell that the face may meet.
  *
