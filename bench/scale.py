@@ -6,8 +6,9 @@ usage: scale.py STARGUARD [--commands NAME,...] [--sample NAME] [--sizes N,N,...
                 [--threads N,N,...] [--at N] [--results FILE] [--svg FOLDER]
 
 For samples of the given sizes: seconds of each stage of `check`, `guard` (99 % of the area) and
-`decompose` (tetrahedra, the starts, and no search), their peak memory, and the slope of log seconds
-over log size between the largest sizes. Then, at one size, the same for each number of threads.
+`decompose` (tetrahedra, the starts, and no search), processor seconds of the whole command, and of
+`verify` of the guards, peak memory, and the slope of log seconds over log size between the largest
+sizes. Processor seconds hardly depend on what else the machine does. Then, at one size, the same for each number of threads.
 Tables are Markdown; FOLDER gets a log-log plot for each command. Finished runs are stored in FILE and
 not repeated.
 """
@@ -15,6 +16,7 @@ import argparse
 import json
 import math
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -30,17 +32,32 @@ COLOURS = ("#1f6feb", "#d1495b", "#2e9e6b", "#b07d12", "#7b4bb3", "#0f8b8d", "#c
            "#a03e99", "#5a7d2a", "#8a5a44")
 
 
+def processor_seconds(words, folder):
+    """A finished process, and the processor time that it took."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return done, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
 def run(options, command, size, threads):
     with tempfile.TemporaryDirectory() as folder:
         model = os.path.join(folder, "model.off")
         subprocess.run([options.starguard, "sample", options.sample, "--vertices", str(size), "-o",
                         model, "--quiet"], check=True)
-        done = subprocess.run([options.starguard, command, model, *COMMANDS[command], "--threads",
-                               str(threads), "--json"], cwd=folder, capture_output=True, text=True,
-                              check=False)
-    told = json.loads(done.stdout)
-    if done.returncode != 0:
-        sys.exit(f"{command} at {size}: {told['error']['message']}")
+        done, processor = processor_seconds([options.starguard, command, model, *COMMANDS[command],
+                                             "--threads", str(threads), "--json"], folder)
+        told = json.loads(done.stdout)
+        if done.returncode != 0:
+            sys.exit(f"{command} at {size}: {told['error']['message']}")
+        if command == "guard":
+            checked, verify = processor_seconds([options.starguard, "verify", model, "guards.json",
+                                                 "--threads", str(threads), "--json"], folder)
+            if checked.returncode != 0:
+                sys.exit(f"verify at {size}: {checked.stdout}")
+    told["seconds"]["processor"] = processor
+    if command == "guard":
+        told["seconds"]["verify, processor"] = verify
     result = {"seconds": told["seconds"],
               "megabytes": told["memory"]["peak_resident_bytes"] / 2**20}
     if command == "guard":
@@ -73,9 +90,10 @@ class Results:
 
 
 def stages_of(runs):
-    """Stages that take time in the largest run, in order; the total last."""
-    names = [n for n in runs[-1]["seconds"] if n != "total" and runs[-1]["seconds"][n] >= LEAST]
-    return names + ["total"]
+    """Stages that take time in the largest run, in order; what is of whole commands last."""
+    last = [n for n in ("total", "processor", "verify, processor") if n in runs[-1]["seconds"]]
+    names = [n for n in runs[-1]["seconds"] if n not in last and runs[-1]["seconds"][n] >= LEAST]
+    return names + last
 
 
 def slope(sizes, seconds):

@@ -31,12 +31,13 @@ done
 "$starguard" morph morph_0.off morph_2.off --frames 5 -o frames --picture morph.png
 keep morph.png 1200x
 
+mkdir shapes
 for animal in bird cat dog giraffe horse human; do
     for pose in 0 1 2; do
-        "$starguard" sample $animal --pose $pose --vertices 1000 -o ${animal}_$pose.off
+        "$starguard" sample $animal --pose $pose --vertices 1000 -o shapes/${animal}_$pose.off
     done
 done
 "$starguard" db create shapes.db
-"$starguard" db add shapes.db ./*_?.off
+"$starguard" db add shapes.db shapes/*.off
 "$starguard" db matrix shapes.db -o matrix.csv --picture matrix.png --distance star
 cp matrix.png "$pictures"

@@ -109,7 +109,7 @@ static starg_status find_detail(const guard_problem *problem, guard_detail *out)
     if (problem->options->method == STARG_GUARD_PILP || proxy)
         STARG_TRY(make_levels(problem, out));
     if (proxy && out->levels != NULL)
-        STARG_TRY(proxy_of_levels(problem->context, out->levels, &out->proxy));
+        STARG_TRY(proxy_of_levels(problem->context, problem->solid, out->levels, &out->proxy));
 done:
     return status;
 }

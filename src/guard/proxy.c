@@ -16,12 +16,14 @@ bool proxy_wanted(const starg_solid *solid) {
     return solid->mesh->vertex_count > MANY;
 }
 
-starg_status proxy_of_levels(starg_context *context, const starg_levels *levels,
-                             starg_solid **out) {
+starg_status proxy_of_levels(starg_context *context, const starg_solid *solid,
+                             const starg_levels *levels, starg_solid **out) {
     size_t level = 0;
     while (level + 1 < levels->count && levels->levels[level].mesh->vertex_count < ENOUGH)
         level++;
-    return solid_make(context, levels->levels[level].mesh, out);
+    const starg_mesh *mesh = levels->levels[level].mesh;
+    return solid->check->embedded ? solid_of_level(context, solid, mesh, out)
+                                  : solid_make(context, mesh, out);
 }
 
 starg_status proxy_make(starg_context *context, const starg_solid *solid, starg_solid **out) {
@@ -29,7 +31,7 @@ starg_status proxy_make(starg_context *context, const starg_solid *solid, starg_
     starg_levels *levels = NULL;
     size_t step = starg_guard_default_step(solid->mesh->vertex_count, COARSEST);
     STARG_TRY(starg_mesh_levels(context, solid->mesh, COARSEST, step, NULL, &levels));
-    STARG_TRY(proxy_of_levels(context, levels, out));
+    STARG_TRY(proxy_of_levels(context, solid, levels, out));
 done:
     starg_levels_free(context, levels);
     return status;

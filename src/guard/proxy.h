@@ -9,8 +9,10 @@
 /* Is the model large enough to use a level of detail instead? */
 bool proxy_wanted(const starg_solid *solid);
 
-/* The solid of the proxy level; the caller owns it. Errors: MEMORY, CANCELLED. */
-starg_status proxy_of_levels(starg_context *context, const starg_levels *levels, starg_solid **out);
+/* The solid of the proxy level, of the levels of `solid`; the caller owns it. An embedded one has
+ * embedded levels, which are not checked again. Errors: MEMORY, CANCELLED. */
+starg_status proxy_of_levels(starg_context *context, const starg_solid *solid,
+                             const starg_levels *levels, starg_solid **out);
 
 /* The same from levels built for the purpose. Errors: MEMORY, CANCELLED, TIME. */
 starg_status proxy_make(starg_context *context, const starg_solid *solid, starg_solid **out);

@@ -79,9 +79,10 @@ static const starg_field FILE_ROWS[] = {
     {.key = "format", .kind = STARG_FIELD_CONSTANT, .value = "starguard-descriptor"},
     {.key = "version",
      .kind = STARG_FIELD_CONSTANT,
-     .initial = 4,
+     .initial = DESCRIPTOR_VERSION,
      .least = 3,
-     .help = "Files of version 3 also have the unused key solid_spectrum."},
+     .help = "3 and 4 are read with a warning: their numbers are of another level of detail. Files "
+             "of version 3 also have the unused key solid_spectrum."},
     {.key = "model", .kind = STARG_FIELD_RECORD, .of = &MODEL_TABLE},
     {.key = "detail",
      .kind = STARG_FIELD_COUNT,

@@ -5,6 +5,9 @@
 
 #include "core/fields.h"
 
+/* Changes with what the numbers mean, even if the keys stay. */
+enum { DESCRIPTOR_VERSION = 5 };
+
 /* The file as a starg_descriptor. */
 extern const starg_fields descriptor_file_fields;
 

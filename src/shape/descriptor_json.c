@@ -49,6 +49,16 @@ static starg_status check_edges(starg_context *context, const char *name,
     return STARG_OK;
 }
 
+/* Numbers of an older version are read, but were made otherwise (of another level of detail). */
+static void tell_version(starg_context *context, const char *name, const json_t *root) {
+    json_int_t version = json_integer_value(json_object_get(root, "version"));
+    if (version < DESCRIPTOR_VERSION)
+        starg_log(context, STARG_LOG_WARNING,
+                  "%s has version %d: its distances to descriptors of version %d mean little; "
+                  "describe the model again",
+                  name, (int)version, DESCRIPTOR_VERSION);
+}
+
 starg_status starg_descriptor_read_memory(starg_context *context, const void *bytes, size_t size,
                                           const char *name, starg_descriptor **out) {
     starg_status status = STARG_OK;
@@ -59,6 +69,7 @@ starg_status starg_descriptor_read_memory(starg_context *context, const void *by
     STARG_NEW_ZERO(context, STAGE, descriptor, 1);
     STARG_TRY(record_read(context, name, root, &descriptor_file_fields, descriptor));
     STARG_TRY(check_edges(context, name, descriptor));
+    tell_version(context, name, root);
     *out = descriptor;
 done:
     json_decref(root);

@@ -95,7 +95,7 @@ static starg_status examine_guard(starg_context *context, void *shared, void *sc
     if (verify_space_is_narrow(&known->guards->space))
         known->standoff[g] = verify_distance(surface, p, surface->model_faces, known->scale);
     bool on_surface;
-    int winding = verify_winding(surface, NULL, surface->face_count, p, &on_surface);
+    int winding = verify_tree_winding(known->tree, p, &on_surface);
     known->inside[g] = !on_surface && winding + surface->ambient >= 1;
     if (!known->inside[g])
         return STARG_OK;
@@ -183,6 +183,7 @@ static starg_status find_facts(starg_context *context, verify_facts *known) {
     STARG_NEW_ZERO(context, STAGE, known->wanted, known->surface->face_count);
     STARG_NEW(context, STAGE, known->area, known->surface->face_count);
     mark_wanted(known);
+    STARG_TRY(verify_tree_create(known->surface, &known->tree));
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = guards,
                                       .shared = known,
@@ -190,7 +191,6 @@ static starg_status find_facts(starg_context *context, verify_facts *known) {
                                       .make_scratch = make_sight,
                                       .free_scratch = free_sight};
     STARG_TRY(starg_parallel_for(context, &loop));
-    STARG_TRY(verify_tree_create(known->surface, &known->tree));
     sum_up(known);
 done:
     return status;

@@ -5,8 +5,9 @@
  * squares a row: a cell is the cone of all points q with u0 w <= u <= u1 w and v0 w <= v <= v1 w,
  * where (u, v, w) are the coordinates of q - p in the order of the side. Every triangle is listed
  * in every cell that it may meet: it is omitted only if its corners are certainly all beyond one of
- * the four planes, by more than rounding, which proves it to be outside the cone. A point on the
- * segment from p to a vertex q lies in the same cones as q; so q is seen exactly if no triangle
+ * the four planes, by more than rounding, which proves it to be outside the cone. Where all w are
+ * positive, the ratios u / w and v / w give these cells at once; elsewhere halving does. A point on
+ * the segment from p to a vertex q lies in the same cones as q; so q is seen exactly if no triangle
  * blocks [p, q) among those listed in the cells that may contain q. The same holds for a face:
  * whatever enters the tetrahedron (p, face) is listed in a cell that the face may meet.
  *
@@ -25,10 +26,9 @@ typedef struct listing {
     uint32_t cell, face;
 } listing;
 
-/* Cells in a line of a side that an item may meet. */
+/* Columns or rows of a side that an item may meet: those from `first` to before `end`. */
 typedef struct strips {
-    uint32_t at[1u << MAX_LEVELS];
-    size_t count;
+    uint32_t first, end;
 } strips;
 
 struct verify_sight {
@@ -36,10 +36,11 @@ struct verify_sight {
     uint32_t width;                /* cells in a row of a side */
     STARG_ARRAY(listing) listings; /* in order of insertion */
     STARG_ARRAY(uint32_t) cells;   /* of the item placed last */
-    strips columns, rows;          /* of that item on a side */
     size_t *start;                 /* of each cell's faces in `listed` */
     uint32_t *listed;              /* faces by cell */
     size_t listed_capacity;
+    uint32_t blocker;                 /* a face: that of the last view that one blocked */
+    int8_t *sides;                    /* of the planes of faces on which p is, as by verify_side */
     uint8_t *vertices, *faces, *used; /* used: vertices of faces */
 };
 
@@ -52,15 +53,16 @@ starg_status verify_sight_create(const verify_surface *surface, verify_sight **o
     sight->surface = surface;
     sight->width = 1;
     for (int level = 0; level < MAX_LEVELS; level++)
-        if ((size_t)4 * SIDES * sight->width * sight->width <= surface->face_count)
+        if ((size_t)SIDES * sight->width * sight->width <= surface->face_count)
             sight->width *= 2;
     size_t cell_count = (size_t)SIDES * sight->width * sight->width;
     sight->start = starg_allocate(context, cell_count + 1, sizeof *sight->start);
+    sight->sides = starg_allocate(context, surface->face_count, 1);
     sight->vertices = starg_allocate(context, surface->vertex_count, 1);
     sight->faces = starg_allocate(context, surface->face_count, 1);
     sight->used = starg_allocate_zero(context, surface->vertex_count, 1);
-    if (sight->start == NULL || sight->vertices == NULL || sight->faces == NULL ||
-        sight->used == NULL) {
+    if (sight->start == NULL || sight->sides == NULL || sight->vertices == NULL ||
+        sight->faces == NULL || sight->used == NULL) {
         verify_sight_free(sight);
         return STARG_ERROR_MEMORY;
     }
@@ -78,6 +80,7 @@ void verify_sight_free(verify_sight *sight) {
     STARG_ARRAY_FREE(context, &sight->cells);
     starg_release(context, sight->start);
     starg_release(context, sight->listed);
+    starg_release(context, sight->sides);
     starg_release(context, sight->vertices);
     starg_release(context, sight->faces);
     starg_release(context, sight->used);
@@ -104,18 +107,50 @@ static bool beyond(const item *it, int k, double limit, int direction) {
     return true;
 }
 
-/* Appends those of the `size` columns (k = 0) or rows (k = 1) from `first` on, by halving. */
-static void find_strips(const item *it, int k, uint32_t width, uint32_t first, uint32_t size,
-                        strips *out) {
+/* Extends `out` by those of the `size` columns (k = 0) or rows (k = 1) from `first` on, by halving.
+ */
+static void halve(const item *it, int k, uint32_t width, uint32_t first, uint32_t size,
+                  strips *out) {
     double step = 2.0 / width;
     if (beyond(it, k, first * step - 1, -1) || beyond(it, k, (first + size) * step - 1, 1))
         return;
     if (size == 1) {
-        out->at[out->count++] = first;
+        out->first = out->end == 0 ? first : out->first;
+        out->end = first + 1;
         return;
     }
-    find_strips(it, k, width, first, size / 2, out);
-    find_strips(it, k, width, first + size / 2, size / 2, out);
+    halve(it, k, width, first, size / 2, out);
+    halve(it, k, width, first + size / 2, size / 2, out);
+}
+
+/* The strip of a ratio x / w; ratios off the side count as on its border. */
+static uint32_t strip_of(double ratio, uint32_t width, double margin) {
+    double on_side = ratio < -1 ? -1 : ratio > 1 ? 1 : ratio;
+    double at = (on_side + 1) * (0.5 * width) + margin;
+    return at < 0 ? 0 : at < width ? (uint32_t)at : width - 1;
+}
+
+/* The columns or rows of an item, all of it at w > 0: the ratios of what is between points are
+ * between theirs. Ratios have an error below 2^-50 of themselves; the margin is 2^-30 of a cell, of
+ * which a side has at most 2^MAX_LEVELS in a row. */
+static strips spanned(const item *it, int k, uint32_t width) {
+    double low = it->x[0][k] / it->x[0][2], high = low;
+    for (int i = 1; i < it->count; i++) {
+        double ratio = it->x[i][k] / it->x[i][2];
+        low = ratio < low ? ratio : low;
+        high = ratio > high ? ratio : high;
+    }
+    if (low > 1 + 0x1p-40 || high < -1 - 0x1p-40)
+        return (strips){0, 0};
+    return (strips){strip_of(low, width, -0x1p-30), strip_of(high, width, 0x1p-30) + 1};
+}
+
+static strips find_strips(const item *it, int k, uint32_t width, bool ahead) {
+    strips out = {0, 0};
+    if (ahead)
+        return spanned(it, k, width);
+    halve(it, k, width, 0, width, &out);
+    return out;
 }
 
 static starg_status reserve_cells(verify_sight *sight, size_t more) {
@@ -131,18 +166,23 @@ static starg_status reserve_cells(verify_sight *sight, size_t more) {
     return STARG_OK;
 }
 
-/* Appends the cells of a side that the item may meet: all in such a column and such a row. */
+/* Appends the cells of a side that the item may meet: all in such a column and such a row. Nothing
+ * of it, as p is not on it, is in a cell if no point of it is at w > 0. */
 static starg_status place(verify_sight *sight, const item *it, uint32_t side) {
-    strips *columns = &sight->columns, *rows = &sight->rows;
-    columns->count = rows->count = 0;
-    find_strips(it, 0, sight->width, 0, sight->width, columns);
-    if (columns->count > 0)
-        find_strips(it, 1, sight->width, 0, sight->width, rows);
-    starg_status status = reserve_cells(sight, columns->count * rows->count);
-    for (size_t r = 0; r < rows->count && status == STARG_OK; r++)
-        for (size_t c = 0; c < columns->count; c++)
-            sight->cells.data[sight->cells.count++] =
-                (side * sight->width + rows->at[r]) * sight->width + columns->at[c];
+    int ahead = 0;
+    for (int i = 0; i < it->count; i++)
+        ahead += it->x[i][2] > 0;
+    if (ahead == 0)
+        return STARG_OK;
+    strips columns = find_strips(it, 0, sight->width, ahead == it->count);
+    if (columns.end == 0)
+        return STARG_OK;
+    strips rows = find_strips(it, 1, sight->width, ahead == it->count);
+    starg_status status =
+        reserve_cells(sight, (size_t)(columns.end - columns.first) * (rows.end - rows.first));
+    for (uint32_t r = rows.first; r < rows.end && status == STARG_OK; r++)
+        for (uint32_t c = columns.first; c < columns.end; c++)
+            sight->cells.data[sight->cells.count++] = (side * sight->width + r) * sight->width + c;
     return status;
 }
 
@@ -174,6 +214,7 @@ static starg_status list_faces(verify_sight *sight, const double p[3]) {
     for (uint32_t f = 0; f < sight->surface->face_count; f++) {
         const double *t[3];
         verify_corners(sight->surface, f, t);
+        sight->sides[f] = (int8_t)verify_side(t[0], t[1], t[2], p);
         starg_status status = find_cells(sight, p, t, 3);
         if (status != STARG_OK)
             return status;
@@ -218,15 +259,23 @@ static starg_status sort_listings(verify_sight *sight) {
 
 /* ---- looking ---- */
 
-/* Does no face listed in sight->cells block the view to q? */
-static bool sees_point(const verify_sight *sight, const double p[3], const double q[3]) {
+/* Does no face listed in sight->cells block the view to q? The one that blocked the last view is
+ * tried first: points follow one another in the file mostly where they do on the surface. */
+static bool sees_point(verify_sight *sight, const double p[3], const double q[3]) {
+    const double *last[3];
+    verify_corners(sight->surface, sight->blocker, last);
+    if (verify_blocks_from(sight->sides[sight->blocker], p, q, last))
+        return false;
     for (size_t c = 0; c < sight->cells.count; c++) {
         uint32_t cell = sight->cells.data[c];
         for (size_t i = sight->start[cell]; i < sight->start[cell + 1]; i++) {
+            uint32_t face = sight->listed[i];
             const double *t[3];
-            verify_corners(sight->surface, sight->listed[i], t);
-            if (verify_blocks(p, q, t))
+            verify_corners(sight->surface, face, t);
+            if (verify_blocks_from(sight->sides[face], p, q, t)) {
+                sight->blocker = face;
                 return false;
+            }
         }
     }
     return true;
@@ -269,7 +318,7 @@ static starg_status look_at_faces(verify_sight *sight, const double p[3], const 
         const double *t[3];
         verify_corners(sight->surface, f, t);
         sight->faces[f] = sight->vertices[corner[0]] && sight->vertices[corner[1]] &&
-                          sight->vertices[corner[2]] && verify_side(t[0], t[1], t[2], p) > 0 &&
+                          sight->vertices[corner[2]] && sight->sides[f] > 0 &&
                           verify_faces(view, p, t);
         if (!sight->faces[f] || view->rule != STARG_FACES_WHOLE)
             continue;

@@ -185,11 +185,10 @@ static bool bounds_apart(const double *const *points, int count, const double *c
     return false;
 }
 
-bool verify_blocks(const double p[3], const double q[3], const double *const t[3]) {
-    const double *ends[2] = {p, q};
-    if (bounds_apart(ends, 2, t))
-        return false;
-    int p_side = verify_side(t[0], t[1], t[2], p), q_side = verify_side(t[0], t[1], t[2], q);
+/* Does [p, q) meet t, if their bounds meet and p is on that side of t? */
+static bool blocks_near(int p_side, const double p[3], const double q[3],
+                        const double *const t[3]) {
+    int q_side = verify_side(t[0], t[1], t[2], q);
     if (p_side != 0) /* then t has area; ending in its plane at q is no contact */
         return p_side * q_side < 0 && line_meets(p, q, t);
     if (q_side != 0)
@@ -197,6 +196,17 @@ bool verify_blocks(const double p[3], const double q[3], const double *const t[3
     /* All coplanar, or t without area: from p, off t, a segment reaches t only through an edge. */
     return blocked_by_segment(p, q, t[0], t[1]) || blocked_by_segment(p, q, t[1], t[2]) ||
            blocked_by_segment(p, q, t[2], t[0]);
+}
+
+bool verify_blocks(const double p[3], const double q[3], const double *const t[3]) {
+    const double *ends[2] = {p, q};
+    return !bounds_apart(ends, 2, t) && blocks_near(verify_side(t[0], t[1], t[2], p), p, q, t);
+}
+
+bool verify_blocks_from(int p_side, const double p[3], const double q[3],
+                        const double *const t[3]) {
+    const double *ends[2] = {p, q};
+    return !bounds_apart(ends, 2, t) && blocks_near(p_side, p, q, t);
 }
 
 /* ---- triangles ----

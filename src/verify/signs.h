@@ -25,6 +25,8 @@ bool verify_on_triangle(const double p[3], const double *const t[3]);
 
 /* Does [p, q) meet the closed triangle t, on which p does not lie? */
 bool verify_blocks(const double p[3], const double q[3], const double *const t[3]);
+/* The same, given on which side of t p is, as by verify_side. */
+bool verify_blocks_from(int p_side, const double p[3], const double q[3], const double *const t[3]);
 
 /* Does t have a point in the tetrahedron (p, face) off the face? Requires p strictly on the inner
  * side of the face, with its corners visible past t. */

@@ -17,7 +17,7 @@ class Describe(support.Case):
                                      "--histograms", "seen.svg")
         self.assertEqual({key: report[key] for key in file}, file)
         self.assertEqual(file["format"], "starguard-descriptor")
-        self.assertEqual(file["version"], 4)
+        self.assertEqual(file["version"], 5)
         self.assertEqual(file["model"]["file"], "torus.off")
         self.assertEqual({len(g["distances"]) for g in file["guards"]}, {100})
         points = report["reconstruction"]["points"]
@@ -64,6 +64,17 @@ class Match(support.Case):
         by_pipe = self.run_json("match", "-", "torus.off", input=self.read("torus.json"))
         self.assertEqual(by_pipe["distance"], 0)
         self.run_json("match", "torus.off", "l-room.off", "--distance", "d2")
+
+    def test_older_descriptors_are_named(self):
+        self.run_text("describe", self.sample("torus"), "-o", "new.json", "--effort", "1")
+        text = self.read("new.json").decode()
+        self.assertIn('"version": 5,', text)
+        self.write("old.json", text.replace('"version": 5,', '"version": 4,'))
+        _, err = self.run_text("match", "new.json", "new.json")
+        self.assertNotIn("version", err)
+        _, err = self.run_text("match", "old.json", "new.json")
+        self.assertIn("old.json has version 4", err)
+        self.assertNotIn("new.json", err)
 
     def test_refused(self):
         self.run_text("describe", self.sample("torus"), "-o", "torus.json", "--effort", "1")

@@ -293,7 +293,7 @@ static void older_files(void **state) {
     starg_descriptor *d = figure(context), *back = NULL;
     size_t size, again;
     char *text = text_of(context, d, &size);
-    char *third = replaced(text, "\"version\": 4,", "\"version\": 3,\n\"solid_spectrum\": [1, 2],");
+    char *third = replaced(text, "\"version\": 5,", "\"version\": 3,\n\"solid_spectrum\": [1, 2],");
     test_ok(context,
             starg_descriptor_read_memory(context, third, strlen(third), "old.json", &back));
     assert_memory_equal(back->surface_spectrum, d->surface_spectrum, sizeof d->surface_spectrum);
@@ -327,9 +327,9 @@ static void broken_files(void **state) {
     for (size_t cut = 0; cut + 2 < size; cut += 1 + size / 400)
         refuse(context, text, cut);
     const char *changes[][2] = {
-        {"\"version\": 4", "\"version\": 2"},
-        {"\"version\": 4", "\"version\": 5"},
-        {"\"version\": 4", "\"version\": \"4\""},
+        {"\"version\": 5", "\"version\": 2"},
+        {"\"version\": 5", "\"version\": 6"},
+        {"\"version\": 5", "\"version\": \"5\""},
         {"starguard-descriptor", "starguard-guards"},
         {"\"directions\": 12", "\"directions\": 13"},
         {"\"directions\": 12", "\"directions\": 0"},

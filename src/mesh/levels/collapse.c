@@ -291,8 +291,7 @@ static bool clear_of(void *user, uint32_t face) {
         return true;
     bvh_box box = dynamic_bvh_face_box(s, corner);
     for (size_t i = 0; i < c->star->count; i++)
-        if (dynamic_bvh_boxes_meet(&box, &c->face_box[i]) &&
-            faces_meet(s, c->corner[i], corner, c->axis))
+        if (bvh_boxes_meet(&box, &c->face_box[i]) && faces_meet(s, c->corner[i], corner, c->axis))
             return false;
     return s->component[face] == s->component[c->star->halfedge / 3] ||
            !is_swept(c, surface_at(s, corner[0]));

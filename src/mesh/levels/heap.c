@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Binary heap that tracks the slot of each item. */
+/* Heap that tracks the slot of each item. Four children a slot: they are neighbours in memory, and
+ * the levels are half of a binary heap's. */
 #include "mesh/levels/heap.h"
 
 #include "core/memory.h"
+
+enum { CHILDREN = 4 };
 
 starg_status heap_create(starg_context *context, size_t items, mesh_heap **out) {
     starg_status status = STARG_OK;
@@ -40,9 +43,9 @@ static void put(mesh_heap *heap, size_t slot, heap_entry entry) {
 
 /* Moves an entry up from a free slot. */
 static void rise(mesh_heap *heap, size_t slot, heap_entry entry) {
-    while (slot > 0 && before(entry, heap->entries[(slot - 1) / 2])) {
-        put(heap, slot, heap->entries[(slot - 1) / 2]);
-        slot = (slot - 1) / 2;
+    while (slot > 0 && before(entry, heap->entries[(slot - 1) / CHILDREN])) {
+        put(heap, slot, heap->entries[(slot - 1) / CHILDREN]);
+        slot = (slot - 1) / CHILDREN;
     }
     put(heap, slot, entry);
 }
@@ -50,19 +53,20 @@ static void rise(mesh_heap *heap, size_t slot, heap_entry entry) {
 /* Moves an entry down from a free slot. */
 static void sink(mesh_heap *heap, size_t slot, heap_entry entry) {
     for (;;) {
-        size_t child = 2 * slot + 1;
-        if (child + 1 < heap->count && before(heap->entries[child + 1], heap->entries[child]))
-            child++;
-        if (child >= heap->count || !before(heap->entries[child], entry))
+        size_t first = CHILDREN * slot + 1, least = first;
+        for (size_t child = first + 1; child < first + CHILDREN && child < heap->count; child++)
+            if (before(heap->entries[child], heap->entries[least]))
+                least = child;
+        if (least >= heap->count || !before(heap->entries[least], entry))
             break;
-        put(heap, slot, heap->entries[child]);
-        slot = child;
+        put(heap, slot, heap->entries[least]);
+        slot = least;
     }
     put(heap, slot, entry);
 }
 
 static void settle(mesh_heap *heap, size_t slot, heap_entry entry) {
-    if (slot > 0 && before(entry, heap->entries[(slot - 1) / 2]))
+    if (slot > 0 && before(entry, heap->entries[(slot - 1) / CHILDREN]))
         rise(heap, slot, entry);
     else
         sink(heap, slot, entry);

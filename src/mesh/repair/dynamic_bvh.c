@@ -1,30 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Bounding volume hierarchy under edge collapses: when a face leaves the box of its leaf, that box
- * and its ancestors grow; dead faces are skipped. Boxes never shrink, so no face is missed.
+ * and its ancestors grow; dead faces leave it. Boxes never shrink, so no face is missed.
  * Rebuilding when half of the faces are dead keeps boxes tight and costs at most twice the first
  * construction in total. */
 #include "mesh/repair/dynamic_bvh.h"
 
+#include <math.h>
+
 #include "core/memory.h"
 
-bvh_box dynamic_bvh_face_box(const mesh_surface *surface, const uint32_t corner[3]) {
-    bvh_box box;
-    for (int k = 0; k < 3; k++) {
-        double x = surface_at(surface, corner[0])[k], y = surface_at(surface, corner[1])[k];
-        double z = surface_at(surface, corner[2])[k];
-        double low = x < y ? x : y, high = x < y ? y : x;
-        box.lower[k] = low < z ? low : z;
-        box.upper[k] = high > z ? high : z;
-    }
-    return box;
-}
+enum { STACK_SIZE = 128 };
 
-bool dynamic_bvh_boxes_meet(const bvh_box *a, const bvh_box *b) {
-    for (int k = 0; k < 3; k++)
-        if (a->upper[k] < b->lower[k] || b->upper[k] < a->lower[k])
-            return false;
-    return true;
-}
+/* The box of a leaf whose faces are all dead: meets none. */
+static const bvh_box NOWHERE = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
 static void clear(dynamic_bvh *n) {
     bvh_free(n->tree);
@@ -36,21 +24,21 @@ static void clear(dynamic_bvh *n) {
 }
 
 /* Lists the living faces. */
-static starg_status list_faces(dynamic_bvh *n) {
+static starg_status list_faces(dynamic_bvh *n, uint32_t **listed) {
     starg_status status = STARG_OK;
     const mesh_surface *surface = n->surface;
     size_t count = 0;
     for (uint32_t f = 0; f < surface->face_count; f++)
         count += halfedges_face_lives(&surface->mesh, f);
     STARG_NEW(n->context, "simplify", n->corners, 3 * count);
-    STARG_NEW(n->context, "simplify", n->face, count);
+    STARG_NEW(n->context, "simplify", *listed, count);
     n->listed = 0;
     for (uint32_t f = 0; f < surface->face_count; f++) {
         if (!halfedges_face_lives(&surface->mesh, f))
             continue;
         for (size_t k = 0; k < 3; k++)
             n->corners[3 * n->listed + k] = surface_face(surface, f)[k];
-        n->face[n->listed++] = f;
+        (*listed)[n->listed++] = f;
     }
 done:
     return status;
@@ -68,17 +56,22 @@ static void link_nodes(dynamic_bvh *n) {
             n->parent[node->first] = n->parent[node->first + 1] = i;
         else
             for (uint32_t j = node->first; j < node->first + node->count; j++)
-                n->leaf[n->face[n->tree->order[j]]] = i;
+                n->leaf[n->face[j]] = i;
     }
 }
 
 static starg_status build(dynamic_bvh *n) {
     starg_status status = STARG_OK;
-    STARG_TRY(list_faces(n));
+    uint32_t *listed = NULL;
+    STARG_TRY(list_faces(n, &listed));
     STARG_TRY(bvh_create(n->context, n->surface->vertices, n->corners, n->listed, &n->tree));
+    STARG_NEW(n->context, "simplify", n->face, n->listed);
     STARG_NEW(n->context, "simplify", n->parent, n->tree->node_count);
+    for (size_t rank = 0; rank < n->listed; rank++)
+        n->face[rank] = listed[n->tree->order[rank]];
     link_nodes(n);
 done:
+    starg_release(n->context, listed);
     return status;
 }
 
@@ -130,6 +123,17 @@ void dynamic_bvh_update(dynamic_bvh *n, uint32_t face) {
         node = n->parent[node];
 }
 
+void dynamic_bvh_remove(dynamic_bvh *n, uint32_t face) {
+    bvh_node *leaf = &n->tree->nodes[n->leaf[face]];
+    uint32_t rank = leaf->first;
+    while (n->face[rank] != face)
+        rank++;
+    if (leaf->count > 1)
+        n->face[rank] = n->face[leaf->first + --leaf->count];
+    else
+        leaf->box = NOWHERE;
+}
+
 starg_status dynamic_bvh_renew(dynamic_bvh *n) {
     if (2 * n->surface->faces_left > n->listed)
         return STARG_OK;
@@ -137,29 +141,32 @@ starg_status dynamic_bvh_renew(dynamic_bvh *n) {
     return build(n);
 }
 
-typedef struct box_query {
-    const dynamic_bvh *tree;
-    const bvh_box *box;
-    bvh_visit *visit;
-    void *user;
-} box_query;
-
-static bool may_meet(void *user, const bvh_box *box) {
-    const box_query *query = user;
-    return dynamic_bvh_boxes_meet(query->box, box);
-}
-
-static bool visit_rank(void *user, size_t rank) {
-    const box_query *query = user;
-    const dynamic_bvh *n = query->tree;
-    uint32_t face = n->face[n->tree->order[rank]];
-    if (!halfedges_face_lives(&n->surface->mesh, face))
-        return true;
-    bvh_box own = dynamic_bvh_face_box(n->surface, surface_face(n->surface, face));
-    return !dynamic_bvh_boxes_meet(&own, query->box) || query->visit(query->user, face);
+/* Visits the faces of a leaf. */
+static bool visit_leaf(const dynamic_bvh *n, const bvh_node *leaf, const bvh_box *box,
+                       bvh_visit *visit, void *user) {
+    for (uint32_t rank = leaf->first; rank < leaf->first + leaf->count; rank++) {
+        uint32_t face = n->face[rank];
+        bvh_box own = dynamic_bvh_face_box(n->surface, surface_face(n->surface, face));
+        if (bvh_boxes_meet(&own, box) && !visit(user, face))
+            return false;
+    }
+    return true;
 }
 
 bool dynamic_bvh_query(const dynamic_bvh *tree, const bvh_box *box, bvh_visit *visit, void *user) {
-    box_query query = {tree, box, visit, user};
-    return bvh_query(tree->tree, may_meet, &query, visit_rank, &query);
+    uint32_t stack[STACK_SIZE];
+    size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const bvh_node *node = &tree->tree->nodes[stack[--depth]];
+        if (is_leaf(tree, node)) {
+            if (!visit_leaf(tree, node, box, visit, user))
+                return false;
+            continue;
+        }
+        for (uint32_t child = 2; child-- > 0;)
+            if (bvh_boxes_meet(&tree->tree->nodes[node->first + child].box, box))
+                stack[depth++] = node->first + child;
+    }
+    return true;
 }

@@ -12,7 +12,7 @@ typedef struct dynamic_bvh {
     size_t listed;     /* faces when the tree was built */
     bvh *tree;         /* over copies of these faces */
     uint32_t *corners; /* listed x 3, read by the tree */
-    uint32_t *face;    /* per triangle of the tree */
+    uint32_t *face;    /* leaf by leaf */
     uint32_t *leaf;    /* per face of the surface */
     uint32_t *parent;  /* per node; the root's is itself */
 } dynamic_bvh;
@@ -24,6 +24,8 @@ void dynamic_bvh_free(dynamic_bvh *tree);
 
 /* Updates the tree after a face has moved. */
 void dynamic_bvh_update(dynamic_bvh *tree, uint32_t face);
+/* Takes a face out that a collapse is about to remove. */
+void dynamic_bvh_remove(dynamic_bvh *tree, uint32_t face);
 /* Rebuilds the tree once half of its faces are dead. Errors: MEMORY. */
 starg_status dynamic_bvh_renew(dynamic_bvh *tree);
 
@@ -31,7 +33,16 @@ starg_status dynamic_bvh_renew(dynamic_bvh *tree);
  * exactly if visit did. */
 bool dynamic_bvh_query(const dynamic_bvh *tree, const bvh_box *box, bvh_visit *visit, void *user);
 
-bvh_box dynamic_bvh_face_box(const mesh_surface *surface, const uint32_t corner[3]);
-bool dynamic_bvh_boxes_meet(const bvh_box *a, const bvh_box *b);
+static inline bvh_box dynamic_bvh_face_box(const mesh_surface *surface, const uint32_t corner[3]) {
+    bvh_box box;
+    const double *a = surface_at(surface, corner[0]), *b = surface_at(surface, corner[1]);
+    const double *c = surface_at(surface, corner[2]);
+    for (int k = 0; k < 3; k++) {
+        double low = a[k] < b[k] ? a[k] : b[k], high = a[k] < b[k] ? b[k] : a[k];
+        box.lower[k] = low < c[k] ? low : c[k];
+        box.upper[k] = high > c[k] ? high : c[k];
+    }
+    return box;
+}
 
 #endif
