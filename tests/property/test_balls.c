@@ -346,8 +346,8 @@ static void test_paper_mode(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples), cmocka_unit_test(test_rays_that_coincide),
-        cmocka_unit_test(test_singular_values), cmocka_unit_test(test_flat_frames),
+        cmocka_unit_test(test_samples),           cmocka_unit_test(test_rays_that_coincide),
+        cmocka_unit_test(test_singular_values),   cmocka_unit_test(test_flat_frames),
         cmocka_unit_test(test_lost_determinants), cmocka_unit_test(test_paper_mode)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
