@@ -104,7 +104,7 @@ static void test_samples(void **state) {
         if (starg_sample_at(i)->scene)
             continue;
         const char *name = starg_sample_at(i)->name;
-        starg_mesh *mesh = test_sample_mesh(context, name, 250);
+        starg_mesh *mesh = test_sample_mesh(context, name, 500);
         check_mesh(context, name, mesh, 2);
         starg_mesh_free(mesh);
     }
