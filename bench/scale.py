@@ -3,12 +3,13 @@
 """Seconds of each stage against model size and number of threads.
 
 usage: scale.py STARGUARD [--commands NAME,...] [--sample NAME] [--sizes N,N,...]
-                [--threads N,N,...] [--at N] [--results FILE] [--svg FOLDER]
+                [--threads N,N,...] [--at N] [--results FILE] [--svg FOLDER] [--processor]
 
 For samples of the given sizes: seconds of each stage of `check`, `guard` (99 % of the area) and
 `decompose` (tetrahedra, the starts, and no search), processor seconds of the whole command, and of
 `verify` of the guards, peak memory, and the slope of log seconds over log size between the largest
-sizes. Processor seconds hardly depend on what else the machine does. Then, at one size, the same for each number of threads.
+sizes. Processor seconds depend less on what else the machine does: --processor shows these alone.
+Then, at one size, the same for each number of threads.
 Tables are Markdown; FOLDER gets a log-log plot for each command. Finished runs are stored in FILE and
 not repeated.
 """
@@ -86,7 +87,11 @@ class Results:
             if self.options.results:
                 with open(self.options.results, "a", encoding="utf-8") as file:
                     file.write(json.dumps(self.runs[key]) + "\n")
-        return self.runs[key]
+        found = self.runs[key]
+        if self.options.processor:
+            seconds = {n: s for n, s in found["seconds"].items() if n.endswith("processor")}
+            found = dict(found, seconds=seconds)
+        return found
 
 
 def stages_of(runs):
@@ -135,7 +140,7 @@ def print_table(head, columns, runs, last, sizes=None):
 def draw(path, title, sizes, runs):
     """Log-log plot: a line for each stage, labelled at its end."""
     width, height, left, right, top, bottom = 860, 520, 60, 190, 46, 44
-    low, high = math.log10(LEAST), math.log10(max(r["seconds"]["total"] for r in runs)) + 0.1
+    low, high = math.log10(LEAST), math.log10(max(max(r["seconds"].values()) for r in runs)) + 0.1
     first, last = math.log10(sizes[0]), math.log10(sizes[-1])
 
     def at(size, seconds):
@@ -158,12 +163,12 @@ def draw(path, title, sizes, runs):
                    f'{size:,}</text>')
     ends = []
     for stage, colour in zip(stages_of(runs), COLOURS * 2):
-        if stage == "total":
+        if stage in ("total", "processor"):
             colour = "#111"
         line = [at(n, r["seconds"][stage]) for n, r in zip(sizes, runs)
                 if r["seconds"].get(stage, 0) >= LEAST]
         out.append('<polyline fill="none" stroke-width="%s" stroke="%s" points="%s"/>' % (
-            3 if stage == "total" else 1.8, colour, " ".join(f"{x:.1f},{y:.1f}" for x, y in line)))
+            3 if colour == "#111" else 1.8, colour, " ".join(f"{x:.1f},{y:.1f}" for x, y in line)))
         ends.append([line[-1][1], stage, colour])
     ends.sort()
     for i in range(1, len(ends)):  # keep labels apart
@@ -190,6 +195,7 @@ def main():
     parser.add_argument("--at", type=int, default=100000, help="size for the table of threads")
     parser.add_argument("--results")
     parser.add_argument("--svg")
+    parser.add_argument("--processor", action="store_true")
     options = parser.parse_args()
     results = Results(options)
     for command in options.commands:
@@ -197,8 +203,9 @@ def main():
         print_table(f"`{command}`, s", [f"{n:,}" for n in options.sizes], runs, "slope",
                     options.sizes)
         if options.svg:
+            shown = "processor seconds" if options.processor else "seconds of each stage"
             draw(os.path.join(options.svg, f"scale_{command}.svg"),
-                 f"starguard {command}: seconds of each stage by vertices", options.sizes, runs)
+                 f"starguard {command}: {shown} by vertices", options.sizes, runs)
     for command in options.commands:
         runs = [results.get(command, options.at, count) for count in options.threads]
         print_table(f"`{command}`, {options.at:,} vertices", [f"{n} thread" + "s" * (n > 1) for n in options.threads],
