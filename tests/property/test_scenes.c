@@ -192,7 +192,7 @@ static void make_view(const scene *s, uint64_t seed, view *v) {
     if (starg_rng_below(&rng, 2) == 0)
         o->range = 1 + 0.5 * (double)starg_rng_below(&rng, 6);
     if (starg_rng_below(&rng, 2) == 0)
-        o->near = 0.5 * (double)(1 + starg_rng_below(&rng, 2));
+        o->near = fmin(0.5 * (double)(1 + starg_rng_below(&rng, 2)), o->range - 0.5);
     if (starg_rng_below(&rng, 2) == 0)
         o->incidence = angles[starg_rng_below(&rng, 3)];
     if (kind == 1)
