@@ -11,8 +11,9 @@
  * blocks [p, q) among those listed in the cells that may contain q. The same holds for a face:
  * whatever enters the tetrahedron (p, face) is listed in a cell that the face may meet.
  *
- * No triangle is omitted for facing away, being hidden or being far. Cost per point: about O(n log
- * n) to list, then a short list for each vertex. */
+ * No triangle is omitted for facing away or being hidden. One that is certainly farther than the
+ * view reaches is: what blocks [p, q) has a point nearer than q. Cost per point: a test of each
+ * triangle, about O(k log k) to list the k in reach, then a short list for each vertex. */
 #include "verify/sight.h"
 
 #include <math.h>
@@ -33,7 +34,9 @@ typedef struct strips {
 
 struct verify_sight {
     const verify_surface *surface;
-    uint32_t width;                /* cells in a row of a side */
+    uint32_t width;    /* cells in a row of a side */
+    uint32_t *reached; /* faces in reach */
+    size_t reached_count;
     STARG_ARRAY(listing) listings; /* in order of insertion */
     STARG_ARRAY(uint32_t) cells;   /* of the item placed last */
     size_t *start;                 /* of each cell's faces in `listed` */
@@ -51,18 +54,17 @@ starg_status verify_sight_create(const verify_surface *surface, verify_sight **o
     if (sight == NULL)
         return STARG_ERROR_MEMORY;
     sight->surface = surface;
-    sight->width = 1;
-    for (int level = 0; level < MAX_LEVELS; level++)
-        if ((size_t)SIDES * sight->width * sight->width <= surface->face_count)
-            sight->width *= 2;
-    size_t cell_count = (size_t)SIDES * sight->width * sight->width;
+    size_t cell_count = SIDES;
+    while (cell_count <= surface->face_count && cell_count < (size_t)SIDES << 2 * MAX_LEVELS)
+        cell_count *= 4;
     sight->start = starg_allocate(context, cell_count + 1, sizeof *sight->start);
+    sight->reached = starg_allocate(context, surface->face_count, sizeof *sight->reached);
     sight->sides = starg_allocate(context, surface->face_count, 1);
     sight->vertices = starg_allocate(context, surface->vertex_count, 1);
     sight->faces = starg_allocate(context, surface->face_count, 1);
     sight->used = starg_allocate_zero(context, surface->vertex_count, 1);
-    if (sight->start == NULL || sight->sides == NULL || sight->vertices == NULL ||
-        sight->faces == NULL || sight->used == NULL) {
+    if (sight->start == NULL || sight->reached == NULL || sight->sides == NULL ||
+        sight->vertices == NULL || sight->faces == NULL || sight->used == NULL) {
         verify_sight_free(sight);
         return STARG_ERROR_MEMORY;
     }
@@ -80,6 +82,7 @@ void verify_sight_free(verify_sight *sight) {
     STARG_ARRAY_FREE(context, &sight->cells);
     starg_release(context, sight->start);
     starg_release(context, sight->listed);
+    starg_release(context, sight->reached);
     starg_release(context, sight->sides);
     starg_release(context, sight->vertices);
     starg_release(context, sight->faces);
@@ -208,13 +211,41 @@ static starg_status find_cells(verify_sight *sight, const double p[3], const dou
 
 /* ---- the map ---- */
 
-static starg_status list_faces(verify_sight *sight, const double p[3]) {
-    starg_context *context = sight->surface->context;
-    sight->listings.count = 0;
+/* Is the box of the triangle, and so all of it, certainly farther from p than `range`? The margins
+ * are far above what roundings lose, and products that are too small for a double. */
+static bool out_of_reach(const double p[3], const double *const t[3], double range) {
+    double squared = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = fmin(t[0][k], fmin(t[1][k], t[2][k])),
+               high = fmax(t[0][k], fmax(t[1][k], t[2][k]));
+        double apart = fmax(0, fmax(low - p[k], p[k] - high));
+        squared += apart * apart;
+    }
+    return squared * (1 - 0x1p-40) > range * range + 0x1p-1000;
+}
+
+/* Finds sight->sides, and the faces within reach. There are about as many cells as such faces. */
+static void find_reached(verify_sight *sight, const double p[3], double range) {
+    sight->reached_count = 0;
     for (uint32_t f = 0; f < sight->surface->face_count; f++) {
         const double *t[3];
         verify_corners(sight->surface, f, t);
         sight->sides[f] = (int8_t)verify_side(t[0], t[1], t[2], p);
+        if (!out_of_reach(p, t, range))
+            sight->reached[sight->reached_count++] = f;
+    }
+    sight->width = 1;
+    for (int level = 0; level < MAX_LEVELS; level++)
+        if ((size_t)SIDES * sight->width * sight->width <= sight->reached_count)
+            sight->width *= 2;
+}
+
+static starg_status list_faces(verify_sight *sight, const double p[3]) {
+    starg_context *context = sight->surface->context;
+    sight->listings.count = 0;
+    for (size_t n = 0; n < sight->reached_count; n++) {
+        const double *t[3];
+        verify_corners(sight->surface, sight->reached[n], t);
         starg_status status = find_cells(sight, p, t, 3);
         if (status != STARG_OK)
             return status;
@@ -228,7 +259,8 @@ static starg_status list_faces(verify_sight *sight, const double p[3]) {
             sight->listings.capacity = 2 * count;
         }
         for (size_t i = 0; i < sight->cells.count; i++)
-            sight->listings.data[sight->listings.count++] = (listing){sight->cells.data[i], f};
+            sight->listings.data[sight->listings.count++] =
+                (listing){sight->cells.data[i], sight->reached[n]};
     }
     return STARG_OK;
 }
@@ -340,6 +372,7 @@ static void add_backs(verify_sight *sight) {
 starg_status verify_look(verify_sight *sight, const double p[3], const verify_view *view,
                          const uint8_t **vertices, const uint8_t **faces) {
     starg_status status = STARG_OK;
+    find_reached(sight, p, view->range);
     STARG_TRY(list_faces(sight, p));
     STARG_TRY(sort_listings(sight));
     STARG_TRY(look_at_vertices(sight, p, view));

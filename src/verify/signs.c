@@ -84,7 +84,13 @@ int verify_turn(const double a[3], const double b[3], const double c[3], int axi
 /* Sign of radius - |p - q|. */
 static int compare_radius(const double p[3], const double q[3], double radius) {
     if (radius >= 1e101)
-        return 1;  /* farther than any two points below 1e100 */
+        return 1; /* farther than any two points below 1e100 */
+    double squared = 0, limit = radius * radius;
+    for (int k = 0; k < 3; k++)
+        squared += (p[k] - q[k]) * (p[k] - q[k]);
+    double bound = ROUNDING * (squared + limit) + UNDERFLOW;
+    if (fabs(limit - squared) > bound)
+        return limit > squared ? 1 : -1;
     exact_sum sum; /* r^2 - sum of (p - q)^2 */
     exact_sum_clear(&sum);
     exact_sum_add(&sum, radius, radius, 1);

@@ -281,25 +281,57 @@ static void test_turning_and_winding(void **state) {
     test_context_free(context);
 }
 
-static void compare_sight(const model *m, const double p[3], starg_face_rule rule,
-                          verify_sight *sight) {
+/* Takes away what is farther from p than the range. */
+static void in_range(const shape *s, const double p[3], double range, bool *vertices, bool *faces) {
+    if (isinf(range))
+        return;
+    for (size_t f = 0; f < s->face_count; f++)
+        for (size_t i = 0; i < 3; i++) {
+            const double *q = s->vertices + 3 * (size_t)s->faces[3 * f + i];
+            faces[f] = faces[f] && oracle_compare_distance(p, q, range) <= 0;
+        }
+    for (size_t v = 0; v < s->vertex_count; v++)
+        vertices[v] = vertices[v] && oracle_compare_distance(p, s->vertices + 3 * v, range) <= 0;
+}
+
+/* Compares what a view holds with what is seen from p however far, by brute force. */
+static void compare_view(const model *m, const double p[3], const verify_view *view,
+                         const bool *all_vertices, const bool *all_faces, verify_sight *sight) {
     const shape *s = &m->turned;
     bool *vertices = calloc(s->vertex_count, sizeof *vertices);
     bool *faces = calloc(s->face_count, sizeof *faces);
     const uint8_t *found_vertices, *found_faces;
+    memcpy(vertices, all_vertices, s->vertex_count * sizeof *vertices);
+    memcpy(faces, all_faces, s->face_count * sizeof *faces);
+    in_range(s, p, view->range, vertices, faces);
+    assert_int_equal(verify_look(sight, p, view, &found_vertices, &found_faces), STARG_OK);
+    for (size_t v = 0; v < s->vertex_count; v++)
+        if (found_vertices[v] != vertices[v])
+            fail_msg("%s from (%a, %a, %a), range %a: vertex %zu, expected %d", m->name, p[0], p[1],
+                     p[2], view->range, v, vertices[v]);
+    for (size_t f = 0; f < s->face_count; f++)
+        if (found_faces[f] != faces[f])
+            fail_msg("%s from (%a, %a, %a), range %a: face %zu, rule %d, expected %d", m->name,
+                     p[0], p[1], p[2], view->range, f, (int)view->rule, faces[f]);
+    free(vertices);
+    free(faces);
+}
+
+/* Any range, then as far as some vertices are: what hides them may be hardly nearer. */
+static void compare_sight(const model *m, const double p[3], starg_face_rule rule,
+                          verify_sight *sight) {
+    enum { RANGES = 20 };
+    const shape *s = &m->turned;
+    bool *vertices = calloc(s->vertex_count, sizeof *vertices);
+    bool *faces = calloc(s->face_count, sizeof *faces);
     visibility_oracle_vertices(s->vertices, s->vertex_count, s->faces, s->face_count, p, vertices);
     visibility_oracle_faces(s->vertices, s->vertex_count, s->faces, s->face_count, p,
                             rule == STARG_FACES_WHOLE, faces);
-    const verify_view view = {.range = INFINITY, .rule = rule};
-    assert_int_equal(verify_look(sight, p, &view, &found_vertices, &found_faces), STARG_OK);
-    for (size_t v = 0; v < s->vertex_count; v++)
-        if (found_vertices[v] != vertices[v])
-            fail_msg("%s from (%a, %a, %a): vertex %zu, expected %d", m->name, p[0], p[1], p[2], v,
-                     vertices[v]);
-    for (size_t f = 0; f < s->face_count; f++)
-        if (found_faces[f] != faces[f])
-            fail_msg("%s from (%a, %a, %a): face %zu, rule %d, expected %d", m->name, p[0], p[1],
-                     p[2], f, (int)rule, faces[f]);
+    for (size_t r = 0; r < RANGES; r++) {
+        const double *q = s->vertices + 3 * (7919 * r % s->vertex_count);
+        double range = r == 0 ? INFINITY : hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+        compare_view(m, p, &(verify_view){.range = range, .rule = rule}, vertices, faces, sight);
+    }
     free(vertices);
     free(faces);
 }
@@ -354,18 +386,6 @@ static long double face_area(const shape *s, size_t face) {
         sum += n * n;
     }
     return sqrtl(sum) / 2;
-}
-
-static void in_range(const shape *s, const double p[3], double range, bool *vertices, bool *faces) {
-    if (isinf(range))
-        return;
-    for (size_t f = 0; f < s->face_count; f++)
-        for (size_t i = 0; i < 3; i++) {
-            const double *q = s->vertices + 3 * (size_t)s->faces[3 * f + i];
-            faces[f] = faces[f] && oracle_compare_distance(p, q, range) <= 0;
-        }
-    for (size_t v = 0; v < s->vertex_count; v++)
-        vertices[v] = vertices[v] && oracle_compare_distance(p, s->vertices + 3 * v, range) <= 0;
 }
 
 /* Fills in what follows from the positions and options, by brute force. */
