@@ -439,11 +439,11 @@ static void damage_shape(shape made, size_t rounds) {
 static void test_damaged(void **state) {
     (void)state;
     subject gallery = prove_sample("gallery", 500, 200000);
-    check_damaged(&gallery, test_rounds(DAMAGED / 100, DAMAGED));
+    check_damaged(&gallery, test_rounds(DAMAGED / 200, DAMAGED));
     subject_free(&gallery);
-    damage_shape(shape_columns(), test_rounds(DAMAGED / 10, DAMAGED));
+    damage_shape(shape_columns(), test_rounds(DAMAGED / 20, DAMAGED));
     for (uint64_t item = 1; item < 8; item++)
-        damage_shape(shape_heap(5, item), test_rounds(DAMAGED / 50, DAMAGED));
+        damage_shape(shape_heap(5, item), test_rounds(DAMAGED / 100, DAMAGED));
 }
 
 /* ---- conclusions from what leaves may see ---- */

@@ -118,7 +118,7 @@ static void test_samples(void **state) {
 
 static void test_shared(void **state) {
     (void)state;
-    const char *const names[] = {"table2/bunny_998.off", "table2/bimba_752.off", "solids/bumpy.off",
+    const char *const names[] = {"table2/bunny_998.off", "solids/bumpy.off",
                                  "solids/elephant_g3.off"};
     const char *data = test_shared_data();
     if (data == NULL)

@@ -437,8 +437,8 @@ static void members_differ(void **state) {
         families++;
         assert_int_equal(info->poses, 10);
         for (int member = 0; member < info->poses; member++) {
-            starg_mesh *mesh = make(context, info->name, member, 1000);
-            check_mesh(info, member, mesh, 1000, 0.1);
+            starg_mesh *mesh = make(context, info->name, member, 500);
+            check_mesh(info, member, mesh, 500, 0.1);
             proportions(mesh, measures[member]);
             starg_mesh_free(mesh);
             for (int other = 0; other < member; other++) {

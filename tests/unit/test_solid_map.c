@@ -148,7 +148,7 @@ static void test_few_pieces(void **state) {
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
-    starg_mesh *a = test_pose(context, "torus", 0, 1500), *b = test_pose(context, "torus", 1, 1500);
+    starg_mesh *a = test_pose(context, "torus", 0, 800), *b = test_pose(context, "torus", 1, 800);
     starg_solid_map *map;
     test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), NULL, &map));
     print_message("%zu pieces\n", map->piece_count);
