@@ -47,6 +47,18 @@ struct verify_sight {
     uint8_t *vertices, *faces, *used; /* used: vertices of faces */
 };
 
+static size_t count_cells(uint32_t width) {
+    return (size_t)SIDES * width * width;
+}
+
+/* The width for so many faces: there are about as many cells, and no fewer for more faces. */
+static uint32_t width_for(size_t face_count) {
+    uint32_t width = 1;
+    for (int level = 0; level < MAX_LEVELS && count_cells(width) <= face_count; level++)
+        width *= 2;
+    return width;
+}
+
 starg_status verify_sight_create(const verify_surface *surface, verify_sight **out) {
     starg_context *context = surface->context;
     verify_sight *sight = starg_allocate_zero(context, 1, sizeof *sight);
@@ -54,10 +66,8 @@ starg_status verify_sight_create(const verify_surface *surface, verify_sight **o
     if (sight == NULL)
         return STARG_ERROR_MEMORY;
     sight->surface = surface;
-    size_t cell_count = SIDES;
-    while (cell_count <= surface->face_count && cell_count < (size_t)SIDES << 2 * MAX_LEVELS)
-        cell_count *= 4;
-    sight->start = starg_allocate(context, cell_count + 1, sizeof *sight->start);
+    size_t most_cells = count_cells(width_for(surface->face_count));
+    sight->start = starg_allocate(context, most_cells + 1, sizeof *sight->start);
     sight->reached = starg_allocate(context, surface->face_count, sizeof *sight->reached);
     sight->sides = starg_allocate(context, surface->face_count, 1);
     sight->vertices = starg_allocate(context, surface->vertex_count, 1);
@@ -224,8 +234,8 @@ static bool out_of_reach(const double p[3], const double *const t[3], double ran
     return squared * (1 - 0x1p-40) > range * range + 0x1p-1000;
 }
 
-/* Finds sight->sides, and the faces within reach. There are about as many cells as such faces. */
-static void find_reached(verify_sight *sight, const double p[3], double range) {
+/* Sets the sides of all faces, the faces in reach, and the width for these. */
+static void survey(verify_sight *sight, const double p[3], double range) {
     sight->reached_count = 0;
     for (uint32_t f = 0; f < sight->surface->face_count; f++) {
         const double *t[3];
@@ -234,10 +244,7 @@ static void find_reached(verify_sight *sight, const double p[3], double range) {
         if (!out_of_reach(p, t, range))
             sight->reached[sight->reached_count++] = f;
     }
-    sight->width = 1;
-    for (int level = 0; level < MAX_LEVELS; level++)
-        if ((size_t)SIDES * sight->width * sight->width <= sight->reached_count)
-            sight->width *= 2;
+    sight->width = width_for(sight->reached_count);
 }
 
 static starg_status list_faces(verify_sight *sight, const double p[3]) {
@@ -268,7 +275,7 @@ static starg_status list_faces(verify_sight *sight, const double p[3]) {
 /* Counting sort of the listings by cell. */
 static starg_status sort_listings(verify_sight *sight) {
     starg_context *context = sight->surface->context;
-    size_t cell_count = (size_t)SIDES * sight->width * sight->width;
+    size_t cell_count = count_cells(sight->width);
     if (sight->listed_capacity < sight->listings.capacity) {
         starg_release(context, sight->listed);
         sight->listed_capacity = 0;
@@ -372,7 +379,7 @@ static void add_backs(verify_sight *sight) {
 starg_status verify_look(verify_sight *sight, const double p[3], const verify_view *view,
                          const uint8_t **vertices, const uint8_t **faces) {
     starg_status status = STARG_OK;
-    find_reached(sight, p, view->range);
+    survey(sight, p, view->range);
     STARG_TRY(list_faces(sight, p));
     STARG_TRY(sort_listings(sight));
     STARG_TRY(look_at_vertices(sight, p, view));
