@@ -351,7 +351,7 @@ static void lazy_columns(void **state) {
     (void)state;
     size_t widest = 0;
     starg_context *context = test_context(1);
-    for (uint64_t item = 0; item < 8; item++) {
+    for (uint64_t item = 0; item < test_rounds(8, 20); item++) {
         starg_rng rng = starg_rng_make(1, 9, item);
         cover_run run = {.context = context, .max_nodes = 100000};
         cover_instance instance;
@@ -460,7 +460,7 @@ static void set_weights(starg_rng *rng, bool extreme, cover_instance *instance) 
 static void many_columns(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    for (uint64_t item = 0; item < 8; item++) {
+    for (uint64_t item = 0; item < test_rounds(8, 20); item++) {
         starg_rng rng = starg_rng_make(1, 13, item);
         cover_run run = {.context = context};
         cover_instance instance;

@@ -119,12 +119,12 @@ static void test_samples(void **state) {
 static void test_shared(void **state) {
     (void)state;
     const char *const names[] = {"table2/bunny_998.off", "solids/bumpy.off",
-                                 "solids/elephant_g3.off"};
+                                 "solids/elephant_g3.off", "table2/bimba_752.off"};
     const char *data = test_shared_data();
     if (data == NULL)
         skip();
     starg_context *context = test_context(2);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < test_rounds(3, sizeof names / sizeof *names); i++) {
         char path[4400];
         starg_mesh *mesh = NULL;
         snprintf(path, sizeof path, "%s/%s", data, names[i]);

@@ -294,7 +294,7 @@ static void test_memory(void **state) {
     (void)state;
     starg_status status = STARG_ERROR_MEMORY;
     size_t ration = 0;
-    for (; status != STARG_OK && ration < 200000; ration += 1 + ration / 3) {
+    for (; status != STARG_OK && ration < 200000; ration += 1 + ration / test_rounds(3, 8)) {
         size_t left = SIZE_MAX;
         starg_context *context = test_scarce_context(1, &left);
         starg_tetmesh *mesh = random_tetmesh(context, 5, 30, false, 1);

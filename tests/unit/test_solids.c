@@ -56,11 +56,11 @@ static void check(starg_context *context, starg_decomposition *const out[2], con
 
 static void test_poses(void **state) {
     (void)state;
-    static const char *const names[] = {"cat"};
+    static const char *const names[] = {"cat", "dog"};
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1), *many = test_context(3);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < test_rounds(1, sizeof names / sizeof *names); i++) {
         starg_mesh *a = test_pose(context, names[i], 0, VERTICES),
                    *b = test_pose(context, names[i], 1, VERTICES);
         starg_morph *one = test_morph(context, a, starg_mesh_vertices(b), STARG_MORPH_STAR);
