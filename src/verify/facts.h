@@ -33,6 +33,24 @@ static inline bool verify_targets_vertices(const verify_facts *known) {
     return known->guards->options.visibility.target == STARG_TARGET_VERTICES;
 }
 
+/* Relative; for lengths, areas and fractions. */
+#define VERIFY_TOLERANCE 1e-9
+
+/* `known` has guards and surface, the rest is 0. Errors: MEMORY, CANCELLED, TIME. */
+starg_status verify_facts_find(starg_context *context, verify_facts *known);
+void verify_facts_free(starg_context *context, verify_facts *known);
+
+static inline double verify_fraction(double part, double all) {
+    return all > 0 ? part / all : 0;
+}
+
+/* Elements that were to be seen. */
+typedef struct verify_target {
+    const char *name;
+    size_t all, covered, coverable; /* the last as claimed */
+} verify_target;
+verify_target verify_target_of(const verify_facts *known);
+
 /* Does the space restrict guards to a part of the free space? */
 bool verify_space_is_narrow(const starg_space_options *space);
 
@@ -94,5 +112,11 @@ typedef struct verify_levels {
     bool named;  /* a guard is listed in its level and in all later ones */
 } verify_levels;
 verify_levels verify_check_levels(const verify_facts *known);
+
+/* The claims of a result, in their order (verify/guards_*.c). Errors: MEMORY, CANCELLED, TIME. */
+starg_status verify_claim_places(starg_verdict *verdict, const verify_facts *known);
+starg_status verify_claim_coverage(starg_verdict *verdict, const verify_facts *known);
+starg_status verify_claim_count(starg_verdict *verdict, const verify_facts *known,
+                                const starg_certificate *certificate);
 
 #endif

@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Claims about what all guards see together, and about what could be seen. The result does not have
+ * the candidates: that no other sees a face, or sees it often enough, is refuted by counterexamples
+ * only (verify/coverable.c, verify/redundancy.c). */
+#include <math.h>
+#include <stdio.h>
+
+#include "core/memory.h"
+#include "verify/claims.h"
+#include "verify/facts.h"
+
+static const char STAGE[] = "verify";
+
+/* ---- what is seen ---- */
+
+/* A list that should contain exactly the relevant unseen elements, ascending. */
+typedef struct unseen_list {
+    const char *name;
+    const uint32_t *listed;
+    size_t count, element_count;
+    const uint8_t *seen;
+    const uint8_t *relevant; /* NULL: all */
+} unseen_list;
+
+static bool must_be_listed(const unseen_list *list, size_t element) {
+    return !list->seen[element] && (list->relevant == NULL || list->relevant[element]);
+}
+
+static void claim_unseen(starg_verdict *verdict, const unseen_list *list) {
+    size_t missing = 0, extra = 0, next = 0, first_missing = 0, first_extra = 0;
+    bool ascending = true;
+    for (size_t i = 0; i < list->count; i++) {
+        ascending = ascending && list->listed[i] < list->element_count &&
+                    (i == 0 || list->listed[i - 1] < list->listed[i]);
+    }
+    if (!ascending) {
+        verify_claim(verdict, false,
+                     "%s that no guard sees: the list is not ascending, or names "
+                     "one that does not exist",
+                     list->name);
+        return;
+    }
+    for (size_t element = 0; element < list->element_count; element++) {
+        bool listed = next < list->count && list->listed[next] == element;
+        bool expected = must_be_listed(list, element);
+        next += listed;
+        if (expected && !listed && missing++ == 0)
+            first_missing = element;
+        if (listed && !expected && extra++ == 0)
+            first_extra = element;
+    }
+    char details[2][64] = {"", ""};
+    if (missing != 0)
+        snprintf(details[0], sizeof details[0], ": %zu more are not seen, first %zu", missing,
+                 first_missing);
+    if (extra != 0)
+        snprintf(details[1], sizeof details[1], ": %zu of them are seen, first %zu", extra,
+                 first_extra);
+    verify_claim(verdict, missing == 0 && extra == 0, "%zu %s are seen by no guard%s%s",
+                 list->count, list->name, details[0], details[1]);
+}
+
+static bool about_equal(double a, double b) {
+    return fabs(a - b) <= VERIFY_TOLERANCE * fmax(fabs(a), fabs(b));
+}
+
+static void claim_fraction(starg_verdict *verdict, const char *name, double claimed, double found) {
+    verify_claim(verdict, about_equal(claimed, found), "coverage by %s is %.17g (found: %.17g)",
+                 name, claimed, found);
+}
+
+static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    const verify_surface *surface = known->surface;
+    const unseen_list faces = {
+        "faces", guards->uncovered, guards->uncovered_count, surface->model_faces, known->face,
+        NULL};
+    claim_unseen(verdict, &faces);
+    claim_fraction(verdict, "faces", guards->coverage_faces,
+                   verify_fraction((double)known->covered_faces, (double)known->wanted_faces));
+    claim_fraction(verdict, "area", guards->coverage_area,
+                   verify_fraction(known->covered_area, known->total_area));
+    if (guards->options.visibility.target != STARG_TARGET_VERTICES)
+        return;
+    const unseen_list vertices = {"vertices",
+                                  guards->uncovered_vertices,
+                                  guards->uncovered_vertex_count,
+                                  surface->model_vertices,
+                                  known->vertex,
+                                  known->used};
+    claim_unseen(verdict, &vertices);
+    claim_fraction(verdict, "vertices", guards->coverage_vertices,
+                   verify_fraction((double)known->covered_vertices, (double)known->used_vertices));
+}
+
+/* The curve is what the first 1, 2, ... guards see; older files have none. */
+static starg_status claim_curve(starg_verdict *verdict, const verify_facts *known) {
+    starg_context *context = known->surface->context;
+    starg_status status = STARG_OK;
+    const starg_guards *guards = known->guards;
+    uint64_t *joined = NULL;
+    size_t sum = 0, wrong = 0;
+    double area = 0;
+    if (guards->curve_faces == NULL || guards->curve_area == NULL) {
+        verify_leave(verdict, "the curve of the first 1, 2, ... guards: the file has none");
+        return STARG_OK;
+    }
+    STARG_NEW_ZERO(context, STAGE, joined, known->faces->words);
+    for (size_t g = 0; g < guards->count; g++) {
+        for (size_t w = 0; w < known->faces->words; w++) {
+            uint64_t fresh = starg_bits_row(known->faces, g)[w] & ~joined[w];
+            joined[w] |= fresh;
+            STARG_FOR_BITS (bit, fresh) {
+                sum++;
+                area += known->area[64 * w + bit];
+            }
+        }
+        wrong += !about_equal(guards->curve_faces[g],
+                              verify_fraction((double)sum, (double)known->wanted_faces)) ||
+                 !about_equal(guards->curve_area[g], verify_fraction(area, known->total_area));
+    }
+    verify_claim(verdict, wrong == 0, "the curve tells what the first guards see (wrong for %zu)",
+                 wrong);
+done:
+    starg_release(context, joined);
+    return status;
+}
+
+static void claim_levels(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    if (guards->level_count == 0 && guards->levels == NULL)
+        return;
+    const verify_levels found = verify_check_levels(known);
+    verify_claim(
+        verdict, found.grow && found.kept && found.named,
+        "%zu levels grow up to the model%s, keep guards of the one before%s, and are those "
+        "of the guards%s",
+        guards->level_count, found.grow ? "" : " (no)", found.kept ? "" : " (no)",
+        found.named ? "" : " (no)");
+    if (guards->level_count == 0)
+        return;
+    verify_claim(verdict, found.inside, "the guards of levels are strictly inside of the model");
+    verify_leave(verdict, "what guards see of coarser levels: their meshes are not in the file");
+}
+
+/* ---- what could be seen ---- */
+
+/* The reason for not looking above the unseen faces; NULL: none. With a partial goal, the search
+ * for candidates may end before the last faces; the goal is then relative to everything. */
+static const char *reason_unchecked(const verify_facts *known) {
+    const starg_guard_options *o = &known->guards->options;
+    if (o->candidates == STARG_CANDIDATES_GIVEN)
+        return "the candidates were given, and are not in the file";
+    if (verify_space_is_narrow(&known->guards->space))
+        return "guards may stand in a part of the free space only";
+    if (known->guards->time_limited)
+        return "a time limit cut the search for candidates short";
+    double seen =
+        verify_targets_vertices(known)
+            ? verify_fraction((double)known->covered_vertices, (double)known->used_vertices)
+            : verify_fraction(known->covered_area, known->total_area);
+    if (o->coverage < 1 && o->redundancy < 2 && o->max_guards == 0 &&
+        seen >= o->coverage * (1 - 1e-6))
+        return "the part of all that was asked for is seen";
+    return NULL;
+}
+
+static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *known) {
+    verify_target goal = verify_target_of(known);
+    verify_claim(verdict, goal.covered <= goal.coverable && goal.coverable <= goal.all,
+                 "%zu of %zu %s can be seen (at least those %zu that are)", goal.coverable,
+                 goal.all, goal.name, goal.covered);
+    if (goal.coverable < goal.covered || goal.coverable >= goal.all)
+        return STARG_OK;
+    const char *excuse = reason_unchecked(known);
+    if (excuse != NULL) {
+        verify_leave(verdict, "that the other %zu %s cannot be seen: %s", goal.all - goal.coverable,
+                     goal.name, excuse);
+        return STARG_OK;
+    }
+    verify_coverable found;
+    size_t rest = goal.coverable - goal.covered;
+    starg_status status = verify_find_coverable(known, rest, &found);
+    if (status != STARG_OK)
+        return status;
+    if (found.proven > rest)
+        verify_claim(verdict, false,
+                     "%zu of %zu %s can be seen: more can, %zu of those that no guard sees, first "
+                     "%zu from (%.17g, %.17g, %.17g)",
+                     goal.coverable, goal.all, goal.name, found.proven, found.first, found.place[0],
+                     found.place[1], found.place[2]);
+    else
+        verify_leave(verdict,
+                     "that the other %zu %s cannot be seen: no point just above them was found "
+                     "that does",
+                     goal.all - goal.coverable, goal.name);
+    return STARG_OK;
+}
+
+static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    verify_lack found;
+    starg_status status = verify_find_lack(known, &found);
+    if (status != STARG_OK || found.lacking == 0)
+        return status;
+    const char *name = verify_target_of(known).name;
+    bool anywhere = !verify_space_is_narrow(&guards->space);
+    if (anywhere && 4 * found.meeting >= 3 * found.points && 2 * found.points > VERIFY_PLACES)
+        verify_claim(verdict, false,
+                     "what fewer than %u guards see, %zu %s, no other of %zu candidates sees: "
+                     "%zu of %zu points drawn inside see some",
+                     guards->options.redundancy, found.lacking, name, guards->candidate_count,
+                     found.meeting, found.points);
+    else
+        verify_leave(verdict,
+                     "that no other candidate sees the %zu %s that fewer than %u guards see",
+                     found.lacking, name, guards->options.redundancy);
+    return STARG_OK;
+}
+
+static void claim_baseline(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    if (!(guards->options.baseline > 0))
+        return;
+    size_t found = verify_count_paired(known);
+    verify_claim(verdict, guards->baseline_faces == found,
+                 "two guards that are %g degrees apart see %zu faces (found: %zu)",
+                 guards->options.baseline, guards->baseline_faces, found);
+    if (found < known->wanted_faces)
+        verify_leave(verdict, "that no two candidates so far apart see the other %zu faces",
+                     known->wanted_faces - found);
+}
+
+/* The least area that a number of faces that no guard sees can have: that number times the area of
+ * the smallest of them. */
+static double least_unseen_area(const verify_facts *known, size_t count) {
+    double smallest = INFINITY;
+    for (size_t f = 0; f < known->surface->face_count; f++)
+        if (!known->face[f])
+            smallest = fmin(smallest, known->area[f]);
+    return count != 0 && smallest < INFINITY ? (double)count * smallest : 0;
+}
+
+/* Guards without a limit on their number reach the requested coverage. Which unseen faces are
+ * coverable is unknown; the smallest possible area is compared with the claim. */
+static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guard_options *options = &known->guards->options;
+    verify_target goal = verify_target_of(known);
+    if (options->max_guards != 0 || goal.coverable < goal.covered)
+        return;
+    double reached, wanted;
+    size_t rest = goal.coverable - goal.covered;
+    if (options->coverage >= 1 || options->visibility.target == STARG_TARGET_VERTICES) {
+        reached = (double)goal.covered;
+        wanted = options->coverage * (double)goal.coverable;
+    } else {
+        reached = known->covered_area;
+        wanted = options->coverage * (known->covered_area + least_unseen_area(known, rest));
+    }
+    verify_claim(verdict, reached >= wanted * (1 - VERIFY_TOLERANCE),
+                 "guards see a fraction of at least %.17g of what can be seen (%zu of %zu %s)",
+                 options->coverage, goal.covered, goal.coverable, goal.name);
+}
+
+starg_status verify_claim_coverage(starg_verdict *verdict, const verify_facts *known) {
+    starg_status status = STARG_OK;
+    claim_coverage(verdict, known);
+    STARG_TRY(claim_curve(verdict, known));
+    claim_levels(verdict, known);
+    STARG_TRY(claim_coverable(verdict, known));
+    claim_goal(verdict, known);
+    STARG_TRY(claim_redundancy(verdict, known));
+    claim_baseline(verdict, known);
+done:
+    return status;
+}
