@@ -8,43 +8,54 @@
 #include "verify/signs.h"
 #include "verify/space.h"
 
+/* The guards that a claim does not hold for. */
+typedef struct exceptions {
+    size_t count, first;
+} exceptions;
+
+static exceptions find_exceptions(const verify_facts *known,
+                                  bool (*holds)(const verify_facts *known, size_t guard)) {
+    exceptions found = {0, 0};
+    for (size_t g = 0; g < known->guards->count; g++)
+        if (!holds(known, g) && found.count++ == 0)
+            found.first = g;
+    return found;
+}
+
+static bool is_inside(const verify_facts *known, size_t g) {
+    return known->inside[g];
+}
+
 static void claim_inside(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
-    size_t bad = 0, first = 0;
-    for (size_t g = guards->count; g-- > 0;)
-        if (!known->inside[g]) {
-            bad++;
-            first = g;
-        }
-    if (bad == 0) {
+    const exceptions bad = find_exceptions(known, is_inside);
+    if (bad.count == 0) {
         verify_claim(verdict, true, "all %zu guards are strictly inside", guards->count);
         return;
     }
-    const double *p = guards->positions + 3 * first;
+    const double *p = guards->positions + 3 * bad.first;
     verify_claim(verdict, false,
                  "all %zu guards are strictly inside: %zu are not, first guard %zu at "
                  "(%.17g, %.17g, %.17g)",
-                 guards->count, bad, first, p[0], p[1], p[2]);
+                 guards->count, bad.count, bad.first, p[0], p[1], p[2]);
+}
+
+static bool keeps_clearance(const verify_facts *known, size_t g) {
+    return known->distance[g] >= known->guards->options.clearance * (1 - VERIFY_TOLERANCE);
 }
 
 static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
-    const starg_guards *guards = known->guards;
-    double wanted = guards->options.clearance;
-    size_t bad = 0, first = 0;
+    double wanted = known->guards->options.clearance;
     if (!(wanted > 0))
         return;
-    for (size_t g = guards->count; g-- > 0;)
-        if (!(known->distance[g] >= wanted * (1 - VERIFY_TOLERANCE))) {
-            bad++;
-            first = g;
-        }
-    if (bad == 0)
+    const exceptions bad = find_exceptions(known, keeps_clearance);
+    if (bad.count == 0)
         verify_claim(verdict, true, "guards keep a clearance of %.17g", wanted);
     else
         verify_claim(verdict, false,
                      "guards keep a clearance of %.17g: %zu do not, first guard %zu at a distance "
                      "of %.17g",
-                     wanted, bad, first, known->distance[first]);
+                     wanted, bad.count, bad.first, known->distance[bad.first]);
 }
 
 static bool stands_within(const verify_facts *known, size_t g) {
@@ -62,22 +73,16 @@ static bool stands_within(const verify_facts *known, size_t g) {
 }
 
 static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
-    const starg_guards *guards = known->guards;
-    size_t bad = 0, first = 0;
-    if (!verify_space_is_narrow(&guards->space))
+    if (!verify_space_is_narrow(&known->guards->space))
         return;
-    for (size_t g = guards->count; g-- > 0;)
-        if (!stands_within(known, g)) {
-            bad++;
-            first = g;
-        }
-    if (bad == 0)
+    const exceptions bad = find_exceptions(known, stands_within);
+    if (bad.count == 0)
         verify_claim(verdict, true, "guards keep their distances from the model, and to their box");
     else
         verify_claim(verdict, false,
                      "guards keep their distances from the model, and to their box: %zu do not, "
                      "first guard %zu at a distance of %.17g",
-                     bad, first, known->standoff[first]);
+                     bad.count, bad.first, known->standoff[bad.first]);
 }
 
 /* Is the guard straight above a listed face, and near one? Lists are searched one by one. */
@@ -129,40 +134,34 @@ static starg_status claim_reached(starg_verdict *verdict, const verify_facts *kn
 }
 
 static void claim_faces_near(starg_verdict *verdict, const verify_facts *known) {
-    const starg_guards *guards = known->guards;
-    size_t bad = 0, first = 0;
-    if (guards->space.over_count == 0 && guards->space.mount_count == 0)
+    const starg_space_options *space = &known->guards->space;
+    if (space->over_count == 0 && space->mount_count == 0)
         return;
-    for (size_t g = guards->count; g-- > 0;)
-        if (!stands_by_faces(known, g)) {
-            bad++;
-            first = g;
-        }
-    if (bad == 0)
+    const exceptions bad = find_exceptions(known, stands_by_faces);
+    if (bad.count == 0)
         verify_claim(verdict, true,
                      "guards stand over, or hang near, the faces that they are bound to");
     else
         verify_claim(verdict, false,
                      "guards stand over, or hang near, the faces that they are bound to: %zu do "
                      "not, first guard %zu",
-                     bad, first);
+                     bad.count, bad.first);
+}
+
+static bool sees_as_claimed(const verify_facts *known, size_t g) {
+    return known->guards->seen_faces[g] == starg_bits_count(known->faces, g);
 }
 
 static void claim_seen(starg_verdict *verdict, const verify_facts *known) {
-    const starg_guards *guards = known->guards;
-    size_t bad = 0, first = 0;
-    for (size_t g = guards->count; g-- > 0;)
-        if (guards->seen_faces[g] != starg_bits_count(known->faces, g)) {
-            bad++;
-            first = g;
-        }
-    if (bad == 0)
+    const exceptions bad = find_exceptions(known, sees_as_claimed);
+    if (bad.count == 0)
         verify_claim(verdict, true, "each guard sees as many faces as claimed");
     else
         verify_claim(verdict, false,
                      "each guard sees as many faces as claimed: %zu do not, first guard %zu, "
                      "claimed %zu, found %zu",
-                     bad, first, guards->seen_faces[first], starg_bits_count(known->faces, first));
+                     bad.count, bad.first, known->guards->seen_faces[bad.first],
+                     starg_bits_count(known->faces, bad.first));
 }
 
 starg_status verify_claim_places(starg_verdict *verdict, const verify_facts *known) {
