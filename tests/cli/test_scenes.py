@@ -63,6 +63,13 @@ class Scenes(Case):
     def verified(self, model):
         self.run_text("verify", model, "g.json")
 
+    def refuses_place(self, model, result, place, claim):
+        """`verify` refutes the claim if the first guard stands at the place."""
+        result["guards"][0]["position"] = place
+        self.write("g.json", json.dumps(result))
+        out, _ = self.run_text("verify", model, "g.json", status=4)
+        self.assertIn(f"FAILED {claim}", out)
+
     def test_obstacle(self):
         """No guard stands in a crate that is an obstacle, and the crate hides what is behind it."""
         result = self.guards("room.off", "--obstacles", "crate.off")
@@ -113,6 +120,15 @@ class Scenes(Case):
             self.assertTrue(0.5 <= distance * (1 + 1e-9) and distance <= 2 * (1 + 1e-9))
         self.assertEqual(result["coverage"]["uncovered_faces"], [])
         self.verified("crate.off")
+        for gap in 0.4, 2.1:
+            self.refuses_place("crate.off", result, [CRATE[1][0] + gap, *CRATE[1][1:]],
+                               "guards keep their distances")
+
+    def test_within(self):
+        result = self.guards("room.off", "--within", "1,1,1,7,5,2")
+        self.verified("room.off")
+        for place in [0.9, 3, 1.5], [4, 3, 2.1]:
+            self.refuses_place("room.off", result, place, "guards keep their distances")
 
     def test_outside_with_ground(self):
         """What stands on the ground is not seen from below it."""
@@ -145,10 +161,7 @@ class Scenes(Case):
                              "0.3")
         self.assertIn("ok     guards can be reached", self.run_text("verify", "level.off", "g.json")[0])
         for place in [6, 3, 1], [1.5, 1.5, 1], [3, 3, 3.2]:
-            result["guards"][0]["position"] = place
-            self.write("g.json", json.dumps(result))
-            out, _ = self.run_text("verify", "level.off", "g.json", status=4)
-            self.assertIn("FAILED guards can be reached", out)
+            self.refuses_place("level.off", result, place, "guards can be reached")
 
     def test_targets(self):
         """What need not be seen costs no guards, and counts for nothing."""
@@ -276,9 +289,7 @@ class Scenes(Case):
     def test_forged(self):
         """A guard in the crate, and another crate, do not pass."""
         result = self.guards("room.off", "--obstacles", "crate.off")
-        result["guards"][0]["position"] = [4, 3, 0.7]
-        self.write("g.json", json.dumps(result))
-        self.run_text("verify", "room.off", "g.json", status=4)
+        self.refuses_place("room.off", result, [4, 3, 0.7], "all 2 guards are strictly inside")
         self.write("crate.off", off(box(*CRATE, 1)))
         _, err = self.run_text("verify", "room.off", "g.json", status=1)
         self.assertIn("obstacle 0", err)
@@ -295,10 +306,8 @@ class Scenes(Case):
         listed = ",".join(map(str, floor[:3])) + f",{floor[3]}-{floor[3]}"
         self.guards("room.off", "--over", listed, "--height", "0.5", "--up", "0,0,1")
         self.verified("room.off")
-        result["guards"][0]["position"][2] = 0.6
-        self.write("g.json", json.dumps(result))
-        out, _ = self.run_text("verify", "room.off", "g.json", status=4)
-        self.assertIn("bound to", out)
+        place = [*result["guards"][0]["position"][:2], 0.6]
+        self.refuses_place("room.off", result, place, "guards stand over")
 
     def test_mount(self):
         """Cameras hang below the ceiling at their clearance, and nowhere else."""
@@ -310,10 +319,8 @@ class Scenes(Case):
         for guard in result["guards"]:
             self.assertAlmostEqual(guard["position"][2], 2.8, 3)
         self.verified("room.off")
-        result["guards"][0]["position"][2] = 2
-        self.write("g.json", json.dumps(result))
-        out, _ = self.run_text("verify", "room.off", "g.json", status=4)
-        self.assertIn("bound to", out)
+        place = [*result["guards"][0]["position"][:2], 2]
+        self.refuses_place("room.off", result, place, "guards stand over")
 
     def test_names(self):
         """Faces by what the model's own file calls them: groups, materials, properties."""

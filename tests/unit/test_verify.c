@@ -635,6 +635,18 @@ static void ask_for_less(result *r, const shape *s) {
     r->guards.optimal = true;
 }
 
+static void raise_everywhere(result *r, const shape *s) {
+    (void)s;
+    r->guards.lower_bound_everywhere = r->guards.lower_bound + 1;
+    r->guards.optimal_everywhere = r->guards.lower_bound_everywhere == GUARDS;
+}
+
+static void call_fewest(result *r, const shape *s) {
+    (void)s;
+    r->guards.lower_bound_everywhere = r->guards.lower_bound;
+    r->guards.optimal_everywhere = true;
+}
+
 static void demand_clearance(result *r, const shape *s) {
     (void)s;
     r->guards.options.clearance = 0.9;
@@ -695,6 +707,11 @@ static void lower_area_bound(result *r, const shape *s) {
     r->guards.area_bound = r->guards.coverage_area * (1 - 1e-6);
 }
 
+static void lower_area_everywhere(result *r, const shape *s) {
+    (void)s;
+    r->guards.area_bound_everywhere = r->guards.coverage_area * (1 - 1e-6);
+}
+
 static void spoil_options(result *r, const shape *s) {
     (void)s;
     r->guards.options.visibility.range = NAN;
@@ -732,6 +749,8 @@ static const falsification FALSIFICATIONS[] = {
     {ask_for_less, "the lower bound", true},
     {forget_coverable, "can be seen: more can", true},
     {deny_coverable, "can be seen: more can", true},
+    {raise_everywhere, "anywhere", true},
+    {call_fewest, "called the fewest possible", true},
     {demand_clearance, "clearance", true},
     {lose_vertex, "the model has", true},
     {gain_face, "the model has", true},
@@ -742,6 +761,7 @@ static const falsification FALSIFICATIONS[] = {
     {exceed_guards, "are at most", true},
     {lose_candidates, "candidates", true},
     {lower_area_bound, "within its bound", true},
+    {lower_area_everywhere, "bound for guards anywhere", true},
     {spoil_options, "options make sense", false},
     {forget_guards, "there are guards", false},
 };
