@@ -586,7 +586,7 @@ static void shared_models(void **state) {
         starg_check *check = NULL;
         if (starg_mesh_read(context, row.path, &mesh) != STARG_OK)
             continue;
-        bool small = starg_mesh_face_count(mesh) <= test_rounds(3000, MOST_FACES);
+        bool small = starg_mesh_face_count(mesh) <= test_rounds(MOST_FACES / 2, MOST_FACES);
         if (small)
             test_ok(context, starg_mesh_check(context, mesh, &check));
         if (small && check->usable && count_of(check, STARG_FINDING_SELF_INTERSECTION) > 0) {
@@ -600,7 +600,7 @@ static void shared_models(void **state) {
     }
     fclose(readme);
     test_context_free(context);
-    assert_true(done >= 5);
+    assert_true(done >= test_rounds(3, 5));
 }
 
 int main(void) {
