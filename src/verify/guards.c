@@ -2,8 +2,6 @@
 /* Verification of a guards result: computes anew what each guard sees (verify/facts.h), then
  * compares the claims of the result with it, one by one. What can neither be shown nor refuted is
  * listed as not checked. */
-#include <math.h>
-
 #include "core/memory.h"
 #include "verify/claims.h"
 #include "verify/facts.h"

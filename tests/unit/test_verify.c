@@ -717,6 +717,11 @@ static void spoil_options(result *r, const shape *s) {
     r->guards.options.visibility.range = NAN;
 }
 
+static void look_behind(result *r, const shape *s) {
+    (void)s;
+    r->guards.options.visibility.near = -1;
+}
+
 static void forget_guards(result *r, const shape *s) {
     r->guards.count = 0;
     fill_in(r, s);
@@ -763,6 +768,7 @@ static const falsification FALSIFICATIONS[] = {
     {lower_area_bound, "within its bound", true},
     {lower_area_everywhere, "bound for guards anywhere", true},
     {spoil_options, "options make sense", false},
+    {look_behind, "options make sense", false},
     {forget_guards, "there are guards", false},
 };
 
