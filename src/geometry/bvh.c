@@ -276,49 +276,77 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
 typedef struct slab_segment {
     double origin[3], extent[3], inverse[3];
     bool flat[3]; /* the extent is zero or its inverse overflows */
+    bool any_flat;
 } slab_segment;
 
 static slab_segment slab_prepare(const double p[3], const double q[3]) {
-    slab_segment s;
+    slab_segment s = {.any_flat = false};
     for (int k = 0; k < 3; k++) {
         double d = q[k] - p[k];
         s.origin[k] = p[k];
         s.extent[k] = d;
         s.inverse[k] = d == 0 ? 0 : 1 / d;
         s.flat[k] = d == 0 || isinf(s.inverse[k]);
+        s.any_flat = s.any_flat || s.flat[k];
     }
     return s;
 }
 
-/* Conservative: true whenever the exact segment meets the box. Each bound has at most three
- * roundings, a relative error below 4 x 2^-53. */
-static bool slab_meets(const slab_segment *s, const bvh_box *box) {
+/* Does the box miss the segment along a flat axis? */
+static bool slab_misses_flat(const slab_segment *s, const bvh_box *box) {
+    for (int k = 0; k < 3; k++)
+        if (s->flat[k] && (box->lower[k] - s->origin[k] > fmax(s->extent[k], 0) ||
+                           box->upper[k] - s->origin[k] < fmin(s->extent[k], 0)))
+            return true;
+    return false;
+}
+
+/* Conservative: true whenever the exact segment meets the box, which it enters at *at. Each bound
+ * has at most three roundings, a relative error below 4 x 2^-53. */
+static inline bool slab_meets(const slab_segment *s, const bvh_box *box, double *at) {
     double enter = 0, leave = 1;
+    *at = 0;
+    if (s->any_flat && slab_misses_flat(s, box))
+        return false;
     for (int k = 0; k < 3; k++) {
-        double low = box->lower[k] - s->origin[k], high = box->upper[k] - s->origin[k];
-        if (s->flat[k]) {
-            if (low > fmax(s->extent[k], 0) || high < fmin(s->extent[k], 0))
-                return false;
-            continue;
-        }
-        double t0 = low * s->inverse[k], t1 = high * s->inverse[k];
+        double t0 = (box->lower[k] - s->origin[k]) * s->inverse[k];
+        double t1 = (box->upper[k] - s->origin[k]) * s->inverse[k];
         double near = t0 < t1 ? t0 : t1, far = t0 < t1 ? t1 : t0;
-        if (near > enter)
-            enter = near;
-        if (far < leave)
-            leave = far;
+        if (s->flat[k])
+            continue;
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
     }
+    *at = enter;
     return enter <= leave * (1 + 0x1p-48) + 0x1p-1000;
 }
 
-static bool slab_may_meet(void *user, const bvh_box *box) {
-    return slab_meets(user, box);
-}
-
+/* The nearer child first: most segments that are stopped are stopped near p. */
 bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
                        void *user) {
-    slab_segment segment = slab_prepare(p, q);
-    return bvh_query(tree, slab_may_meet, &segment, visit, user);
+    const slab_segment segment = slab_prepare(p, q);
+    const bvh_node *stack[STACK_SIZE];
+    stack[0] = &tree->nodes[0];
+    double at[2];
+    int depth = slab_meets(&segment, &tree->nodes[0].box, at);
+    while (depth > 0) {
+        const bvh_node *node = stack[--depth];
+        if (node->count == 0 && tree->triangle_count > LEAF_SIZE) {
+            const bvh_node *child = &tree->nodes[node->first];
+            bool meets[2] = {slab_meets(&segment, &child[0].box, &at[0]),
+                             slab_meets(&segment, &child[1].box, &at[1])};
+            int near = at[1] < at[0];
+            if (meets[1 - near])
+                stack[depth++] = &child[1 - near];
+            if (meets[near])
+                stack[depth++] = &child[near];
+            continue;
+        }
+        for (uint32_t i = node->first; i < node->first + node->count; i++)
+            if (!visit(user, i))
+                return false;
+    }
+    return true;
 }
 
 /* Squared distance from p to the segment a b. */
