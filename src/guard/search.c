@@ -39,13 +39,23 @@
 
 static const char STAGE[] = "search";
 
-enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 10, MANY_NODES = 300 };
+enum {
+    LEAST_BATCH = 32,
+    MOST_BATCH = 2048,
+    TRIES = 2,
+    FEW_NODES = 10,
+    MANY_NODES = 300,
+    CLOSINGS = 3
+};
 
 static const double ROUNDING = 1e-6;
 
 /* The more guards, the smaller are the parts of the space that tell them apart: leaves of a
  * sixteenth of the extent, shared among the guards, are small at first. */
 static const double FIRST_FINEST = 1.0 / 16;
+
+/* Of the budget for better guards, what is used before each closing. */
+static const double SHARES[CLOSINGS] = {0.3, 0.6, 1};
 
 /* ---- points ---- */
 
@@ -282,14 +292,19 @@ done:
 
 typedef starg_status round_run(search *s, row_list *list);
 
-static starg_status run_rounds(search *s, round_run *round, uint64_t work) {
+static bool goes_on(const search *s) {
+    return s->bound < s->count && !s->ended && s->scene.work < s->budget &&
+           !starg_time_is_over(context_of(s));
+}
+
+/* Until a share of the work that was planned at `begun` is done. */
+static starg_status run_rounds(search *s, round_run *round, uint64_t begun, uint64_t work,
+                               double share) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    uint64_t begun = s->scene.work;
-    s->budget = begun + work;
+    s->budget = begun + (uint64_t)(share * (double)work);
     s->ended = false;
-    while (s->bound < s->count && !s->ended && s->scene.work < s->budget &&
-           !starg_time_is_over(context)) {
+    while (goes_on(s)) {
         row_list list = {0};
         starg_progress_step(context, s->scene.work - begun, work);
         STARG_TRY(starg_check_cancel(context, STAGE));
@@ -318,19 +333,38 @@ done:
     return status;
 }
 
+/* Rounds of local search, closed by integer programs. These find in the points of a few rounds what
+ * local search would need many for, so it begins anew from their guards. */
+static starg_status improve(search *s) {
+    starg_status status = STARG_OK;
+    uint64_t begun = s->scene.work, work = search_improve_work(s);
+    bool more = true;
+    for (int k = 0; k < CLOSINGS && more; k++) {
+        STARG_TRY(run_rounds(s, search_improve, begun, work, SHARES[k]));
+        size_t before = s->count;
+        STARG_TRY(search_close(s));
+        if (s->count < before) {
+            s->idle = 0;
+            s->ended = false;
+        }
+        s->budget = begun + work;
+        more = goes_on(s);
+    }
+    s->improve_work = s->scene.work;
+done:
+    return status;
+}
+
 static starg_status run(search *s, bool improves) {
     starg_status status = STARG_OK;
     const starg_guard_options *o = s->problem->options;
     s->nodes = FEW_NODES;
-    if (improves) {
-        STARG_TRY(run_rounds(s, search_improve, search_improve_work(s)));
-        STARG_TRY(search_close(s));
-        s->improve_work = s->scene.work;
-    }
+    if (improves)
+        STARG_TRY(improve(s));
     s->nodes = MANY_NODES;
     if (o->prove) {
         s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
-        STARG_TRY(run_rounds(s, prove_round, o->prove_work));
+        STARG_TRY(run_rounds(s, prove_round, s->scene.work, o->prove_work, 1));
         STARG_TRY(search_bound_points(s));
         STARG_TRY(prove_by_leaves(s));
     }

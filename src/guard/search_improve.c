@@ -7,22 +7,23 @@
  *      guards, or witnesses that these miss;
  *   3. faces that the fractional cover sees too little become witnesses;
  *   4. cells that may be worth more than 1 are split, with two new points in each part.
- * It ends when local search has failed PATIENCE times, or a third as often if the prices leave no
- * room for better guards, or with the budget. Finally integer programs over the points give a bound
- * for them and what local search has missed: over the witnesses if these are few; if that does not
- * finish, over all faces and the candidates that may be among fewer guards, extended by the most
- * valuable points. */
+ * The rounds end when local search has failed PATIENCE times, or a third as often if the prices
+ * leave no room for better guards, or with their share of the budget. Then integer programs over
+ * the points give a bound for them and what local search has missed: over the witnesses if these
+ * are few; if that does not finish, over all faces and the candidates that may be among fewer
+ * guards, extended by the most valuable points. guard/search.c repeats both: with many guards,
+ * these programs find more in the points of a few rounds than many rounds do. */
 #include <stdlib.h>
 
 #include "guard/search_parts.h"
 
-enum { TRIES = 2, PATIENCE = 8, HOPELESS = 3, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
+enum { TRIES = 2, PATIENCE = 12, HOPELESS = 3, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
 
 static const char STAGE[] = "search";
 
-/* Programs grow with the guards, and the cost of testing a point grows with the faces. */
+/* Programs grow with the guards, and their rows with the faces. */
 static uint64_t default_work(const search *s) {
-    return 400000 + 45 * s->pool->columns + 30000 * s->count + 8 * s->count * s->pool->columns;
+    return 3000000 + 30000 * s->count + 8 * s->count * s->pool->columns;
 }
 
 uint64_t search_improve_work(const search *s) {
