@@ -45,7 +45,8 @@ enum {
     TRIES = 2,
     FEW_NODES = 10,
     MANY_NODES = 300,
-    CLOSINGS = 3
+    CLOSINGS = 3,
+    MANY_GUARDS = 12
 };
 
 static const double ROUNDING = 1e-6;
@@ -333,13 +334,13 @@ done:
     return status;
 }
 
-/* Rounds of local search, closed by integer programs. These find in the points of a few rounds what
- * local search would need many for, so it begins anew from their guards. */
+/* Rounds of local search, closed by integer programs. With many guards, these find in the points of
+ * a few rounds what local search would need many for, so it begins anew from their guards. */
 static starg_status improve(search *s) {
     starg_status status = STARG_OK;
     uint64_t begun = s->scene.work, work = search_improve_work(s);
     bool more = true;
-    for (int k = 0; k < CLOSINGS && more; k++) {
+    for (int k = s->count < MANY_GUARDS ? CLOSINGS - 1 : 0; k < CLOSINGS && more; k++) {
         STARG_TRY(run_rounds(s, search_improve, begun, work, SHARES[k]));
         size_t before = s->count;
         STARG_TRY(search_close(s));

@@ -17,7 +17,7 @@
 
 #include "guard/search_parts.h"
 
-enum { TRIES = 2, PATIENCE = 12, HOPELESS = 3, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
+enum { TRIES = 2, PATIENCE = 9, HOPELESS = 3, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
 
 static const char STAGE[] = "search";
 
