@@ -68,7 +68,6 @@ static starg_status ask_again(search *s, bool *open) {
     starg_status status = STARG_OK;
     row_list list = {0};
     *open = true;
-    s->known = 0; /* it was a bound for fewer points */
     STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
     bool few = s->scene.witnesses.count <= MOST_ASKED_OF;
     for (int k = 0; k < (few ? ASKED : 1) && *open; k++) {

@@ -90,7 +90,8 @@ static inline witness_row all_witnesses(const search *s) {
 /* Do the prices leave room for fewer guards than there are? */
 bool search_has_room(const search *s);
 
-/* Sets `known`, the lower bound for the known points, by the prices. Errors: MEMORY. */
+/* Sets `known`, the lower bound for the known points, by the prices: what it was before, with fewer
+ * points, is forgotten. Errors: MEMORY. */
 starg_status search_bound_points(search *s);
 
 /* A round of looking for better guards, the budget of these rounds, and their end

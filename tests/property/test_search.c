@@ -11,6 +11,8 @@
 #include "core/rng.h"
 #include "geometry/vec3.h"
 #include "guard/cells.h"
+#include "guard/choose.h"
+#include "guard/stages.h"
 #include "models.h"
 #include "shapes.h"
 #include "starguard/sample.h"
@@ -51,6 +53,37 @@ static void sample_points(const starg_solid *solid, const starg_guards *guards, 
     }
 }
 
+/* What the first rows hold together. The caller frees it. */
+static uint64_t *union_of(const starg_bits *rows, size_t count) {
+    uint64_t *all = calloc(rows->words, sizeof *all);
+    assert_non_null(all);
+    for (size_t i = 0; i < count; i++)
+        for (size_t w = 0; w < rows->words; w++)
+            all[w] |= starg_bits_row(rows, i)[w];
+    return all;
+}
+
+/* Does no row that holds `column` hold one of `others` too? */
+static bool is_apart(const starg_bits *rows, size_t column, const size_t *others, size_t count) {
+    for (size_t i = 0; i < rows->rows; i++)
+        for (size_t k = 0; k < count && starg_bits_test(rows, i, column); k++)
+            if (starg_bits_test(rows, i, others[k]))
+                return false;
+    return true;
+}
+
+/* Are there more than `most` columns of which no row holds two? Then `most` rows cannot cover
+ * them. */
+static bool packs_more(const starg_bits *rows, const uint64_t *left, size_t most) {
+    size_t *packed = calloc(most + 1, sizeof *packed), count = 0;
+    assert_non_null(packed);
+    for (size_t j = 0; j < rows->columns && count <= most; j++)
+        if (starg_bit_test(left, j) && is_apart(rows, j, packed, count))
+            packed[count++] = j;
+    free(packed);
+    return count > most;
+}
+
 /* Do `most` rows cover all remaining columns? Tries the rows of the rarest column. */
 static bool covers(const starg_bits *rows, const uint64_t *left, size_t most) {
     size_t rarest = SIZE_MAX, fewest = SIZE_MAX;
@@ -67,6 +100,8 @@ static bool covers(const starg_bits *rows, const uint64_t *left, size_t most) {
     }
     if (rarest == SIZE_MAX)
         return true;
+    if (most == 0 || packs_more(rows, left, most))
+        return false;
     uint64_t *rest = calloc(rows->words, sizeof *rest);
     assert_non_null(rest);
     bool found = false;
@@ -113,11 +148,7 @@ static void check_bound(starg_context *context, const starg_solid *solid,
     sample_points(solid, guards, item, points);
     view.engine = STARG_VISIBILITY_BVH;
     test_ok(context, starg_visibility(context, solid, points, SAMPLE, &view, &rows));
-    uint64_t *seen = calloc(rows->words, sizeof *seen);
-    assert_non_null(seen);
-    for (size_t i = 0; i < guards->count; i++)
-        for (size_t w = 0; w < rows->words; w++)
-            seen[w] |= starg_bits_row(rows, i)[w];
+    uint64_t *seen = union_of(rows, guards->count);
     keep_largest(rows);
     assert_true(guards->lower_bound_everywhere >= 1);
     assert_true(guards->lower_bound_everywhere <= guards->count);
@@ -536,11 +567,7 @@ static void test_given_candidates(void **state) {
         starg_guards *guards = test_guard(context, solid, &options);
         test_ok(context,
                 starg_visibility(context, solid, points, count, &options.visibility, &rows));
-        uint64_t *all = calloc(rows->words, sizeof *all);
-        assert_non_null(all);
-        for (size_t i = 0; i < count; i++)
-            for (size_t w = 0; w < rows->words; w++)
-                all[w] |= starg_bits_row(rows, i)[w];
+        uint64_t *all = union_of(rows, count);
         assert_int_equal(guards->candidate_count, count);
         assert_true(guards->optimal);
         assert_true(covers(rows, all, guards->count) && !covers(rows, all, guards->count - 1));
@@ -560,6 +587,92 @@ static void test_given_candidates(void **state) {
     test_context_free(context);
 }
 
+/* A comb: a corridor with a chamber at each end of each tooth, behind a corner. */
+static starg_solid *comb_solid(starg_context *context, uint64_t seed) {
+    enum { TEETH = 7, WIDTH = 3 * TEETH, HEIGHT = 9 };
+    char cells[WIDTH * HEIGHT];
+    starg_rng rng = starg_rng_make(6, 2, seed);
+    memset(cells, ' ', sizeof cells);
+    memset(cells + WIDTH * (HEIGHT / 2), '#', WIDTH);
+    for (int tooth = 0; tooth < TEETH; tooth++) {
+        int down = (int)starg_rng_below(&rng, 3) + 1, up = (int)starg_rng_below(&rng, 3) + 1;
+        for (int y = HEIGHT / 2 - down; y <= HEIGHT / 2 + up; y++)
+            cells[3 * tooth + WIDTH * y] = '#';
+        cells[3 * tooth + 1 + WIDTH * (HEIGHT / 2 - down)] = '#';
+        cells[3 * tooth + 1 + WIDTH * (HEIGHT / 2 + up)] = '#';
+    }
+    shape s = shape_cells(cells, WIDTH, HEIGHT, 1);
+    starg_mesh *mesh = test_mesh_of(context, &s);
+    starg_solid *solid = NULL;
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    starg_mesh_free(mesh);
+    shape_free(&s);
+    return solid;
+}
+
+/* A pool of random candidates, augmented, and the greedy choice of them. */
+static void choose_poorly(const guard_problem *problem, uint64_t seed, guard_pool *pool,
+                          guard_selection *selection) {
+    const choice how = {.method = STARG_COVER_GREEDY};
+    starg_context *context = problem->context;
+    candidate_points points = {0};
+    double lower[3], upper[3];
+    starg_rng rng = starg_rng_make(4, 4, seed);
+    starg_cover *cover = NULL;
+    starg_mesh_bounds(starg_solid_mesh(problem->solid), lower, upper);
+    while (candidates_count(&points) < 60) {
+        double p[3];
+        for (size_t k = 0; k < 3; k++)
+            p[k] = lower[k] + starg_rng_unit(&rng) * (upper[k] - lower[k]);
+        if (starg_solid_contains(problem->solid, p))
+            test_ok(context, candidates_push(context, &points, p, NULL));
+    }
+    test_ok(context, pool_create(context, problem->solid, problem->options, pool));
+    test_ok(context, pool_add(pool, &points));
+    test_ok(context, pool_augment(pool, &problem->weights));
+    test_ok(context, choose_candidates(pool, &problem->weights, &how, &cover));
+    test_ok(context, selection_of_cover(context, cover, &(guard_selection){0}, 0, selection));
+    starg_cover_free(cover);
+    candidates_free(context, &points);
+}
+
+/* The bound for candidates is one for those of the end, of which the search closes its rounds three
+ * times with so many guards. */
+static void test_last_candidates(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    size_t fewer = 0;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        starg_solid *solid = comb_solid(context, seed);
+        starg_guard_options options = proving(0);
+        guard_problem problem = {.context = context, .solid = solid, .options = &options};
+        guard_pool pool = {0};
+        guard_selection selection = {0};
+        search_record record = {0};
+        options.prove = false;
+        options.refine_lines = 3000000;
+        test_ok(context,
+                column_weights_create(context, solid, options.visibility.target, &problem.weights));
+        choose_poorly(&problem, seed, &pool, &selection);
+        size_t before = selection.chosen.count;
+        assert_true(before >= 12);
+        test_ok(context,
+                search_guards(&problem, &(guard_detail){0}, true, &pool, &selection, &record));
+        fewer += selection.chosen.count < before;
+        assert_in_range(selection.lower_bound, 1, selection.chosen.count);
+        keep_largest(pool.rows);
+        uint64_t *seen = union_of(pool.rows, pool.rows->rows);
+        assert_false(covers(pool.rows, seen, selection.lower_bound - 1));
+        free(seen);
+        selection_free(context, &selection);
+        pool_free(&pool);
+        column_weights_free(context, &problem.weights);
+        starg_solid_free(solid);
+    }
+    assert_true(fewer > 0);
+    test_context_free(context);
+}
+
 /* What cameras cannot do in all directions, they cannot do in one. */
 static void test_cone(void **state) {
     (void)state;
@@ -575,11 +688,7 @@ static void test_cone(void **state) {
     view.directions = guards->directions;
     test_ok(context,
             starg_visibility(context, solid, guards->positions, guards->count, &view, &seen_rows));
-    uint64_t *seen = calloc(rows->words, sizeof *seen);
-    assert_non_null(seen);
-    for (size_t i = 0; i < guards->count; i++)
-        for (size_t w = 0; w < rows->words; w++)
-            seen[w] |= starg_bits_row(seen_rows, i)[w];
+    uint64_t *seen = union_of(seen_rows, guards->count);
     assert_in_range(guards->lower_bound_everywhere, 2, guards->count);
     assert_false(covers(rows, seen, guards->lower_bound_everywhere - 1));
     free(seen);
@@ -603,6 +712,7 @@ int main(void) {
         cmocka_unit_test(test_part_of_the_area),
         cmocka_unit_test(test_several_guards_a_face),
         cmocka_unit_test(test_given_candidates),
+        cmocka_unit_test(test_last_candidates),
         cmocka_unit_test(test_cone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
