@@ -24,7 +24,7 @@ def measure(options, path, folder):
     told = run["told"]
     if run["status"] != 0:
         return 0, run["status"] in (2, 3), [f"status {run['status']}: {told['error']['message']}"]
-    verified = survey.verdict(options, path, report, grid)
+    verified = survey.verdict(options, path, report, grid)["verified"]
     balls = told["balls"]
     return len(told["pieces"]), verified == "yes", [
         len(told["pieces"]), f"{balls['mean']:.1f}", f"{balls['worst']:.2g}",

@@ -180,17 +180,31 @@ static void begin(program *p) {
     sum_rows(p, p->x, -1, p->t);
 }
 
+/* The witnesses of a row in ascending order; returns their number. */
+static size_t sort_ones(const program *p, size_t i, uint32_t out[MOST_WITNESSES]) {
+    witness_row ones = {{0}};
+    size_t count = 0;
+    for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
+        starg_bit_set(ones.bits, p->index[e]);
+    for (size_t k = 0; k < WITNESS_WORDS; k++)
+        STARG_FOR_BITS (bit, ones.bits[k])
+            out[count++] = (uint32_t)(64 * k + bit);
+    return count;
+}
+
 static void fill_matrix(program *p) {
     size_t m = p->m;
+    uint32_t ones[MOST_WITNESSES];
     memset(p->matrix, 0, m * m * sizeof *p->matrix);
     for (size_t i = 0; i < p->n; i++) {
         double d = p->x[i] / p->s[i];
-        for (size_t a = p->start[i]; a < p->start[i + 1]; a++) {
-            double *line = p->matrix + p->index[a] * m;
-            for (size_t b = p->start[i]; b < p->start[i + 1]; b++)
-                line[p->index[b]] += d; /* nothing reads it above the diagonal */
+        size_t count = sort_ones(p, i, ones);
+        for (size_t a = 0; a < count; a++) {
+            double *line = p->matrix + ones[a] * m;
+            for (size_t b = 0; b <= a; b++)
+                line[ones[b]] += d;
         }
-        p->work += (p->start[i + 1] - p->start[i]) * (p->start[i + 1] - p->start[i]) / 2;
+        p->work += count * count / 2;
     }
     for (size_t f = 0; f < m; f++)
         p->matrix[f * m + f] += p->t[f] / p->w[f];
