@@ -7,8 +7,9 @@ usage: stress.py STARGUARD [--first N] [--count N] [--effort N] [--keep FOLDER]
 Five kinds in turn. csg: two to four samples, turned, stretched and placed at random, some inside out, their union
 (`repair --union`), which makes the others holes. organic: a figure with waves in it. voxels: cubes of a grid, that meet in
 faces, edges and vertices. thin: a sample pressed flat, or pulled long, by up to a million. crossing: samples that run
-through one another as they are. A solid that `check` calls embedded must keep its surface; all must pass `verify`.
-Status 1 if one does not. FOLDER gets the models that fail.
+through one another as they are. What bounds no solid as it is (cubes that meet in an edge) is repaired first. A solid that
+`check` calls embedded must keep its surface; all must pass `verify`. Status 1 if one does not. FOLDER gets the models that
+fail.
 """
 import argparse
 import json
@@ -163,6 +164,19 @@ def is_embedded(report):
                                     for kind in ("self_intersections", "self_contacts", "degenerate_faces"))
 
 
+def check(options, model):
+    return json.loads(run(options, "check", model, "--json")[1])
+
+
+def make_usable(options, model, folder):
+    """What `check` says of the model, which is repaired if it bounds no solid."""
+    checked, repaired = check(options, model), os.path.join(folder, "repaired.off")
+    if not checked["usable"] and run(options, "repair", model, "-o", repaired)[0] == 0:
+        shutil.move(repaired, model)
+        checked = check(options, model)
+    return checked
+
+
 def trial(options, number, folder):
     """The kind, what went wrong or None, whether the surface is embedded, is kept; pieces."""
     rng = random.Random(number)
@@ -172,8 +186,7 @@ def trial(options, number, folder):
     if mesh is None:
         return kind, None, False, False, 0
     write(model, mesh)
-    status, told, _ = run(options, "check", model, "--json")
-    checked = json.loads(told)
+    checked = make_usable(options, model, folder)
     if not checked["usable"]:
         return kind, None, False, False, 0
     embedded = is_embedded(checked)

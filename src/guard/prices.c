@@ -18,6 +18,8 @@
 
 #include <math.h>
 
+#include "core/versions.h"
+
 static const char STAGE[] = "search";
 
 enum { MOST_STEPS = 60 };
@@ -214,6 +216,7 @@ static void fill_matrix(program *p) {
 
 /* Overwrites the lower half by the Cholesky factor L. False: rounding has made the matrix
  * indefinite. */
+STARG_SEVERAL_VERSIONS
 static bool factor(program *p) {
     size_t m = p->m;
     for (size_t i = 0; i < m; i++) {

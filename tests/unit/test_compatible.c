@@ -11,6 +11,7 @@
 #include "exact_oracle.h"
 #include "geometry/vec3.h"
 #include "star/strict/start/compatible.h"
+#include "star/strict/start/compatible_planes.h"
 #include "star/strict/start/region_growing.h"
 #include "star/strict/start/through.h"
 #include "tetra/tetmesh.h"
@@ -201,14 +202,13 @@ static void check_divided(starg_context *context, const starg_tetmesh *mesh,
 }
 
 /* Are all faces around a part seen from the guard's inner side? In rationals. */
-static void check_part(const starg_tetmesh *made, const uint32_t *labels, int part,
+static void check_part(const starg_tetmesh *made, const uint32_t *labels, uint32_t part,
                        const double *guard) {
     size_t count = 0;
     for (size_t face = 0; face < 4 * made->count; face++) {
         uint32_t u = made->neighbours[face];
         const double *p[3];
-        if (labels[face / 4] != THROUGH_PART + (uint32_t)part ||
-            (u != STARG_TETMESH_NONE && labels[u] == labels[face / 4]))
+        if (labels[face / 4] != part || (u != STARG_TETMESH_NONE && labels[u] == labels[face / 4]))
             continue;
         for (int k = 0; k < 3; k++)
             p[k] = tetmesh_corner(made, face / 4, TETMESH_FACE[face % 4][k]);
@@ -265,7 +265,7 @@ static bool check_plane(starg_context *context, const starg_tetmesh *mesh,
     for (int i = 0; i < 2; i++) {
         check_divided(context, cut.meshes[i], made[i]);
         for (int part = 0; part < 2 && found; part++)
-            check_part(made[i], made_labels, part, guards[part][i]);
+            check_part(made[i], made_labels, THROUGH_PART + (uint32_t)part, guards[part][i]);
         starg_tetmesh_free(made[i]);
     }
     starg_release(context, made_labels);
@@ -285,6 +285,77 @@ static void test_cuts(void **state) {
         assert_true(check_plane(context, mesh, image, false, seed));
         check_plane(context, mesh, image, true, seed);
     }
+    starg_tetmesh_free(mesh);
+    starg_tetmesh_free(image);
+    test_context_free(context);
+}
+
+/* ---- planes ---- */
+
+/* Parts between planes: in both places the tetrahedra are divided and filled as before, and each
+ * part is star-shaped about its guard. Returns their number. */
+static size_t check_planes(starg_context *context, const starg_tetmesh *mesh,
+                           const starg_tetmesh *image) {
+    const starg_tetmesh *const meshes[2] = {mesh, image};
+    starg_tetmesh *own[2];
+    grown_regions parts;
+    test_ok(context, compatible_planes(context, meshes, 0, own, &parts));
+    for (int i = 0; i < 2; i++) {
+        const double *guards = i == 0 ? parts.guards.data : parts.counterparts.data;
+        const starg_tetmesh *made = own[i] != NULL ? own[i] : meshes[i];
+        if (own[i] != NULL)
+            check_divided(context, meshes[i], own[i]);
+        for (uint32_t part = 0; part < parts.count; part++)
+            check_part(made, parts.labels, part, guards + 3 * (size_t)part);
+    }
+    if (own[0] != NULL)
+        assert_memory_equal(own[0]->tetrahedra, own[1]->tetrahedra,
+                            4 * own[0]->count * sizeof *own[0]->tetrahedra);
+    size_t count = parts.count;
+    grown_regions_free(context, &parts);
+    starg_tetmesh_free(own[0]);
+    starg_tetmesh_free(own[1]);
+    return count;
+}
+
+static void test_planes(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + 3 * seed, false, 1);
+        starg_tetmesh *image = seed % 4 == 0 ? shear(context, mesh) : shake(context, mesh, seed);
+        check_planes(context, mesh, image);
+        starg_tetmesh_free(mesh);
+        starg_tetmesh_free(image);
+    }
+    test_context_free(context);
+}
+
+/* Few parts between planes where many regions grow; no more pieces than either way alone. */
+static void test_planes_save(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_tetmesh *mesh = sample_tetmesh(context, "gallery", 1500), *image = bend(context, mesh);
+    starg_decomposition *whole[2], *cut[2];
+    grown_regions grown;
+    size_t parts = check_planes(context, mesh, image);
+    test_ok(context, compatible_decompose(context, mesh, image, false, whole));
+    test_ok(context, compatible_decompose(context, mesh, image, true, cut));
+    test_ok(context, grow_compatible_regions(context, mesh, image, &grown));
+    print_message("%zu regions, %zu parts, %zu pieces, %zu without cuts\n", grown.count, parts,
+                  cut[0]->piece_count, whole[0]->piece_count);
+    assert_true(2 * parts < grown.count);
+    assert_true(cut[0]->piece_count <= parts && cut[0]->piece_count <= whole[0]->piece_count);
+    for (int i = 0; i < 2; i++) {
+        decomposition_oracle_check(cut[i]);
+        decomposition_oracle_check_connected(cut[i]);
+        assert_int_equal(cut[i]->strictly_star, cut[i]->piece_count);
+        if (cut[i]->mesh->count > mesh->count)
+            check_divided(context, i == 0 ? mesh : image, cut[i]->mesh);
+    }
+    grown_regions_free(context, &grown);
+    free_both(context, whole);
+    free_both(context, cut);
     starg_tetmesh_free(mesh);
     starg_tetmesh_free(image);
     test_context_free(context);
@@ -318,8 +389,10 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_affine),
-                                       cmocka_unit_test(test_saves), cmocka_unit_test(test_cuts),
-                                       cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_random), cmocka_unit_test(test_affine),
+        cmocka_unit_test(test_saves),  cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_planes), cmocka_unit_test(test_planes_save),
+        cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

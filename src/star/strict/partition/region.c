@@ -166,8 +166,8 @@ static void forget(const partition *p, const uint32_t *pieces, size_t count, uin
         }
 }
 
-/* The rows in blocks; the last block is padded with rows that nothing violates. */
-static starg_status make_blocks(starg_context *context, region *r) {
+/* The last block is padded with rows that nothing violates. */
+starg_status region_make_blocks(starg_context *context, region *r) {
     starg_status status = STARG_OK;
     size_t rows = r->rows.count / ROW, blocks = (rows + SCAN_BLOCK - 1) / SCAN_BLOCK;
     r->blocks.count = 0;
@@ -197,7 +197,7 @@ starg_status region_gather_some(const partition *p, const uint32_t *pieces, size
         }
     scratch->work += 4 * out->triangles.count;
     forget(p, pieces, count, most, scratch);
-    STARG_TRY(make_blocks(p->context, out));
+    STARG_TRY(region_make_blocks(p->context, out));
 done:
     return status;
 }
@@ -313,7 +313,7 @@ starg_status region_clip(starg_context *context, const region *from, const doubl
         clip_triangle(&c, &from->triangles.data[i], &polygon);
         STARG_TRY(add_clipped(&c, &polygon, from->triangles.data[i].row));
     }
-    STARG_TRY(make_blocks(context, out));
+    STARG_TRY(region_make_blocks(context, out));
 done:
     return status;
 }

@@ -62,6 +62,9 @@ starg_status region_gather_some(const partition *p, const uint32_t *pieces, size
                                 uint32_t most, region_scratch *scratch, region *out);
 void region_free(starg_context *context, region *r);
 
+/* The blocks of the rows, after these were made. Errors: MEMORY. */
+starg_status region_make_blocks(starg_context *context, region *r);
+
 /* The part of a region above a plane, closed by it. Errors: MEMORY. */
 starg_status region_clip(starg_context *context, const region *from, const double normal[3],
                          double height, region *out);

@@ -1,23 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which of many half-spaces a point is least inside of: the loop that the search for cuts spends
- * its time in. Written so that compilers make vector code of it; on x86-64 there are versions for
- * several instruction sets, chosen when the program starts. None fuses multiplication and addition,
- * so all give the same bits. */
+ * its time in. Written so that compilers make vector code of it (core/versions.h). */
 #include "star/strict/search/scan.h"
 
 #include <math.h>
 
-#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
-#define SEVERAL_VERSIONS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define SEVERAL_VERSIONS
-#endif
+#include "core/versions.h"
 
 enum { LANES = 8 };
 
-/* Static: gcc gives an external function of several versions default visibility, whatever the
- * library hides. */
-SEVERAL_VERSIONS
+STARG_SEVERAL_VERSIONS
 static size_t scan(const double *block, const double *lowest, double bound, const double point[3],
                    double room) {
     const double *nx = block, *ny = nx + SCAN_BLOCK, *nz = ny + SCAN_BLOCK, *b = nz + SCAN_BLOCK;

@@ -5,14 +5,15 @@
  * Problem: the same tetrahedra lie in two places, positive in both. Label them so that each set is
  * strictly star-shaped in both places, about a guard in either, with few labels.
  *
- * Stages: regions grown about pairs of guards (region_growing.c); then two neighbours at a time
- * whose union has a kernel with an interior in both places become one, those that touch over the
- * largest area first, until no two can be joined. Then a random group of pieces that hang together
- * is given up, its tetrahedra are grown and joined anew, and the outcome stays if there are no more
- * pieces than before (ruin and recreate: Schrimpf et al. 2000), until that has long saved nothing.
- * Where tetrahedra may be cut, three and more pieces that hang together become two by a random
- * plane in one of the places (through.c), if the kernels allow it. At last every guard goes to the
- * middle of its kernel.
+ * Stages: regions grown about pairs of guards (region_growing.c); of these, two neighbours at a
+ * time whose union has a kernel with an interior in both places become one, those that touch over
+ * the largest area first, until no two can be joined. Then a random group of pieces that hang
+ * together is given up, its tetrahedra are grown and joined anew, and the outcome stays if there
+ * are no more pieces than before (ruin and recreate: Schrimpf et al. 2000), until that has long
+ * saved nothing. Where tetrahedra may be cut: several times parts between planes
+ * (compatible_planes.c), joined in the same way; they stay if they are fewer. Then three and more
+ * pieces that hang together become two by a random plane in one of the places (through.c), if the
+ * kernels allow it. At last every guard goes to the middle of its kernel.
  *
  * Invariants: after each stage every set is proven to be star-shaped in both, by exact signs.
  *
@@ -29,6 +30,7 @@
 #include "geometry/vec3.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
+#include "star/strict/start/compatible_planes.h"
 #include "star/strict/start/region_growing.h"
 #include "star/strict/start/through.h"
 #include "visibility/kernel.h"
@@ -41,6 +43,7 @@ enum {
     WORK_LEAST = 400000, /* tetrahedra of all groups                                        */
     WORK_EACH = 30,      /* and as many more for each tetrahedron that there is             */
     PASSES = 60,         /* as many looked at once take as long as one of a group           */
+    PLANE_STARTS = 3,    /* divisions by planes: the one of the fewest pieces stays          */
     CUT_MOST = 7,        /* pieces that become two at a time, from 3 on                     */
     CUT_TRIES = 8,       /* planes for a group                                              */
     CUT_IDLE = 250,      /* groups in a row that no plane divided: then no more             */
@@ -76,6 +79,12 @@ static void compatible_free(compatible *w) {
     for (int i = 0; i < 2; i++)
         starg_tetmesh_free(w->own[i]);
     grown_regions_free(w->context, &w->pieces);
+}
+
+static void swap(compatible *a, compatible *b) {
+    compatible former = *a;
+    *a = *b;
+    *b = former;
 }
 
 static starg_status list_pieces(compatible *w) {
@@ -350,11 +359,8 @@ static starg_status renew_groups(compatible *w) {
         STARG_TRY(replace_group(w, dropped, round, &next));
         work += group + w->meshes[0]->count / PASSES;
         idle = next.pieces.count < w->pieces.count ? 0 : idle + 1;
-        if (next.pieces.count <= w->pieces.count) {
-            compatible former = *w;
-            *w = next;
-            next = former;
-        }
+        if (next.pieces.count <= w->pieces.count)
+            swap(w, &next);
         starg_progress_step(context, work, most);
     }
 done:
@@ -494,9 +500,7 @@ static starg_status cut_group(compatible *w, uint64_t round, size_t *work, bool 
         STARG_TRY(divide_group(w, dropped, &rng, &cut, &next));
     *work += CUT_TRIES * tetrahedra + w->meshes[0]->count / 10;
     if (next.pieces.count > 0) {
-        compatible former = *w;
-        *w = next;
-        next = former;
+        swap(w, &next);
         *saved = true;
     }
 done:
@@ -545,17 +549,59 @@ done:
     return status;
 }
 
+static starg_status join_start(compatible *w) {
+    starg_status status = STARG_OK;
+    STARG_TRY(list_pieces(w));
+    STARG_TRY(join_all(w));
+    renumber(w);
+done:
+    return status;
+}
+
+/* Parts between planes, of several rounds the fewest. */
+static starg_status start_by_planes(const compatible *from, compatible *best) {
+    starg_status status = STARG_OK;
+    compatible next = {.context = from->context};
+    for (uint64_t round = 0; round < PLANE_STARTS; round++) {
+        compatible_free(&next);
+        next = (compatible){.context = from->context, .meshes = {from->meshes[0], from->meshes[1]}};
+        STARG_TRY(compatible_planes(from->context, from->meshes, round, next.own, &next.pieces));
+        for (int i = 0; i < 2; i++)
+            if (next.own[i] != NULL)
+                next.meshes[i] = next.own[i];
+        STARG_TRY(join_start(&next));
+        if (round == 0 || next.pieces.count < best->pieces.count)
+            swap(best, &next);
+    }
+done:
+    compatible_free(&next);
+    return status;
+}
+
+/* Regions that are grown or, where tetrahedra may be cut and these are fewer, parts between planes.
+ */
+static starg_status start(compatible *w, bool cut) {
+    starg_status status = STARG_OK;
+    compatible other = {.context = w->context};
+    STARG_TRY(grow_compatible_regions(w->context, w->meshes[0], w->meshes[1], &w->pieces));
+    STARG_TRY(join_start(w));
+    STARG_TRY(renew_groups(w));
+    if (cut && w->pieces.count > 1)
+        STARG_TRY(start_by_planes(w, &other));
+    if (other.pieces.count > 0 && other.pieces.count < w->pieces.count)
+        swap(w, &other);
+done:
+    compatible_free(&other);
+    return status;
+}
+
 starg_status compatible_decompose(starg_context *context, const starg_tetmesh *mesh,
                                   const starg_tetmesh *image, bool cut,
                                   starg_decomposition *out[2]) {
     starg_status status = STARG_OK;
     compatible w = {.context = context, .meshes = {mesh, image}};
     out[0] = out[1] = NULL;
-    STARG_TRY(grow_compatible_regions(context, mesh, image, &w.pieces));
-    STARG_TRY(list_pieces(&w));
-    STARG_TRY(join_all(&w));
-    renumber(&w);
-    STARG_TRY(renew_groups(&w));
+    STARG_TRY(start(&w, cut));
     if (cut)
         STARG_TRY(cut_groups(&w));
     STARG_TRY(center_guards(&w));

@@ -24,7 +24,7 @@
 
 static const char STAGE[] = "join";
 
-static const double NEAR = 0.2; /* of an edge: a cut so near its end goes through the end */
+static const double NEAR = 0.05; /* of an edge: a cut so near its end goes through the end */
 
 enum { PARTS_MOST = 32 }; /* of a tetrahedron */
 
@@ -251,16 +251,28 @@ done:
     return status;
 }
 
-starg_status through_find(through_cut *cut, double guards[2][2][3], bool *found) {
+starg_status through_place(through_cut *cut, bool *found) {
     starg_status status = STARG_OK;
-    *found = false;
+    bool below = false, above = false;
     STARG_TRY(move_onto_vertices(cut));
     STARG_TRY(list_edges(cut));
     STARG_TRY(place_points(cut));
+    for (size_t v = 0; v < cut->meshes[0]->vertex_count; v++) {
+        below = below || cut->levels[v] < 0;
+        above = above || cut->levels[v] > 0;
+    }
+done:
+    *found = below && above;
+    return status;
+}
+
+starg_status through_find(through_cut *cut, double guards[2][2][3], bool *found) {
+    starg_status status = STARG_OK;
+    STARG_TRY(through_place(cut, found));
+    if (!*found)
+        goto done;
+    *found = false;
     STARG_TRY(list_faces(cut));
-    for (int part = 0; part < 2; part++)
-        if (cut->faces[part].count == 0)
-            goto done;
     for (int i = 0; i < 4; i++) {
         int part = i / 2, place = i % 2;
         const kernel_faces surface = {cut->places[place].data, cut->faces[part].data,

@@ -20,13 +20,17 @@ typedef struct through_cut {
 
 void through_free(through_cut *cut);
 
-/* Moves the cut onto vertices that it passes near, finds where it crosses edges, and guards of both
- * parts in both places: guards[part][place]. *found: there are any. Errors: MEMORY, CANCELLED. */
+/* Moves the cut onto vertices that it passes near, and finds where it crosses edges. *found: there
+ * is something on either side. Errors: MEMORY. */
+starg_status through_place(through_cut *cut, bool *found);
+
+/* The same, and guards of both parts in both places: guards[part][place]. *found: there are any.
+ * Errors: MEMORY, CANCELLED. */
 starg_status through_find(through_cut *cut, double guards[2][2][3], bool *found);
 
-/* Divides the tetrahedra, and those beside them that have a common edge. `labels` has one for each;
- * those of the parts become THROUGH_PART + part. *good: all are positive in both places, exactly;
- * else there is no result. Errors: MEMORY, CANCELLED. */
+/* After either: divides the tetrahedra, and those beside them that have a common edge. `labels` has
+ * one for each; those of the parts become THROUGH_PART + part. *good: all are positive in both
+ * places, exactly; else there is no result. Errors: MEMORY, CANCELLED. */
 #define THROUGH_PART (UINT32_MAX - 2)
 starg_status through_divide(const through_cut *cut, const uint32_t *labels, starg_tetmesh *out[2],
                             uint32_t **out_labels, bool *good);
