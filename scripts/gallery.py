@@ -10,6 +10,7 @@ from the same run, so that they agree. With NAMEs only those are made anew.
 import html
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -134,6 +135,8 @@ def sections_of_page(path):
 
 
 def main(program="build/starguard", *names):
+    if shutil.which("convert") is None:
+        sys.exit("gallery.py: trims pictures by ImageMagick; install it (apt-get install imagemagick)")
     program = os.path.abspath(program)
     path = os.path.join(ROOT, "docs", "gallery.md")
     for row in ENTRIES:

@@ -51,9 +51,23 @@ export class Stage {
         this.renderer.setPixelRatio(ratio);
         this.renderer.setSize(width, height, false);
         shared.pixels.value = ratio;
+        const before = this.reach();
         this.camera.aspect = width / this.sides / height;
         this.camera.updateProjectionMatrix();
+        this.moveOut(this.reach() / before);
         this.draw(); // at once: a resized canvas is empty
+    }
+
+    /** From how many radii away a ball fills the view. */
+    reach() {
+        const narrower = Math.min(this.camera.aspect, 1);
+        return 1 / Math.sin(Math.atan(Math.tan((VIEW_ANGLE * Math.PI) / 360) * narrower));
+    }
+
+    /** The camera moves to so many times its distance: what was in view stays so. */
+    moveOut(factor) {
+        const { target } = this.controls;
+        this.camera.position.sub(target).multiplyScalar(factor).add(target);
     }
 
     /** Draws in the next frame, once for any number of requests. */
@@ -94,9 +108,7 @@ export class Stage {
 
     /** Shows all of a ball from the initial direction. */
     fit(ball, keepDirection = false) {
-        const aspect = Math.min(this.camera.aspect, 1);
-        const half = Math.atan(Math.tan((VIEW_ANGLE * Math.PI) / 360) * aspect);
-        const distance = (ball.radius * 1.02) / Math.sin(half);
+        const distance = ball.radius * 1.02 * this.reach();
         const from = keepDirection
             ? this.camera.position.clone().sub(this.controls.target).normalize()
             : DIRECTION.clone().applyQuaternion(this.turnOfUp());

@@ -4,6 +4,7 @@
 #ifndef STARG_CORE_RNG_H
 #define STARG_CORE_RNG_H
 
+#include <math.h>
 #include <stdint.h>
 
 #include "core/int128.h"
@@ -37,6 +38,15 @@ static inline double starg_rng_unit(starg_rng *rng) {
 /* Uniform in [0, bound); bound > 0. The bias is below bound / 2^64. */
 static inline uint64_t starg_rng_below(starg_rng *rng, uint64_t bound) {
     return (uint64_t)(((starg_uint128)starg_rng_next(rng) * bound) >> 64);
+}
+
+/* Uniform on the unit sphere. */
+static inline void starg_rng_direction(starg_rng *rng, double out[3]) {
+    double z = 2 * starg_rng_unit(rng) - 1, angle = 6.283185307179586 * starg_rng_unit(rng);
+    double side = sqrt(1 - z * z);
+    out[0] = side * cos(angle);
+    out[1] = side * sin(angle);
+    out[2] = z;
 }
 
 #endif

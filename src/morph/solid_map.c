@@ -8,7 +8,7 @@
  * Stages: fill A (solids.c); let the tetrahedra follow an as-rigid-as-possible morph to B
  * (deform.c), and where that ends too soon, put the surface into place and unfold (unfold.c); lower
  * the distortion by moving inner vertices in B, then in A; find pieces that are star-shaped in both
- * (star/strict/start/compatible.c); measure.
+ * (star/compatible/compatible.c); measure.
  *
  * Invariant: at the end all tetrahedra are positive in both, by exact signs. Both boundaries are
  * embedded, which the first stage has checked; so the tetrahedra fill both. Cost: that of its
@@ -26,7 +26,7 @@
 #include "morph/solid_map.h"
 #include "morph/solids.h"
 #include "morph/unfold.h"
-#include "star/strict/start/compatible.h"
+#include "star/compatible/compatible.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "solid map";

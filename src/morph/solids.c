@@ -4,7 +4,7 @@
  *
  * Stages: check that both ends bound a solid without self-intersections; fill A with tetrahedra
  * that keep its surface; deform these to B along the morph (deform.c); find sets of tetrahedra that
- * are star-shaped in both places (star/strict/start/compatible.c).
+ * are star-shaped in both places (star/compatible/compatible.c).
  *
  * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the
  * respective surface, so they fill both without overlap. Cost: that of its stages. */
@@ -14,7 +14,7 @@
 #include "mesh/solid.h"
 #include "morph/deform.h"
 #include "morph/morph.h"
-#include "star/strict/start/compatible.h"
+#include "star/compatible/compatible.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "consistent pieces";

@@ -10,10 +10,10 @@
 #include "decomposition_oracle.h"
 #include "exact_oracle.h"
 #include "geometry/vec3.h"
-#include "star/strict/start/compatible.h"
-#include "star/strict/start/compatible_planes.h"
+#include "star/compatible/compatible.h"
+#include "star/compatible/planes.h"
+#include "star/compatible/through.h"
 #include "star/strict/start/region_growing.h"
-#include "star/strict/start/through.h"
 #include "tetra/tetmesh.h"
 #include "tetrahedra.h"
 

@@ -47,17 +47,9 @@ typedef struct searcher {
 
 /* ---- directions ---- */
 
-static void random_direction(starg_rng *rng, double out[3]) {
-    double z = 2 * starg_rng_unit(rng) - 1, angle = 6.283185307179586 * starg_rng_unit(rng);
-    double side = sqrt(1 - z * z);
-    out[0] = side * cos(angle);
-    out[1] = side * sin(angle);
-    out[2] = z;
-}
-
 static void turn_a_little(const double from[3], double angle, starg_rng *rng, double out[3]) {
     double random[3];
-    random_direction(rng, random);
+    starg_rng_direction(rng, random);
     vec3_along(from, angle, random, out);
     double length = vec3_length(out);
     for (int k = 0; k < 3; k++)
@@ -68,7 +60,7 @@ static void turn_a_little(const double from[3], double angle, starg_rng *rng, do
  * near. */
 static void propose(const searcher *s, double out[3]) {
     size_t rows = s->r->rows.count / 4;
-    random_direction(s->rng, out);
+    starg_rng_direction(s->rng, out);
     if (rows == 0 || starg_rng_below(s->rng, 4) != 0)
         return;
     const double *row = s->r->rows.data + 4 * starg_rng_below(s->rng, rows);

@@ -89,14 +89,6 @@ static int tries(const plane_search *d, int usual) {
     return d->options->effort > 0 ? usual * d->options->effort : usual / HURRY;
 }
 
-static void random_direction(starg_rng *rng, double out[3]) {
-    double z = 2 * starg_rng_unit(rng) - 1, angle = 6.283185307179586 * starg_rng_unit(rng);
-    double side = sqrt(1 - z * z);
-    out[0] = side * cos(angle);
-    out[1] = side * sin(angle);
-    out[2] = z;
-}
-
 static void normalize(double v[3]) {
     double length = vec3_length(v);
     for (int k = 0; k < 3; k++)
@@ -157,7 +149,7 @@ static starg_status add_reach_along(plane_search *d) {
     starg_status status = STARG_OK;
     region_reach reach;
     double direction[3];
-    random_direction(d->rng, direction);
+    starg_rng_direction(d->rng, direction);
     STARG_TRY(region_find_reach(d->r, direction, d->options->margin, d->scratch, &reach, NULL));
     if (reach.height > -INFINITY)
         STARG_TRY(add_place(d, reach.guard));
@@ -201,7 +193,7 @@ static starg_status add_reach_needed(plane_search *d, bool nearby) {
         from = random_place(d);
     if (from->count == 0)
         return STARG_OK;
-    random_direction(d->rng, offset);
+    starg_rng_direction(d->rng, offset);
     for (int k = 0; k < 3; k++)
         offset[k] *= far;
     return add_reach_about(d, d->missed.data[from->first + starg_rng_below(d->rng, from->count)],
@@ -313,7 +305,7 @@ static void try_direction(plane_search *d, const double normal[3]) {
 
 /* From the normal of a row, from one place to another, or any. */
 static void propose(const plane_search *d, int sort, double out[3]) {
-    random_direction(d->rng, out);
+    starg_rng_direction(d->rng, out);
     if (sort == 0) {
         const double *row = d->r->rows.data + 4 * starg_rng_below(d->rng, d->r->rows.count / 4);
         vec3_along(row, starg_rng_below(d->rng, 2) == 0 ? 0.05 : 0.3, out, out);
@@ -342,7 +334,7 @@ static void turn_best(plane_search *d) {
     double angle = 0.3;
     for (int i = 0; i < TURNS && d->best.cost < INFINITY; i++) {
         double random[3], normal[3], before = d->best.cost;
-        random_direction(d->rng, random);
+        starg_rng_direction(d->rng, random);
         vec3_along(d->best.normal, angle, random, normal);
         normalize(normal);
         try_direction(d, normal);
@@ -403,7 +395,7 @@ static void try_edge(plane_search *d, const double a[3], const double b[3]) {
     double squared = vec3_dot(edge, edge);
     if (squared < 1e-18)
         return;
-    random_direction(d->rng, normal);
+    starg_rng_direction(d->rng, normal);
     vec3_along(normal, -vec3_dot(normal, edge) / squared, edge, normal);
     if (vec3_length(normal) < 0.05)
         return;

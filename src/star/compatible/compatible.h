@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Compatible decomposition: pieces that are star-shaped in two solids at once. */
-#ifndef STARG_STAR_STRICT_START_COMPATIBLE_H
-#define STARG_STAR_STRICT_START_COMPATIBLE_H
+#ifndef STARG_STAR_COMPATIBLE_COMPATIBLE_H
+#define STARG_STAR_COMPATIBLE_COMPATIBLE_H
 
 #include "core/context.h"
 #include "core/private.h"

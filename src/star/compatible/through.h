@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Cuts through compatible tetrahedra: the same surface in both places. */
-#ifndef STARG_STAR_STRICT_START_THROUGH_H
-#define STARG_STAR_STRICT_START_THROUGH_H
+#ifndef STARG_STAR_COMPATIBLE_THROUGH_H
+#define STARG_STAR_COMPATIBLE_THROUGH_H
 
 #include "core/memory.h"
 #include "tetra/tetmesh.h"

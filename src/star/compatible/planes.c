@@ -14,7 +14,7 @@
  * exact signs: what rounding of later cuts has spoilt is given up, too.
  *
  * Cost: for each part that of the split plane search, and a pass over all tetrahedra. */
-#include "star/strict/start/compatible_planes.h"
+#include "star/compatible/planes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,9 +22,9 @@
 
 #include "core/rng.h"
 #include "geometry/vec3.h"
+#include "star/compatible/through.h"
 #include "star/piece_faces.h"
 #include "star/strict/search/split_plane.h"
-#include "star/strict/start/through.h"
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "planes";

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Compatible decomposition, pieces that are star-shaped in two solids at once: consistent
+ * decomposition [YL11, section 5.2].
+ *
+ * Problem: the same tetrahedra lie in two places, positive in both. Label them so that each set is
+ * strictly star-shaped in both places, about a guard in either, with few labels.
+ *
+ * Stages: regions grown about pairs of guards (region_growing.c); of these, two neighbours at a
+ * time (twin_pieces.c) whose union has a kernel with an interior in both places become one, those
+ * that touch over the largest area first, until no two can be joined. Then a random group of pieces
+ * that hang together is given up (groups.c), its tetrahedra are grown and joined anew, and the
+ * outcome stays if there are no more pieces than before (ruin and recreate: Schrimpf et al. 2000),
+ * until that has long saved nothing. Where tetrahedra may be cut: several times parts between
+ * planes (planes.c), joined in the same way; they stay if they are fewer. Then three and more
+ * pieces that hang together become two by a random plane in one of the places (cuts.c), if the
+ * kernels allow it. At last every guard goes to the middle of its kernel.
+ *
+ * Invariants: after each stage every set is proven to be star-shaped in both, by exact signs.
+ *
+ * Cost: that of the region growing, for the whole and for a fixed number of tetrahedra of groups,
+ * and that of the joins. */
+#include "star/compatible/compatible.h"
+
+#include "core/memory.h"
+#include "star/compatible/cuts.h"
+#include "star/compatible/groups.h"
+#include "star/compatible/planes.h"
+#include "star/compatible/twin_pieces.h"
+#include "star/decomposition.h"
+
+static const char STAGE[] = "join";
+
+enum { PLANE_STARTS = 3 }; /* divisions by planes: the one of the fewest pieces stays */
+
+/* ---- stages ---- */
+
+static starg_status join_start(twin_pieces *w) {
+    starg_status status = STARG_OK;
+    STARG_TRY(twin_pieces_list(w));
+    STARG_TRY(twin_pieces_join(w));
+done:
+    return status;
+}
+
+/* Parts between planes, of several rounds the fewest. */
+static starg_status start_by_planes(const twin_pieces *from, twin_pieces *best) {
+    starg_status status = STARG_OK;
+    twin_pieces next = {.context = from->context};
+    for (uint64_t round = 0; round < PLANE_STARTS; round++) {
+        twin_pieces_free(&next);
+        next =
+            (twin_pieces){.context = from->context, .meshes = {from->meshes[0], from->meshes[1]}};
+        STARG_TRY(compatible_planes(from->context, from->meshes, round, next.own, &next.pieces));
+        for (int i = 0; i < 2; i++)
+            if (next.own[i] != NULL)
+                next.meshes[i] = next.own[i];
+        STARG_TRY(join_start(&next));
+        if (round == 0 || next.pieces.count < best->pieces.count)
+            twin_pieces_swap(best, &next);
+    }
+done:
+    twin_pieces_free(&next);
+    return status;
+}
+
+/* Regions that are grown or, where tetrahedra may be cut and these are fewer, parts between planes.
+ */
+static starg_status start(twin_pieces *w, bool cut) {
+    starg_status status = STARG_OK;
+    twin_pieces other = {.context = w->context};
+    STARG_TRY(grow_compatible_regions(w->context, w->meshes[0], w->meshes[1], &w->pieces));
+    STARG_TRY(join_start(w));
+    STARG_TRY(compatible_regrow(w));
+    if (cut && w->pieces.count > 1)
+        STARG_TRY(start_by_planes(w, &other));
+    if (other.pieces.count > 0 && other.pieces.count < w->pieces.count)
+        twin_pieces_swap(w, &other);
+done:
+    twin_pieces_free(&other);
+    return status;
+}
+
+/* ---- the result ---- */
+
+static starg_status finish(const twin_pieces *w, int place, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    const double *guards = place == 0 ? w->pieces.guards.data : w->pieces.counterparts.data;
+    starg_tetmesh *mesh = NULL;
+    int32_t *labels = NULL;
+    STARG_NEW(w->context, STAGE, labels, w->meshes[0]->count);
+    for (size_t t = 0; t < w->meshes[0]->count; t++)
+        labels[t] = (int32_t)w->pieces.labels[t];
+    STARG_TRY(tetmesh_copy(w->context, w->meshes[place], &mesh));
+    status = decomposition_finish(w->context, STARG_DECOMPOSE_STRICT, mesh, labels, guards,
+                                  w->pieces.count, out);
+    labels = NULL;
+    if (status == STARG_OK)
+        (*out)->flattest = (*out)->flattest_given = tetmesh_flattest((*out)->mesh);
+done:
+    starg_release(w->context, labels);
+    return status;
+}
+
+starg_status compatible_decompose(starg_context *context, const starg_tetmesh *mesh,
+                                  const starg_tetmesh *image, bool cut,
+                                  starg_decomposition *out[2]) {
+    starg_status status = STARG_OK;
+    twin_pieces w = {.context = context, .meshes = {mesh, image}};
+    out[0] = out[1] = NULL;
+    STARG_TRY(start(&w, cut));
+    if (cut)
+        STARG_TRY(compatible_cut(&w));
+    STARG_TRY(twin_pieces_center(&w));
+    for (int i = 0; i < 2; i++)
+        STARG_TRY(finish(&w, i, &out[i]));
+done:
+    if (status != STARG_OK) {
+        starg_decomposition_free(context, out[0]);
+        out[0] = NULL;
+    }
+    twin_pieces_free(&w);
+    return status;
+}

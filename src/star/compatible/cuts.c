@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Cuts of compatible pieces: three and more become two.
+ *
+ * Method: a random plane, in one of the places, through a random group of pieces that hang
+ * together, about across from one guard to another; it is cut through the tetrahedra in both places
+ * (through.c). If both parts have kernels in both places, they take the place of the group. It ends
+ * when that has long saved nothing, or after a number of tetrahedra in proportion to all. */
+#include "star/compatible/cuts.h"
+
+#include <string.h>
+
+#include "geometry/vec3.h"
+#include "star/compatible/through.h"
+
+static const char STAGE[] = "join";
+
+enum {
+    CUT_MOST = 7,   /* pieces that become two at a time, from 3 on                     */
+    CUT_TRIES = 8,  /* planes for a group                                              */
+    CUT_IDLE = 250, /* groups in a row that no plane divided: then no more             */
+    CUT_WORK = 1500 /* tetrahedra of all planes, for each that there is                */
+};
+
+/* A plane about across from one piece of the group to another. */
+static void choose_plane(const twin_pieces *w, const uint8_t *dropped, starg_rng *rng,
+                         double *levels) {
+    int place = (int)starg_rng_below(rng, 2);
+    const starg_tetmesh *mesh = w->meshes[place];
+    const double *guards = place == 0 ? w->pieces.guards.data : w->pieces.counterparts.data;
+    uint32_t pair[2];
+    for (int i = 0; i < 2; i++)
+        do
+            pair[i] = (uint32_t)starg_rng_below(rng, w->pieces.count);
+        while (!dropped[pair[i]] || (i == 1 && pair[1] == pair[0]));
+    const double *from = guards + 3 * (size_t)pair[0], *to = guards + 3 * (size_t)pair[1];
+    double normal[3], tilt[3], point[3], at = 1.4 * starg_rng_unit(rng) - 0.2;
+    double most = 0.6 * starg_rng_unit(rng) * vec3_distance(from, to);
+    vec3_subtract(to, from, normal);
+    vec3_along(from, at, normal, point);
+    for (int k = 0; k < 3; k++)
+        tilt[k] = 2 * starg_rng_unit(rng) - 1;
+    vec3_along(normal, most, tilt, normal);
+    memset(levels, 0, mesh->vertex_count * sizeof *levels);
+    for (size_t t = 0; t < mesh->count; t++)
+        for (size_t k = 0; dropped[w->pieces.labels[t]] && k < 4; k++) {
+            uint32_t v = mesh->tetrahedra[4 * t + k];
+            double offset[3];
+            vec3_subtract(mesh->vertices + 3 * (size_t)v, point, offset);
+            levels[v] = vec3_dot(offset, normal);
+        }
+}
+
+/* The pieces that are kept, and the two parts. */
+static starg_status number_parts(const twin_pieces *w, const uint8_t *dropped,
+                                 double guards[2][2][3], twin_pieces *out) {
+    starg_status status = STARG_OK;
+    uint32_t *numbers = NULL;
+    grown_regions *pieces = &out->pieces;
+    STARG_NEW(w->context, STAGE, numbers, w->pieces.count);
+    for (size_t p = 0; p < w->pieces.count; p++) {
+        if (dropped[p])
+            continue;
+        numbers[p] = (uint32_t)pieces->count++;
+        for (size_t k = 3 * p; k < 3 * p + 3; k++) {
+            STARG_PUSH(w->context, STAGE, &pieces->guards, w->pieces.guards.data[k]);
+            STARG_PUSH(w->context, STAGE, &pieces->counterparts, w->pieces.counterparts.data[k]);
+        }
+    }
+    for (int part = 0; part < 2; part++)
+        for (int k = 0; k < 3; k++) {
+            STARG_PUSH(w->context, STAGE, &pieces->guards, guards[part][0][k]);
+            STARG_PUSH(w->context, STAGE, &pieces->counterparts, guards[part][1][k]);
+        }
+    for (size_t t = 0; t < out->meshes[0]->count; t++) {
+        uint32_t label = pieces->labels[t];
+        pieces->labels[t] = label >= THROUGH_PART ? (uint32_t)pieces->count + (label - THROUGH_PART)
+                                                  : numbers[label];
+    }
+    pieces->count += 2;
+done:
+    starg_release(w->context, numbers);
+    return status;
+}
+
+/* Tries planes for a group; *out has no pieces if none will do. */
+static starg_status divide_group(const twin_pieces *w, const uint8_t *dropped, starg_rng *rng,
+                                 through_cut *cut, twin_pieces *out) {
+    starg_status status = STARG_OK;
+    double guards[2][2][3];
+    bool found = false;
+    for (int i = 0; i < CUT_TRIES && !found; i++) {
+        choose_plane(w, dropped, rng, cut->levels);
+        STARG_TRY(through_find(cut, guards, &found));
+    }
+    if (found)
+        STARG_TRY(through_divide(cut, w->pieces.labels, out->own, &out->pieces.labels, &found));
+    if (!found)
+        goto done;
+    for (int i = 0; i < 2; i++)
+        out->meshes[i] = out->own[i];
+    STARG_TRY(number_parts(w, dropped, guards, out));
+    STARG_TRY(twin_pieces_list(out));
+    STARG_TRY(twin_pieces_prove(out, &found));
+    if (!found)
+        out->pieces.count = 0;
+done:
+    return status;
+}
+
+/* One group: *saved says whether it has become two pieces. */
+static starg_status cut_group(twin_pieces *w, uint64_t round, size_t *work, bool *saved) {
+    starg_status status = STARG_OK;
+    starg_context *context = w->context;
+    starg_rng rng = starg_rng_make(context->seed, 1, round);
+    through_cut cut = {.context = context, .meshes = {w->meshes[0], w->meshes[1]}};
+    twin_pieces next = {.context = context};
+    uint8_t *dropped = NULL, *inside = NULL;
+    size_t tetrahedra = 0, group = 0;
+    *saved = false;
+    STARG_NEW(context, STAGE, dropped, w->pieces.count);
+    STARG_NEW(context, STAGE, inside, w->meshes[0]->count);
+    STARG_NEW(context, STAGE, cut.levels, w->meshes[0]->vertex_count);
+    STARG_TRY(
+        twin_pieces_drop(w, 3 + starg_rng_below(&rng, CUT_MOST - 2), &rng, dropped, &tetrahedra));
+    for (size_t p = 0; p < w->pieces.count; p++)
+        group += dropped[p];
+    for (size_t t = 0; t < w->meshes[0]->count; t++)
+        inside[t] = dropped[w->pieces.labels[t]];
+    cut.inside = inside;
+    if (group > 2)
+        STARG_TRY(divide_group(w, dropped, &rng, &cut, &next));
+    *work += CUT_TRIES * tetrahedra + w->meshes[0]->count / 10;
+    if (next.pieces.count > 0) {
+        twin_pieces_swap(w, &next);
+        *saved = true;
+    }
+done:
+    through_free(&cut);
+    starg_release(context, cut.levels);
+    starg_release(context, dropped);
+    starg_release(context, inside);
+    twin_pieces_free(&next);
+    return status;
+}
+
+starg_status compatible_cut(twin_pieces *w) {
+    starg_status status = STARG_OK;
+    size_t idle = 0, work = 0, most = CUT_WORK * w->meshes[0]->count;
+    starg_progress_begin(w->context, STAGE);
+    for (uint64_t round = 1; idle < CUT_IDLE && work < most && w->pieces.count > 2; round++) {
+        bool saved;
+        STARG_TRY(starg_check_cancel(w->context, STAGE));
+        STARG_TRY(cut_group(w, round, &work, &saved));
+        idle = saved ? 0 : idle + 1;
+        starg_progress_step(w->context, work, most);
+    }
+done:
+    starg_progress_end(w->context);
+    return status;
+}
