@@ -32,9 +32,11 @@ static const cli_option options[] = {
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
         "of B; or six coordinates, which select the nearest vertices."),
-    CLI_FLAG_OPTION("overlay", overlay,
-                    "Also write the common refinement of both triangulations: points with their "
-                    "places on A and on B, and triangles, each in one face of both."),
+    CLI_FLAG_OPTION(
+        "overlay", overlay,
+        "Also write the common refinement of both triangulations: points with their "
+        "places on A and on B, and triangles, each in one face of both. With --solid: divide "
+        "both surfaces by it, so that the map ends at B itself, not at B in A's faces."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of both surfaces: A with a checker, and B with what the map makes of "
                     "it."),
@@ -61,6 +63,7 @@ static const cli_option options[] = {
 
 static cli_solid_map solid_options(const values *v) {
     return (cli_solid_map){.solid = v->solid,
+                           .overlay = v->overlay,
                            .output = v->output,
                            .map = v->map,
                            .landmarks = v->landmarks,
@@ -76,9 +79,9 @@ static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
     const cli_solid_map solid = solid_options(v);
     starg_status status = STARG_OK;
-    if (v->solid && (v->overlay || v->picture != NULL))
+    if (v->solid && v->picture != NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "--overlay and --picture are for maps of surfaces; leave out --solid");
+                        "--picture is for maps of surfaces; leave out --solid");
     CLI_TRY(cli_solid_map_prepare(session, &solid));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:

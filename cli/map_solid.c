@@ -32,6 +32,9 @@ static starg_status check_options(cli_session *session, const cli_solid_map *v) 
         return refuse(session, "--back needs --points or --apply");
     if (v->map != NULL && v->landmarks != NULL)
         return refuse(session, "--map and --landmarks exclude each other; give one of them");
+    if (v->overlay && (v->shape > 0 || given))
+        return refuse(session, "--overlay divides the surfaces of A and B; leave out --to, and a "
+                               "map of solids");
     if (v->shape > 0 && (v->landmarks != NULL || (v->map != NULL && !given)))
         return refuse(session, "--to ball and cube take no map of the surfaces and no landmarks");
     if (session->operand_count != (v->shape > 0 ? 1u : 2u))
@@ -81,19 +84,35 @@ done:
     return status;
 }
 
-/* The images of A's vertices; the caller frees them. */
-static starg_status find_images(cli_session *session, const cli_solid_map *v, double **out) {
+/* To B in A's faces. */
+static starg_status map_to_images(cli_session *session, const cli_solid_map *v,
+                                  const starg_mesh *target, const starg_map *map,
+                                  starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    double *images = malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *images);
+    if (images == NULL)
+        return cli_fail_memory(session);
+    starg_map_positions(map, target, images);
+    CLI_TRY(starg_solid_map_create(session->context, session->mesh, images, v->wanted, out));
+done:
+    free(images);
+    return status;
+}
+
+static starg_status map_to_target(cli_session *session, const cli_solid_map *v,
+                                  starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_mesh *target = NULL;
     starg_map *map = NULL;
     CLI_TRY(starg_mesh_read(session->context, session->operands[1], &target));
     CLI_TRY(map_surfaces(session, v, target, &map));
-    *out = malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof **out);
-    if (*out == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
+    if (v->overlay) {
+        CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
+        CLI_TRY(
+            starg_solid_map_overlay(session->context, session->mesh, target, map, v->wanted, out));
+    } else {
+        CLI_TRY(map_to_images(session, v, target, map, out));
     }
-    starg_map_positions(map, target, *out);
 done:
     starg_map_free(session->context, map);
     starg_mesh_free(target);
@@ -117,18 +136,12 @@ static starg_status read_map(cli_session *session, const char *file, starg_solid
 }
 
 static starg_status make_map(cli_session *session, const cli_solid_map *v, starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    double *images = NULL;
     if (is_solid_map(v->map))
         return read_map(session, v->map, out);
     if (v->shape > 0)
         return starg_solid_map_to(session->context, session->mesh,
                                   (starg_solid_shape)(v->shape - 1), v->wanted, out);
-    CLI_TRY(find_images(session, v, &images));
-    CLI_TRY(starg_solid_map_create(session->context, session->mesh, images, v->wanted, out));
-done:
-    free(images);
-    return status;
+    return map_to_target(session, v, out);
 }
 
 /* ---- fields ---- */

@@ -8,7 +8,7 @@
 
 /* The options that concern solids. */
 typedef struct cli_solid_map {
-    bool solid;
+    bool solid, overlay;
     const char *output, *map, *landmarks, *points, *field, *carried;
     bool back;
     int shape; /* 0: B, else a starg_solid_shape plus 1 */

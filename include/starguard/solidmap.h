@@ -40,6 +40,16 @@ STARG_API starg_status starg_solid_map_create(starg_context *context, const star
                                               const starg_solid_map_options *options,
                                               starg_solid_map **out);
 
+/* Maps the solid A to the solid B by a map of their surfaces that has an overlay
+ * (starg_map_overlay): the surface of the tetrahedra is A and B, subdivided in their faces. A's
+ * tetrahedra go to B in A's connectivity first, which may meet itself, and are then divided along
+ * the overlay. `options` may be NULL. Errors: as above, and ARGUMENT (no overlay), MESH (parts of
+ * the overlay that are too thin for doubles). */
+STARG_API starg_status starg_solid_map_overlay(starg_context *context, const starg_mesh *a,
+                                               const starg_mesh *b, const starg_map *map,
+                                               const starg_solid_map_options *options,
+                                               starg_solid_map **out);
+
 typedef enum starg_solid_shape {
     STARG_SOLID_BALL = 0, /* of radius 1 about the origin */
     STARG_SOLID_CUBE = 1  /* of edge 2 about the origin */

@@ -104,11 +104,12 @@ class SolidMap:
 
 
 @takes(_OPTIONS)
-def map_solid(a: Any, target: Any, *, threads: int | None = None, seed: int | None = None,
+def map_solid(a: Any, target: Any, *, overlay: bool = False, threads: int | None = None, seed: int | None = None,
               time_limit: float | None = None, progress: Progress | None = None,
               **options: Unpack[SolidMapOptions]) -> SolidMap:
     """Maps the solid A to another: `target` is a model B, a SurfaceMap, images of A's vertices (n, 3),
-    "ball" or "cube". Needs TetGen.
+    "ball" or "cube". Needs TetGen. B is mapped to in A's faces, or with `overlay` as it is: both surfaces
+    are divided by their overlay.
 
     >>> import starguard
     >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
@@ -123,6 +124,13 @@ def map_solid(a: Any, target: Any, *, threads: int | None = None, seed: int | No
             "starg_solid_map", lib.starg_solid_map_free, lib.starg_solid_map_to, session.context,
             mesh._handle, _SHAPES[target], wanted.pointer, shared=True, progress=progress,
             time_limit=time_limit))
+    if overlay:
+        surface = target if isinstance(target, SurfaceMap) else map_surface(mesh, target)
+        surface.overlay()
+        return SolidMap._of(session.make(
+            "starg_solid_map", lib.starg_solid_map_free, lib.starg_solid_map_overlay,
+            session.context, surface.source._handle, surface.target._handle, surface._handle,
+            wanted.pointer, shared=True, progress=progress, time_limit=time_limit))
     if isinstance(target, (np.ndarray, list)):
         images = _arrays.reals(target, 3, "target")
     else:

@@ -348,7 +348,6 @@ starg_status deform_harmonic(const starg_morph *m, deform_mesh *c) {
     starg_status status = STARG_OK;
     walk w = {.m = m, .c = c};
     STARG_TRY(prepare(&w));
-    memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
     STARG_TRY(predict(&w, 1));
     memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);
 done:

@@ -44,8 +44,8 @@ starg_status deform_fill_flat(deform_mesh *c);
  * are all on it. Errors: MEMORY. */
 starg_status deform_free_surface(const starg_morph *m, deform_mesh *c);
 
-/* Moves the surface to B and each inner vertex to the mean of its neighbours. Tetrahedra may be
- * inverted. Errors: SOLVER, MEMORY, CANCELLED. */
+/* Moves the surface to B and each inner vertex as far as its neighbours on average. Tetrahedra may
+ * be inverted. Errors: SOLVER, MEMORY, CANCELLED. */
 starg_status deform_harmonic(const starg_morph *m, deform_mesh *c);
 
 /* Where the vertices pass: straight from one row of places to the next. */

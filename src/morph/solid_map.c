@@ -91,20 +91,27 @@ done:
 }
 
 /* Along a morph, or at once. */
-static starg_status spread(const starg_morph *m, const starg_solid_map_options *options,
-                           deform_mesh *c) {
+static starg_status spread(const starg_morph *m, deform_mesh *c) {
     starg_status status = STARG_OK;
     size_t inverted;
     double reached = 0;
-    if (m->method == STARG_MORPH_ARAP)
+    if (m->method == STARG_MORPH_ARAP) {
         STARG_TRY(deform(m, c, NULL, &inverted, &reached));
-    else
+    } else {
+        memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
         STARG_TRY(deform_harmonic(m, c));
+    }
     if (reached < 1)
         STARG_TRY(unfold_at_end(m, c, reached));
+done:
+    return status;
+}
+
+static starg_status relax(deform_mesh *c, size_t steps) {
+    starg_status status = STARG_OK;
     for (int end = 1; end >= 0; end--) {
         const unfold_problem p = problem_of(c, end);
-        STARG_TRY(unfold_relax(&p, options->steps));
+        STARG_TRY(unfold_relax(&p, steps));
     }
 done:
     return status;
@@ -216,25 +223,36 @@ done:
 
 /* ---- public functions ---- */
 
+static starg_status check_options(starg_context *context, const starg_solid_map_options **options,
+                                  starg_solid_map_options *defaults) {
+    starg_solid_map_options_default(defaults);
+    if (*options == NULL)
+        *options = defaults;
+    return fields_check(context, STAGE, starg_solid_map_options_fields(), *options);
+}
+
+static starg_status make_morph(starg_context *context, const starg_mesh *a, const double *images,
+                               starg_morph_method method, starg_morph **out) {
+    starg_morph_options options;
+    starg_morph_options_default(&options);
+    options.method = method;
+    return starg_morph_create(context, a, images, &options, out);
+}
+
 static starg_status make_map(starg_context *context, const starg_mesh *a, const double *images,
                              starg_morph_method method, const starg_solid_map_options *options,
                              starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_solid_map_options defaults;
-    starg_morph_options way;
     starg_morph *m = NULL;
     starg_solid *solid = NULL;
     uint32_t *surface = NULL;
     deform_mesh c = {.context = context};
-    starg_solid_map_options_default(&defaults);
-    if (options == NULL)
-        options = &defaults;
-    STARG_TRY(fields_check(context, STAGE, starg_solid_map_options_fields(), options));
-    starg_morph_options_default(&way);
-    way.method = method;
-    STARG_TRY(starg_morph_create(context, a, images, &way, &m));
+    STARG_TRY(check_options(context, &options, &defaults));
+    STARG_TRY(make_morph(context, a, images, method, &m));
     STARG_TRY(solids_fill(m, options->density, &c, &solid, &surface));
-    STARG_TRY(spread(m, options, &c));
+    STARG_TRY(spread(m, &c));
+    STARG_TRY(relax(&c, options->steps));
     STARG_TRY(solid_map_finish(context, &c, true, out));
 done:
     deform_free(&c);
@@ -250,6 +268,77 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = make_map(context, a, images, STARG_MORPH_ARAP, options, out);
+    starg_time_end(context, former);
+    return status;
+}
+
+/* A's tetrahedra where B's surface is that of the overlay: first to B in A's connectivity, then,
+ * divided, to B. */
+static starg_status spread_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                   const starg_map *map, double density, deform_mesh *c) {
+    starg_status status = STARG_OK;
+    const starg_overlay *overlay = &map->overlay;
+    starg_morph *first = NULL, *last = NULL;
+    starg_mesh *divided = NULL;
+    starg_solid *solid = NULL;
+    double *images = NULL;
+    uint32_t *surface = NULL;
+    STARG_NEW(context, STAGE, images, 3 * a->vertex_count + 3 * overlay->vertex_count);
+    starg_map_positions(map, b, images);
+    STARG_TRY(make_morph(context, a, images, STARG_MORPH_ARAP, &first));
+    STARG_TRY(solids_fill_first(first, density, c, &solid, &surface));
+    STARG_TRY(spread(first, c));
+    STARG_TRY(solids_divide(c, a, overlay));
+    STARG_TRY(starg_mesh_create(context, c->now.data, overlay->vertex_count, overlay->faces,
+                                overlay->face_count, &divided));
+    starg_overlay_positions(overlay, b, 1, images);
+    starg_release(context, surface);
+    STARG_NEW(context, STAGE, surface, overlay->vertex_count);
+    for (uint32_t v = 0; v < overlay->vertex_count; v++)
+        surface[v] = v;
+    c->surface = surface;
+    STARG_TRY(make_morph(context, divided, images, STARG_MORPH_LINEAR, &last));
+    STARG_TRY(solids_check_last(last));
+    STARG_TRY(deform_harmonic(last, c));
+    STARG_TRY(unfold_at_end(last, c, 0));
+done:
+    starg_morph_free(first);
+    starg_morph_free(last);
+    starg_mesh_free(divided);
+    starg_solid_free(solid);
+    starg_release(context, images);
+    starg_release(context, surface);
+    c->surface = NULL;
+    return status;
+}
+
+static starg_status make_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                 const starg_map *map, const starg_solid_map_options *options,
+                                 starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    starg_solid_map_options defaults;
+    deform_mesh c = {.context = context};
+    STARG_TRY(check_options(context, &options, &defaults));
+    if (map->overlay.face_count == 0) {
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "the map has no overlay; starg_map_overlay makes one");
+        goto done;
+    }
+    STARG_TRY(spread_overlay(context, a, b, map, options->density, &c));
+    STARG_TRY(relax(&c, options->steps));
+    STARG_TRY(solid_map_finish(context, &c, true, out));
+done:
+    deform_free(&c);
+    return status;
+}
+
+starg_status starg_solid_map_overlay(starg_context *context, const starg_mesh *a,
+                                     const starg_mesh *b, const starg_map *map,
+                                     const starg_solid_map_options *options,
+                                     starg_solid_map **out) {
+    *out = NULL;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    starg_status status = make_overlay(context, a, b, map, options, out);
     starg_time_end(context, former);
     return status;
 }

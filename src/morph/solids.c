@@ -36,19 +36,18 @@ static starg_status check_end(const starg_morph *m, int end, const starg_solid *
                       touching, flat);
 }
 
-/* Checks both ends; returns A as a solid. */
-static starg_status check_ends(const starg_morph *m, starg_solid **out) {
+static starg_status make_end(const starg_morph *m, int end, starg_solid **out) {
     starg_status status = STARG_OK;
-    starg_solid *solids[2] = {NULL, NULL};
-    for (int end = 0; end < 2; end++) {
-        STARG_TRY(morph_solid(m, end, &solids[end]));
-        STARG_TRY(check_end(m, end, solids[end]));
-    }
-    *out = solids[0];
-    solids[0] = NULL;
+    STARG_TRY(morph_solid(m, end, out));
+    STARG_TRY(check_end(m, end, *out));
 done:
-    starg_solid_free(solids[0]);
-    starg_solid_free(solids[1]);
+    return status;
+}
+
+starg_status solids_check_last(const starg_morph *m) {
+    starg_solid *solid = NULL;
+    starg_status status = make_end(m, 1, &solid);
+    starg_solid_free(solid);
     return status;
 }
 
@@ -90,14 +89,32 @@ done:
     return status;
 }
 
+static starg_status fill_freely(const starg_morph *m, const starg_solid *solid, double density,
+                                deform_mesh *c, uint32_t **surface) {
+    starg_status status = STARG_OK;
+    STARG_TRY(list_surface(m, surface, &c->fixed));
+    c->surface = *surface;
+    STARG_TRY(fill(m, solid, density, c));
+    STARG_TRY(deform_free_surface(m, c));
+done:
+    return status;
+}
+
+starg_status solids_fill_first(const starg_morph *m, double density, deform_mesh *c,
+                               starg_solid **solid, uint32_t **surface) {
+    starg_status status = STARG_OK;
+    STARG_TRY(make_end(m, 0, solid));
+    STARG_TRY(fill_freely(m, *solid, density, c, surface));
+done:
+    return status;
+}
+
 starg_status solids_fill(const starg_morph *m, double density, deform_mesh *c, starg_solid **solid,
                          uint32_t **surface) {
     starg_status status = STARG_OK;
-    STARG_TRY(check_ends(m, solid));
-    STARG_TRY(list_surface(m, surface, &c->fixed));
-    c->surface = *surface;
-    STARG_TRY(fill(m, *solid, density, c));
-    STARG_TRY(deform_free_surface(m, c));
+    STARG_TRY(make_end(m, 0, solid));
+    STARG_TRY(solids_check_last(m));
+    STARG_TRY(fill_freely(m, *solid, density, c, surface));
 done:
     return status;
 }

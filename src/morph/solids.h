@@ -15,6 +15,18 @@
 starg_status solids_fill(const starg_morph *m, double density, deform_mesh *c, starg_solid **solid,
                          uint32_t **surface);
 
+/* The same for A alone: B in A's connectivity may meet itself. */
+starg_status solids_fill_first(const starg_morph *m, double density, deform_mesh *c,
+                               starg_solid **solid, uint32_t **surface);
+
+/* Checks that the last end bounds a solid without self-intersections. Errors: MESH, MEMORY. */
+starg_status solids_check_last(const starg_morph *m);
+
+/* Divides the tetrahedra of A so that their surface is an overlay: its vertices come first, in its
+ * order, and c->surface is the caller's to set (solid_overlay.c). Errors: MESH (parts of A too thin
+ * for doubles), MEMORY. */
+starg_status solids_divide(deform_mesh *c, const starg_mesh *a, const starg_overlay *overlay);
+
 /* One of the two places of tetrahedra that are known not to overlap: a copy. Errors: MEMORY. */
 starg_status solids_place(const deform_mesh *c, const double *places, starg_tetmesh **out);
 

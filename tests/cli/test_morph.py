@@ -67,6 +67,8 @@ class Morph(Case):
         self.usage_error(*both, "-o", "m.vtu", "--points", "p.txt", says="--carried")
         self.usage_error(*both, "-o", "m.vtu", "--back", says="--back needs")
         self.usage_error(*both, "-o", "m.vtu", "--to", "ball", says="A only")
+        self.usage_error("map", "--solid", "cat0.off", "-o", "m.vtu", "--to", "ball", "--overlay",
+                         says="leave out --to")
         self.usage_error("map", "cat0.off", "cat1.off", "-o", "m.json", "--to", "ball", says="--solid")
         self.usage_error("map", "cat0.off", "-o", "m.json", says="two models")
         self.usage_error("morph", "cat0.off", "cat1.off", "--frames", "2", "-o", "out",

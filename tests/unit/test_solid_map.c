@@ -245,6 +245,129 @@ static void test_shapes(void **state) {
     test_context_free(context);
 }
 
+/* ---- overlays ---- */
+
+static void normal_of(const double *places, uint32_t a, uint32_t b, uint32_t c, double out[3]) {
+    const double *p = places + 3 * (size_t)a, *q = places + 3 * (size_t)b,
+                 *r = places + 3 * (size_t)c;
+    double u[3], v[3], length = 0;
+    for (int k = 0; k < 3; k++) {
+        u[k] = q[k] - p[k];
+        v[k] = r[k] - p[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+        length += out[k] * out[k];
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] /= sqrt(length);
+}
+
+static double cosine(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The corner of an edge's face that is not on it; face_count: there is none. */
+static size_t face_at(const uint32_t *faces, size_t count, uint32_t p, uint32_t q,
+                      uint32_t *opposite) {
+    for (size_t i = 0; i < 3 * count; i++)
+        if (faces[i] == p && faces[i / 3 * 3 + (i + 1) % 3] == q) {
+            *opposite = faces[i / 3 * 3 + (i + 2) % 3];
+            return i / 3;
+        }
+    return count;
+}
+
+/* Flips so many edges, where there is room for it and the surface is nearly flat. */
+static starg_mesh *flipped(starg_context *context, const starg_mesh *b, size_t flips) {
+    size_t count = starg_mesh_face_count(b);
+    const double *places = starg_mesh_vertices(b);
+    uint32_t *faces = malloc(3 * count * sizeof *faces);
+    uint8_t *used = calloc(count, 1);
+    starg_mesh *out;
+    assert_true(faces != NULL && used != NULL);
+    memcpy(faces, starg_mesh_faces(b), 3 * count * sizeof *faces);
+    for (size_t i = 0; i < 3 * count && flips > 0; i++) {
+        size_t f = i / 3, k = i % 3;
+        uint32_t p = faces[3 * f + k], q = faces[3 * f + (k + 1) % 3], s, none;
+        uint32_t r = faces[3 * f + (k + 2) % 3];
+        size_t g = face_at(faces, count, q, p, &s);
+        double n[4][3];
+        if (used[f] || used[g] || face_at(faces, count, r, s, &none) < count ||
+            face_at(faces, count, s, r, &none) < count)
+            continue;
+        normal_of(places, p, q, r, n[0]);
+        normal_of(places, q, p, s, n[1]);
+        normal_of(places, p, s, r, n[2]);
+        normal_of(places, s, q, r, n[3]);
+        if (!(cosine(n[0], n[1]) > 0.97 && cosine(n[0], n[2]) > 0.97 && cosine(n[0], n[3]) > 0.97))
+            continue;
+        const uint32_t fresh[6] = {p, s, r, s, q, r};
+        memcpy(faces + 3 * f, fresh, 3 * sizeof *faces);
+        memcpy(faces + 3 * g, fresh + 3, 3 * sizeof *faces);
+        used[f] = used[g] = 1;
+        flips--;
+    }
+    assert_int_equal(flips, 0);
+    test_ok(context,
+            starg_mesh_create(context, places, starg_mesh_vertex_count(b), faces, count, &out));
+    free(faces);
+    free(used);
+    return out;
+}
+
+/* Every vertex of the mesh is among the first places. */
+static void check_kept(const starg_mesh *mesh, const double *places, size_t count) {
+    for (size_t v = 0; v < starg_mesh_vertex_count(mesh); v++) {
+        bool found = false;
+        for (size_t i = 0; i < count && !found; i++)
+            found =
+                memcmp(places + 3 * i, starg_mesh_vertices(mesh) + 3 * v, 3 * sizeof *places) == 0;
+        if (!found)
+            fail_msg("vertex %zu is not in the map", v);
+    }
+}
+
+/* A pose with other edges here and there: the map ends at B, not at B in A's faces. */
+static void test_overlay(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *one = test_context(1), *many = test_context(3);
+    starg_mesh *a = test_pose(one, "dog", 0, VERTICES), *pose = test_pose(one, "dog", 1, VERTICES);
+    starg_mesh *b = flipped(one, pose, 12);
+    starg_map *surfaces;
+    starg_solid_map *map, *same;
+    test_ok(one, starg_map_create(one, a, b, NULL, &surfaces));
+    assert_int_equal(starg_solid_map_overlay(one, a, b, surfaces, &QUICK, &map),
+                     STARG_ERROR_ARGUMENT);
+    assert_null(map);
+    test_ok(one, starg_map_overlay(one, a, b, surfaces));
+    test_ok(one, starg_solid_map_overlay(one, a, b, surfaces, &QUICK, &map));
+    test_ok(many, starg_solid_map_overlay(many, a, b, surfaces, &QUICK, &same));
+    check_positive(map, map->vertices);
+    check_positive(map, map->images);
+    check_pieces(map, map->vertices, map->guards);
+    check_pieces(map, map->images, map->guard_images);
+    check_kept(a, map->vertices, map->vertex_count);
+    check_kept(b, map->images, map->vertex_count);
+    assert_true(is_verified(one, a, b, map, true));
+    assert_int_equal(map->count, same->count);
+    assert_memory_equal(map->images, same->images, 3 * map->vertex_count * sizeof *map->images);
+    starg_solid_map_free(one, map);
+    starg_solid_map_free(many, same);
+    /* without the overlay it is another surface */
+    test_ok(one, starg_solid_map_create(one, a, starg_mesh_vertices(b), &QUICK, &map));
+    assert_false(is_verified(one, a, b, map, false));
+    starg_solid_map_free(one, map);
+    starg_map_free(one, surfaces);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    starg_mesh_free(pose);
+    test_context_free(one);
+    test_context_free(many);
+}
+
 /* ---- morphs ---- */
 
 /* The tetrahedra move straight between keys: positive by Sturm's theorem. */
@@ -510,6 +633,7 @@ int main(void) {
         cmocka_unit_test(test_forged),  cmocka_unit_test(test_morph_solid),
         cmocka_unit_test(test_refused), cmocka_unit_test(test_points),
         cmocka_unit_test(test_samples), cmocka_unit_test(test_few_pieces),
+        cmocka_unit_test(test_overlay),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
