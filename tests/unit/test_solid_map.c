@@ -328,14 +328,22 @@ static void check_kept(const starg_mesh *mesh, const double *places, size_t coun
     }
 }
 
-/* A pose with other edges here and there: the map ends at B, not at B in A's faces. */
-static void test_overlay(void **state) {
-    (void)state;
-    if (!has_tetgen())
-        skip();
+/* The same surface, facing inward. */
+static starg_mesh *turned(starg_context *context, const starg_mesh *a) {
+    size_t count = starg_mesh_face_count(a);
+    uint32_t *faces = malloc(3 * count * sizeof *faces);
+    starg_mesh *out;
+    assert_non_null(faces);
+    for (size_t i = 0; i < 3 * count; i++)
+        faces[i] = starg_mesh_faces(a)[i / 3 * 3 + 2 - i % 3];
+    test_ok(context, starg_mesh_create(context, starg_mesh_vertices(a), starg_mesh_vertex_count(a),
+                                       faces, count, &out));
+    free(faces);
+    return out;
+}
+
+static void check_overlay(const starg_mesh *a, const starg_mesh *b) {
     starg_context *one = test_context(1), *many = test_context(3);
-    starg_mesh *a = test_pose(one, "dog", 0, VERTICES), *pose = test_pose(one, "dog", 1, VERTICES);
-    starg_mesh *b = flipped(one, pose, 12);
     starg_map *surfaces;
     starg_solid_map *map, *same;
     test_ok(one, starg_map_create(one, a, b, NULL, &surfaces));
@@ -356,16 +364,45 @@ static void test_overlay(void **state) {
     assert_memory_equal(map->images, same->images, 3 * map->vertex_count * sizeof *map->images);
     starg_solid_map_free(one, map);
     starg_solid_map_free(many, same);
-    /* without the overlay it is another surface */
-    test_ok(one, starg_solid_map_create(one, a, starg_mesh_vertices(b), &QUICK, &map));
-    assert_false(is_verified(one, a, b, map, false));
-    starg_solid_map_free(one, map);
     starg_map_free(one, surfaces);
+    test_context_free(one);
+    test_context_free(many);
+}
+
+/* A pose with other edges here and there: the map ends at B, not at B in A's faces. */
+static void test_overlay(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_pose(context, "dog", 0, VERTICES),
+               *pose = test_pose(context, "dog", 1, VERTICES), *b = flipped(context, pose, 12);
+    starg_solid_map *map;
+    check_overlay(a, b);
+    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
+    assert_false(is_verified(context, a, b, map, false)); /* without it */
+    starg_solid_map_free(context, map);
     starg_mesh_free(a);
     starg_mesh_free(b);
     starg_mesh_free(pose);
-    test_context_free(one);
-    test_context_free(many);
+    test_context_free(context);
+}
+
+/* Balls with other faces: edges have many points. One faces inward. */
+static void test_overlay_of_balls(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_sample_mesh(context, "sphere", VERTICES),
+               *b = test_sample_mesh(context, "sphere", 3 * VERTICES / 2),
+               *inward = turned(context, a);
+    check_overlay(a, b);
+    check_overlay(inward, b);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    starg_mesh_free(inward);
+    test_context_free(context);
 }
 
 /* ---- morphs ---- */
@@ -633,7 +670,7 @@ int main(void) {
         cmocka_unit_test(test_forged),  cmocka_unit_test(test_morph_solid),
         cmocka_unit_test(test_refused), cmocka_unit_test(test_points),
         cmocka_unit_test(test_samples), cmocka_unit_test(test_few_pieces),
-        cmocka_unit_test(test_overlay),
+        cmocka_unit_test(test_overlay), cmocka_unit_test(test_overlay_of_balls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
