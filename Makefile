@@ -5,7 +5,8 @@ JOBS    ?= $(shell nproc)
 SECONDS ?= 60
 CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 STRICT  := $(CMAKE) -DSTARGUARD_WERROR=ON
-CTEST   := ctest --output-on-failure -j $(JOBS)
+# One more than there are cores: some tests wait for a browser or a limit.
+CTEST   := ctest --output-on-failure -j $(shell expr $(JOBS) + 1)
 
 LONG_PARTS := analysis slow exact memory threads mpi matrix aarch64
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \

@@ -56,6 +56,13 @@ def places(value, path=()):
         yield from places(value[0], path + (0,))
 
 
+def shortened(value):
+    """The first entries of every list: spoilt documents are copied and validated hundreds of times."""
+    if isinstance(value, dict):
+        return {key: shortened(part) for key, part in value.items()}
+    return [shortened(part) for part in value[:16]] if isinstance(value, list) else value
+
+
 def at(value, path):
     for key in path:
         value = value[key]
@@ -94,6 +101,7 @@ class Schemas(support.Case):
 
     def spoil(self, name, document):
         validator = self.validator(name, strict=False)
+        document = shortened(document)
         self.assertTrue(validator.is_valid(document))
         for path in places(document):
             if not path:
