@@ -24,6 +24,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "geometry/vec3.h"
 #include "star/strict/start/labelling.h"
@@ -31,7 +32,8 @@
 enum {
     APEXES = 16,
     NEIGHBOURS_MOST = FAN_TAKERS_MOST - FAN_PIECES_MOST,
-    OWN_GUARD = 3, /* one in so many times */
+    OWN_GUARD = 3,      /* one in so many times */
+    INSERTED_MOST = 24, /* edges of a vertex */
     /* in the work counted */
     SORTING = 45,
     LABELLING = 6
@@ -222,6 +224,48 @@ static bool are_one_edge(const union_edge *x, const union_edge *y) {
     return partition_compare_edges(x->a, x->b, y->a, y->b) == 0;
 }
 
+static uint32_t lower_end(const union_edge *e) {
+    return e->a < e->b ? e->a : e->b;
+}
+
+/* Those of a vertex: a few as a rule. */
+static void sort_few(union_edge *edges, size_t count) {
+    if (count > INSERTED_MOST)
+        qsort(edges, count, sizeof *edges, compare_edges);
+    for (size_t i = 1; i < count; i++) {
+        const union_edge moved = edges[i];
+        size_t at = i;
+        for (; at > 0 && compare_edges(&edges[at - 1], &moved) > 0; at--)
+            edges[at] = edges[at - 1];
+        edges[at] = moved;
+    }
+}
+
+/* By their ends, then facets: filed by the lower end, then sorted there. */
+static starg_status sort_edges(eliminator *d) {
+    starg_status status = STARG_OK;
+    starg_context *context = d->p->context;
+    size_t vertices = d->own.vertices.count / 3, count = d->edges.count;
+    uint32_t *next = NULL;
+    union_edge *filed = NULL;
+    STARG_NEW_ZERO(context, PARTITION_STAGE, next, vertices + 1);
+    STARG_NEW(context, PARTITION_STAGE, filed, count);
+    for (size_t i = 0; i < count; i++)
+        next[lower_end(&d->edges.data[i]) + 1]++;
+    for (size_t v = 0; v < vertices; v++)
+        next[v + 1] += next[v];
+    for (size_t i = 0; i < count; i++)
+        filed[next[lower_end(&d->edges.data[i])]++] = d->edges.data[i];
+    for (size_t v = 0, first = 0; v < vertices; first = next[v++])
+        sort_few(filed + first, next[v] - first);
+    if (count > 0)
+        memcpy(d->edges.data, filed, count * sizeof *filed);
+done:
+    starg_release(context, next);
+    starg_release(context, filed);
+    return status;
+}
+
 /* Pairs of edges become one. False where an edge has other than two facets. */
 static bool pair_edges(union_edge *edges, size_t count) {
     for (size_t i = 0; i < count; i += 2) {
@@ -245,8 +289,7 @@ static starg_status find_edges(eliminator *d, bool *fine) {
             const union_edge half = {c[k], c[(k + 1) % 3], {i, i}};
             STARG_PUSH(context, PARTITION_STAGE, &d->edges, half);
         }
-    if (d->edges.count > 0)
-        qsort(d->edges.data, d->edges.count, sizeof *d->edges.data, compare_edges);
+    STARG_TRY(sort_edges(d));
     *fine = pair_edges(d->edges.data, d->edges.count);
     d->edges.count /= 2;
     for (size_t i = 0; i < d->edges.count && *fine; i++) {
