@@ -332,10 +332,11 @@ static void find_fits(const eliminator *d, const double apex[3], const union_edg
     edge->fits[0] = edge->fits[1] = 0;
     if (length < FLAT)
         return;
+    double room = 0.5 * d->task->margin * length;
     for (size_t k = 0; k < d->taker_count; k++) {
         double outside = vec3_dot(normal, d->takers[k].guard) - offset;
-        if (fabs(outside) > 0.5 * d->task->margin * length)
-            edge->fits[outside < 0 ? 0 : 1] |= (label_set)1 << k;
+        edge->fits[0] |= (label_set)(outside < -room) << k;
+        edge->fits[1] |= (label_set)(outside > room) << k;
     }
 }
 
