@@ -351,10 +351,25 @@ static starg_status solid_map_of_morph(starg_context *context) {
     return status;
 }
 
+static starg_status solid_map_by_overlay(starg_context *context) {
+    starg_map *surfaces = NULL;
+    starg_solid_map *map = NULL;
+    failing_pause();
+    test_ok(context, starg_map_create(context, in.cube, in.box, NULL, &surfaces));
+    test_ok(context, starg_map_overlay(context, in.cube, in.box, surfaces));
+    failing_resume();
+    starg_status status = starg_solid_map_overlay(context, in.cube, in.box, surfaces, NULL, &map);
+    failing_result(status, map);
+    starg_solid_map_free(context, map);
+    starg_map_free(context, surfaces);
+    return status;
+}
+
 static starg_status by_tetgen(starg_context *context) {
     FAILING_BY(starg_morph_solids, "", morph_solids(context));
     MORPH(starg_morph_create, "solid", SOLID);
     SOLID_MAP(starg_solid_map_create, "", in.cube, starg_mesh_vertices(in.box), NULL);
+    FAILING_BY(starg_solid_map_overlay, "", solid_map_by_overlay(context));
     SOLID_MAP(starg_solid_map_to, "ball", in.cube, STARG_SOLID_BALL, NULL);
     FAILING_BY(starg_morph_solid_map, "", solid_map_of_morph(context));
     return STARG_OK;
