@@ -115,6 +115,9 @@ def map_solid(a: Any, target: Any, *, overlay: bool = False, threads: int | None
     >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
     >>> starguard.verify_map(a, b, starguard.map_solid(a, b)).passed
     True
+    >>> a, b = (starguard.sample("sphere", vertices=vertices) for vertices in (500, 800))
+    >>> starguard.verify_map(a, b, starguard.map_solid(a, b, overlay=True)).passed
+    True
     """
     mesh = as_mesh(a)
     session = Session(threads, seed)
