@@ -8,7 +8,9 @@
  * Stages: fill A (solids.c); let the tetrahedra follow an as-rigid-as-possible morph to B
  * (deform.c), and where that ends too soon, put the surface into place and unfold (unfold.c); lower
  * the distortion by moving inner vertices in B, then in A; find pieces that are star-shaped in both
- * (star/compatible/compatible.c); measure.
+ * (star/compatible/compatible.c); measure. With an overlay of the surfaces: as before to B in A's
+ * connectivity, which may meet itself; then divide the tetrahedra along the overlay
+ * (solid_overlay.c), and put its corners into place on B.
  *
  * Invariant: at the end all tetrahedra are positive in both, by exact signs. Both boundaries are
  * embedded, which the first stage has checked; so the tetrahedra fill both. Cost: that of its

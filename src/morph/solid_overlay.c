@@ -387,29 +387,25 @@ static starg_status divide(subdivision *s, size_t t) {
 /* ---- the result ---- */
 
 /* Where a vertex of the overlay is, by places of A's vertices. */
-static starg_status add_place(const subdivision *s, size_t vertex, const double *from,
-                              deform_mesh *out, bool rest) {
-    starg_status status = STARG_OK;
+static void place_in(const subdivision *s, size_t vertex, const double *from, double out[3]) {
     const uint32_t *face = s->a->faces + 3 * (size_t)s->overlay->own_faces[vertex];
-    double at[3] = {0, 0, 0};
+    out[0] = out[1] = out[2] = 0;
     for (size_t k = 0; k < 3; k++)
-        vec3_along(at, s->overlay->own_coordinates[3 * vertex + k],
-                   from + 3 * (size_t)s->own[face[k]], at);
-    for (int k = 0; k < 3; k++)
-        if (rest)
-            STARG_PUSH(s->context, STAGE, &out->rest, at[k]);
-        else
-            STARG_PUSH(s->context, STAGE, &out->now, at[k]);
-done:
-    return status;
+        vec3_along(out, s->overlay->own_coordinates[3 * vertex + k],
+                   from + 3 * (size_t)s->own[face[k]], out);
 }
 
 static starg_status finish(subdivision *s) {
     starg_status status = STARG_OK;
     deform_mesh *c = s->c, next = {.context = c->context, .fixed = s->overlay->vertex_count};
     for (size_t i = 0; i < next.fixed; i++) {
-        STARG_TRY(add_place(s, i, c->rest.data, &next, true));
-        STARG_TRY(add_place(s, i, c->now.data, &next, false));
+        double rest[3], now[3];
+        place_in(s, i, c->rest.data, rest);
+        place_in(s, i, c->now.data, now);
+        for (int k = 0; k < 3; k++) {
+            STARG_PUSH(s->context, STAGE, &next.rest, rest[k]);
+            STARG_PUSH(s->context, STAGE, &next.now, now[k]);
+        }
     }
     for (size_t i = 3 * c->fixed; i < c->rest.count; i++) {
         STARG_PUSH(s->context, STAGE, &next.rest, c->rest.data[i]);

@@ -52,3 +52,17 @@ void piece_faces_free(starg_context *context, piece_faces *faces) {
     starg_release(context, faces->corners);
     *faces = (piece_faces){0};
 }
+
+starg_status piece_faces_add(starg_context *context, const starg_tetmesh *mesh,
+                             const uint32_t *labels, size_t face, uint32_t piece, uint32_t other,
+                             face_corners *out) {
+    starg_status status = STARG_OK;
+    uint32_t corners[3], across = mesh->neighbours[face];
+    if (across != STARG_TETMESH_NONE && (labels[across] == piece || labels[across] == other))
+        return STARG_OK;
+    piece_face_corners(mesh, face, corners);
+    for (int k = 0; k < 3; k++)
+        STARG_PUSH(context, STAGE, out, corners[k]);
+done:
+    return status;
+}

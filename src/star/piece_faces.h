@@ -3,6 +3,7 @@
 #ifndef STARG_STAR_PIECE_FACES_H
 #define STARG_STAR_PIECE_FACES_H
 
+#include "core/memory.h"
 #include "tetra/tetmesh.h"
 #include "visibility/kernel.h"
 
@@ -29,5 +30,13 @@ static inline void piece_face_corners(const starg_tetmesh *mesh, size_t face, ui
     for (int k = 0; k < 3; k++)
         out[k] = mesh->tetrahedra[(face & ~(size_t)3) + (size_t)TETMESH_FACE[face & 3][k]];
 }
+
+typedef STARG_ARRAY(uint32_t) face_corners; /* three a face */
+
+/* Appends a face, unless the tetrahedron across it is in one of two pieces (or one, given twice).
+ * Errors: MEMORY. */
+starg_status piece_faces_add(starg_context *context, const starg_tetmesh *mesh,
+                             const uint32_t *labels, size_t face, uint32_t piece, uint32_t other,
+                             face_corners *out);
 
 #endif

@@ -47,7 +47,7 @@ typedef struct plane_builder {
     starg_tetmesh *own[2]; /* the same, once they are divided */
     uint32_t *labels;      /* per tetrahedron: its part */
     STARG_ARRAY(part) parts;
-    STARG_ARRAY(uint32_t) faces; /* of the part that is looked at */
+    face_corners faces; /* of the part that is looked at */
     region_scratch scratch;
     starg_rng rng;
 } plane_builder;
@@ -68,14 +68,10 @@ static starg_status list_faces(plane_builder *b, uint32_t number) {
     starg_status status = STARG_OK;
     const starg_tetmesh *mesh = b->meshes[0];
     b->faces.count = 0;
-    for (size_t face = 0; face < 4 * mesh->count; face++) {
-        uint32_t corners[3], u = mesh->neighbours[face];
-        if (b->labels[face / 4] != number || (u != STARG_TETMESH_NONE && b->labels[u] == number))
-            continue;
-        piece_face_corners(mesh, face, corners);
-        for (int k = 0; k < 3; k++)
-            STARG_PUSH(b->context, STAGE, &b->faces, corners[k]);
-    }
+    for (size_t face = 0; face < 4 * mesh->count; face++)
+        if (b->labels[face / 4] == number)
+            STARG_TRY(
+                piece_faces_add(b->context, mesh, b->labels, face, number, number, &b->faces));
 done:
     return status;
 }

@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "geometry/vec3.h"
-#include "star/piece_faces.h"
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "join";
@@ -66,15 +65,9 @@ static starg_status add_faces(twin_pieces *w, uint32_t piece, uint32_t other) {
     starg_status status = STARG_OK;
     const starg_tetmesh *mesh = w->meshes[0];
     for (uint32_t t = w->heads[piece]; t != TWIN_LAST; t = w->next[t])
-        for (size_t face = 4 * (size_t)t; face < 4 * (size_t)t + 4; face++) {
-            uint32_t corners[3], u = mesh->neighbours[face];
-            if (u != STARG_TETMESH_NONE &&
-                (w->pieces.labels[u] == piece || w->pieces.labels[u] == other))
-                continue;
-            piece_face_corners(mesh, face, corners);
-            for (int k = 0; k < 3; k++)
-                STARG_PUSH(w->context, STAGE, &w->faces, corners[k]);
-        }
+        for (size_t face = 4 * (size_t)t; face < 4 * (size_t)t + 4; face++)
+            STARG_TRY(
+                piece_faces_add(w->context, mesh, w->pieces.labels, face, piece, other, &w->faces));
 done:
     return status;
 }

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/rng.h"
+#include "star/piece_faces.h"
 #include "star/strict/start/region_growing.h"
 
 #define TWIN_LAST UINT32_MAX /* ends a list */
@@ -18,7 +19,7 @@ typedef struct twin_pieces {
     uint32_t *next;          /* per tetrahedron */
     uint32_t *heads, *tails; /* per piece; a piece that was joined to another has TWIN_LAST */
     uint8_t *fresh, *joined; /* per piece: changed in the last round of joins, in this one */
-    STARG_ARRAY(uint32_t) faces;
+    face_corners faces;      /* of the pieces that are looked at */
 } twin_pieces;
 
 void twin_pieces_free(twin_pieces *w);
