@@ -361,7 +361,7 @@ def points(program, folders, _):
 
 
 def main():
-    parser = argparse.ArgumentParser(usage=__doc__)
+    parser = argparse.ArgumentParser(usage=__doc__.replace("%", "%%"))
     parser.add_argument("command", choices=["table", "copies", "growth", "points", "families", "robustness"])
     parser.add_argument("starguard")
     parser.add_argument("folders", nargs="+")

@@ -67,13 +67,12 @@ done:
     return status;
 }
 
-/* Puts the surface into place at once, and moves inner vertices until nothing is inverted. Where
- * that does not do, there are more of them. */
+/* Puts the surface into place at once, and all vertices inside along with it; then moves these
+ * until nothing is inverted. Where that does not do, there are more of them. */
 static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, double reached) {
     starg_status status = STARG_OK;
     size_t inverted = 0;
-    for (size_t v = 0; v < c->fixed; v++)
-        vec3_copy(m->target + 3 * (size_t)c->surface[v], c->now.data + 3 * v);
+    STARG_TRY(deform_harmonic(m, c));
     for (int round = 0; round < ROUNDS; round++) {
         const unfold_problem p = problem_of(c, 1);
         STARG_TRY(unfold(&p, UNFOLD_STEPS, &inverted));
@@ -97,12 +96,10 @@ static starg_status spread(const starg_morph *m, deform_mesh *c) {
     starg_status status = STARG_OK;
     size_t inverted;
     double reached = 0;
-    if (m->method == STARG_MORPH_ARAP) {
+    if (m->method == STARG_MORPH_ARAP)
         STARG_TRY(deform(m, c, NULL, &inverted, &reached));
-    } else {
+    else
         memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
-        STARG_TRY(deform_harmonic(m, c));
-    }
     if (reached < 1)
         STARG_TRY(unfold_at_end(m, c, reached));
 done:
@@ -301,7 +298,6 @@ static starg_status spread_overlay(starg_context *context, const starg_mesh *a, 
     c->surface = surface;
     STARG_TRY(make_morph(context, divided, images, STARG_MORPH_LINEAR, &last));
     STARG_TRY(solids_check_last(last));
-    STARG_TRY(deform_harmonic(last, c));
     STARG_TRY(unfold_at_end(last, c, 0));
 done:
     starg_morph_free(first);
