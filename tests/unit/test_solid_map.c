@@ -187,6 +187,34 @@ static void test_handles(void **state) {
     test_context_free(context);
 }
 
+/* Twisted, and much smaller: the way there ends too soon, and what is inside has to go along. */
+static void test_small_end(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_sample_mesh(context, "dog", VERTICES);
+    size_t size = 3 * starg_mesh_vertex_count(a);
+    double *images = malloc(size * sizeof *images);
+    assert_non_null(images);
+    for (size_t v = 0; v < size; v += 3) {
+        const double *p = starg_mesh_vertices(a) + v;
+        double angle = 6.2 * p[0], y = p[1] - 0.44;
+        images[v] = 0.02 * p[0];
+        images[v + 1] = 0.02 * (cos(angle) * y - sin(angle) * p[2]);
+        images[v + 2] = 0.02 * (sin(angle) * y + cos(angle) * p[2]);
+    }
+    starg_mesh *b = moved(context, a, images);
+    starg_solid_map *map;
+    test_ok(context, starg_solid_map_create(context, a, images, &QUICK, &map));
+    check(context, a, b, map);
+    starg_solid_map_free(context, map);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    free(images);
+    test_context_free(context);
+}
+
 /* Steps of descent lower the mean distortion. */
 static void test_descent(void **state) {
     (void)state;
@@ -665,12 +693,19 @@ static void test_samples(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_poses),   cmocka_unit_test(test_handles),
-        cmocka_unit_test(test_descent), cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_forged),  cmocka_unit_test(test_morph_solid),
-        cmocka_unit_test(test_refused), cmocka_unit_test(test_points),
-        cmocka_unit_test(test_samples), cmocka_unit_test(test_few_pieces),
-        cmocka_unit_test(test_overlay), cmocka_unit_test(test_overlay_of_balls),
+        cmocka_unit_test(test_poses),
+        cmocka_unit_test(test_handles),
+        cmocka_unit_test(test_small_end),
+        cmocka_unit_test(test_descent),
+        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_forged),
+        cmocka_unit_test(test_morph_solid),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_points),
+        cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_few_pieces),
+        cmocka_unit_test(test_overlay),
+        cmocka_unit_test(test_overlay_of_balls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

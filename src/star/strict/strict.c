@@ -36,8 +36,8 @@ enum {
 };
 
 /* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
- * are counted the same at any number of threads. About 4e8 take a second. */
-static const uint64_t WORK_MOST = 6000000000;
+ * are counted the same at any number of threads. About 2.5e8 take a second. */
+static const uint64_t WORK_MOST = 4700000000;
 
 /* The same for the room of guards at the end: so much and what the searches have taken, up to the
  * second; the third if more is asked for. */
