@@ -451,7 +451,7 @@ const cli_command cli_command_decompose = {
         "in their planes where pieces meet. Where it intersects itself, it is cut there, and the "
         "boundary of what it encloses is preserved. Surfaces with holes are filled by isosurface "
         "stuffing instead, with a warning and the distance between both surfaces.\n"
-        "By default the search stops after a fixed amount of work (at most 20 seconds), so that "
+        "By default the search stops after a fixed amount of work (about 20 seconds), so that "
         "the same input gives the same bytes. --effort sets the number of trials instead; with "
         "--time-limit the search continues until that time and returns the best result; however "
         "short the time is, there is one.\n"

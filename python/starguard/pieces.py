@@ -249,7 +249,7 @@ def decompose(model: Any, *, guards: ArrayLike | None = None,
     The model is anything `as_mesh` accepts, or a TetMesh. A surface with holes is filled, with a
     notice, if the filled volume is near the surface or `fill` is true. `guards` (n, 3) are seeds, or
     points to try first. The search stops after `effort` trials, or by default after a fixed amount
-    of work (at most 20 seconds), which gives the same result everywhere. With `time_limit` and no
+    of work (about 20 seconds), which gives the same result everywhere. With `time_limit` and no
     `effort` it continues until that time and returns its best result. With `prove=True`,
     `lower_bound` holds for all ways to cut a surface into star-shaped pieces, and `certificate` is a
     file to write that says why; `verify(model, pieces, file)` checks it.
