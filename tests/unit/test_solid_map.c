@@ -159,6 +159,21 @@ static void test_few_pieces(void **state) {
     test_context_free(context);
 }
 
+/* A's vertices, turned about a line along x by an angle that grows with x; the caller's. */
+static double *twist(const starg_mesh *a, double turn, double middle, double stretch, double size) {
+    size_t count = 3 * starg_mesh_vertex_count(a);
+    double *images = malloc(count * sizeof *images);
+    assert_non_null(images);
+    for (size_t v = 0; v < count; v += 3) {
+        const double *p = starg_mesh_vertices(a) + v;
+        double angle = turn * p[0], y = p[1] - middle;
+        images[v] = size * (stretch * p[0]);
+        images[v + 1] = size * (cos(angle) * y - sin(angle) * p[2]);
+        images[v + 2] = size * (sin(angle) * y + cos(angle) * p[2]);
+    }
+    return images;
+}
+
 /* Genus 6, twisted. */
 static void test_handles(void **state) {
     (void)state;
@@ -168,16 +183,7 @@ static void test_handles(void **state) {
     starg_context *context = test_context(1);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         starg_mesh *a = test_sample_mesh(context, names[i], VERTICES);
-        size_t size = 3 * starg_mesh_vertex_count(a);
-        double *images = malloc(size * sizeof *images);
-        assert_non_null(images);
-        for (size_t v = 0; v < size; v += 3) {
-            const double *p = starg_mesh_vertices(a) + v;
-            double angle = 0.6 * p[0];
-            images[v] = 1.3 * p[0];
-            images[v + 1] = cos(angle) * p[1] - sin(angle) * p[2];
-            images[v + 2] = sin(angle) * p[1] + cos(angle) * p[2];
-        }
+        double *images = twist(a, 0.6, 0, 1.3, 1);
         starg_mesh *b = moved(context, a, images);
         check_pair(a, b);
         starg_mesh_free(a);
@@ -194,16 +200,7 @@ static void test_small_end(void **state) {
         skip();
     starg_context *context = test_context(1);
     starg_mesh *a = test_sample_mesh(context, "dog", VERTICES);
-    size_t size = 3 * starg_mesh_vertex_count(a);
-    double *images = malloc(size * sizeof *images);
-    assert_non_null(images);
-    for (size_t v = 0; v < size; v += 3) {
-        const double *p = starg_mesh_vertices(a) + v;
-        double angle = 6.2 * p[0], y = p[1] - 0.44;
-        images[v] = 0.02 * p[0];
-        images[v + 1] = 0.02 * (cos(angle) * y - sin(angle) * p[2]);
-        images[v + 2] = 0.02 * (sin(angle) * y + cos(angle) * p[2]);
-    }
+    double *images = twist(a, 6.2, 0.44, 1, 0.02);
     starg_mesh *b = moved(context, a, images);
     starg_solid_map *map;
     test_ok(context, starg_solid_map_create(context, a, images, &QUICK, &map));
