@@ -4,40 +4,57 @@
  * 2^54, and below 2^64 when each witness must be seen 1,000 times. */
 #include "guard/bound.h"
 
-#include "guard/prices.h"
-
 static const char STAGE[] = "search";
 
-void bound_round(const double price[MOST_WITNESSES], uint64_t whole[MOST_WITNESSES]) {
-    for (size_t j = 0; j < MOST_WITNESSES; j++)
-        whole[j] = price[j] > 0 && price[j] < 16 ? (uint64_t)(price[j] * (double)BOUND_ONE) : 0;
+static uint64_t round_down(double price) {
+    return price > 0 && price < 16 ? (uint64_t)(price * (double)BOUND_ONE) : 0;
 }
 
-static uint64_t sum_of(const witness_row *row, const uint64_t *price) {
+void bound_round(const witness_prices *prices, const odd_sets *sets, whole_prices *whole) {
+    memset(whole, 0, sizeof *whole);
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        whole->price[j] = round_down(prices->price[j]);
+    if (sets == NULL)
+        return;
+    whole->sets = *sets;
+    for (size_t k = 0; k < sets->count; k++)
+        whole->odd[k] = round_down(prices->odd[k]);
+}
+
+uint64_t bound_worth(const whole_prices *whole, const witness_row *row) {
+    uint8_t halves[MOST_ODD_SETS];
     uint64_t sum = 0;
     for (size_t w = 0; w < WITNESS_WORDS; w++)
         STARG_FOR_BITS (bit, row->bits[w])
-            sum += price[64 * w + bit];
+            sum += whole->price[64 * w + bit];
+    odd_sets_halves(&whole->sets, row, halves);
+    for (size_t k = 0; k < whole->sets.count; k++)
+        sum += halves[k] * whole->odd[k];
     return sum;
 }
 
-/* The sum of all prices, and the largest over a row. */
-static void sum_prices(const witness_row *const *rows, size_t count, const uint64_t *price,
-                       uint64_t *all, uint64_t *most) {
-    *all = *most = 0;
+uint64_t bound_worth_of_all(const whole_prices *whole, size_t times) {
+    uint64_t sum = 0;
     for (size_t j = 0; j < MOST_WITNESSES; j++)
-        *all += price[j];
-    for (size_t i = 0; i < count; i++) {
-        uint64_t sum = sum_of(rows[i], price);
-        *most = sum > *most ? sum : *most;
-    }
+        sum += times * whole->price[j];
+    for (size_t k = 0; k < whole->sets.count; k++)
+        sum += (times * whole->sets.set[k].count + 1) / 2 * whole->odd[k];
+    return sum;
 }
 
-size_t bound_of_prices(const witness_row *const *rows, size_t count,
-                       const uint64_t price[MOST_WITNESSES], size_t times) {
-    uint64_t all, most;
-    sum_prices(rows, count, price, &all, &most);
-    all *= times;
+static uint64_t worth_most(const witness_row *const *rows, size_t count,
+                           const whole_prices *whole) {
+    uint64_t most = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint64_t worth = bound_worth(whole, rows[i]);
+        most = worth > most ? worth : most;
+    }
+    return most;
+}
+
+size_t bound_of_prices(const witness_row *const *rows, size_t count, const whole_prices *whole,
+                       size_t times) {
+    uint64_t all = bound_worth_of_all(whole, times), most = worth_most(rows, count, whole);
     return most == 0 ? 0 : (size_t)(all / most + (all % most != 0));
 }
 
@@ -182,15 +199,14 @@ static starg_status bound_by_own_prices(branching *b, const rest *r, const witne
                                         size_t most, bool *proven) {
     starg_status status = STARG_OK;
     witness_prices prices;
-    uint64_t whole[MOST_WITNESSES], all, largest;
-    STARG_TRY(prices_find(b->context, r->rows, r->count, wanted, &prices));
+    whole_prices whole;
+    STARG_TRY(prices_find(b->context, r->rows, r->count, wanted, NULL, &prices));
     b->work += prices.work;
-    bound_round(prices.price, whole);
+    bound_round(&prices, NULL, &whole);
     prices_free(b->context, &prices);
-    sum_prices(r->rows, r->count, whole, &all, &largest);
-    *proven = all > most * largest;
+    *proven = bound_worth_of_all(&whole, 1) > most * worth_most(r->rows, r->count, &whole);
     if (*proven)
-        STARG_TRY(record_prices(b, whole));
+        STARG_TRY(record_prices(b, whole.price));
 done:
     return status;
 }

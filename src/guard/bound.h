@@ -3,19 +3,29 @@
 #ifndef STARG_GUARD_BOUND_H
 #define STARG_GUARD_BOUND_H
 
-#include "core/memory.h"
-#include "guard/witnesses.h"
+#include "guard/prices.h"
 
 #define BOUND_ONE ((uint64_t)1 << 40)
 
-/* Prices as whole numbers of 1 / BOUND_ONE, rounded down; they must be below 16. */
-void bound_round(const double price[MOST_WITNESSES], uint64_t whole[MOST_WITNESSES]);
+/* Prices of witnesses and of odd sets, in units of 1 / BOUND_ONE. */
+typedef struct whole_prices {
+    uint64_t price[MOST_WITNESSES], odd[MOST_ODD_SETS];
+    odd_sets sets;
+} whole_prices;
+
+/* Prices rounded down; they must be below 16. `sets` may be NULL. */
+void bound_round(const witness_prices *prices, const odd_sets *sets, whole_prices *whole);
+
+/* What the row holds is worth. */
+uint64_t bound_worth(const whole_prices *whole, const witness_row *row);
+/* What all rows of a cover, that holds each witness `times` times, hold at least is worth. */
+uint64_t bound_worth_of_all(const whole_prices *whole, size_t times);
 
 /* A lower bound on the number of rows that cover every priced witness `times` times (at most
- * 1,000): one row covers at most the largest sum of prices over a row, so k rows cover at most k
- * times that. 0 where no row covers anything. */
-size_t bound_of_prices(const witness_row *const *rows, size_t count,
-                       const uint64_t price[MOST_WITNESSES], size_t times);
+ * 1,000): one row holds at most what is worth most, so k rows hold at most k times that. 0 where no
+ * row holds anything. */
+size_t bound_of_prices(const witness_row *const *rows, size_t count, const whole_prices *whole,
+                       size_t times);
 
 /* A node of a proof by branching: its own prices, or one branch for each row that holds some
  * witness. A node without any available row is not recorded. */

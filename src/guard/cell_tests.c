@@ -2,6 +2,8 @@
 /* A box is tested only for what is asked about, and not for what one of its points is known to see.
  * The random points of a box follow from its number: nothing depends on who tests it.
  *
+ * A new box is trimmed first (visibility/box_trim.c).
+ *
  * Invariant: no point of a box in the free space sees a witness that was asked about and is not
  * open.
  * Cost: a box test for each vertex that is asked about, about 10 sight lines for each vertex that
@@ -61,17 +63,17 @@ static void try_place(const search_scene *scene, const double p[3], const witnes
     answer->point_count++;
 }
 
-static void look_from_box(const search_scene *scene, box_worker *worker, const cell_test *test,
-                          const witness_row *known, cell_answer *answer) {
+static void look_from_box(const search_scene *scene, box_worker *worker, const bvh_box *box,
+                          const witness_row *among, const witness_row *known, cell_answer *answer) {
     uint64_t before = box_worker_tests(worker);
-    const box_question question = {.box = test->box,
+    const box_question question = {.box = *box,
                                    .target = scene->view->target,
                                    .targets = scene->witnesses.data,
                                    .count = scene->witnesses.count,
                                    .range = scene->view->range,
-                                   .among = test->among.bits,
+                                   .among = among->bits,
                                    .known = known->bits};
-    if (!search_scene_bars(scene, &test->box))
+    if (!search_scene_bars(scene, box))
         box_look(worker, &question, answer->open.bits, NULL);
     answer->work += box_worker_tests(worker) - before;
 }
@@ -85,17 +87,19 @@ static starg_status run_test(starg_context *context, void *shared, void *scratch
     witness_row known = {{0}};
     double p[3];
     *answer = (cell_answer){0};
-    const bvh_box *box = &test->box;
+    bvh_box box = test->box;
+    if (all->tries > 0)
+        answer->cut_count = box_trim(scratch, &box, answer->cuts);
     for (int i = 0; i < all->tries; i++) {
         for (int k = 0; k < 3; k++)
-            p[k] = i == 0 ? 0.5 * box->lower[k] + 0.5 * box->upper[k]
-                          : box->lower[k] + starg_rng_unit(&rng) * (box->upper[k] - box->lower[k]);
+            p[k] = i == 0 ? 0.5 * box.lower[k] + 0.5 * box.upper[k]
+                          : box.lower[k] + starg_rng_unit(&rng) * (box.upper[k] - box.lower[k]);
         try_place(all->scene, p, &test->among, &rng, answer, points);
     }
     for (size_t i = 0; i < answer->point_count; i++)
         for (int w = 0; w < WITNESS_WORDS; w++)
             known.bits[w] |= points[i].seen.bits[w];
-    look_from_box(all->scene, scratch, test, &known, answer);
+    look_from_box(all->scene, scratch, &box, &test->among, &known, answer);
     return STARG_OK;
 }
 

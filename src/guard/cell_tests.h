@@ -13,7 +13,9 @@ typedef struct cell_test {
 } cell_test;
 
 typedef struct cell_answer {
-    witness_row open; /* superset of what points of the box in the free space see */
+    witness_row open;       /* superset of what points of the box in the free space see */
+    box_cut cuts[BOX_CUTS]; /* where parts outside of the free space were cut off before */
+    int64_t cut_count;
     uint64_t work;
     uint64_t point_count; /* at most `tries` */
 } cell_answer;
@@ -23,7 +25,7 @@ typedef struct cell_tests {
     const cell_test *tests;
     size_t count;
     size_t first; /* number of the first test's box: with it random points are chosen */
-    int tries;    /* points in each box: the centre and random ones */
+    int tries;    /* points in each box: the centre and random ones; 0: boxes stay as they are */
     cell_answer *answers;
     search_point *points; /* `tries` for each box; those that may not be used are left out. Ignored
                              if tries is 0 */

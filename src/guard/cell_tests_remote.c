@@ -68,7 +68,8 @@ static starg_status take(starg_context *context, void *shared, size_t first, siz
     for (size_t i = first; i < first + count; i++) {
         cell_answer *answer = &all->answers[i];
         if (!starg_bytes_take(reply, answer, 1, sizeof *answer) ||
-            answer->point_count > (uint64_t)all->tries ||
+            answer->point_count > (uint64_t)all->tries || answer->cut_count < 0 ||
+            answer->cut_count > BOX_CUTS ||
             !starg_bytes_take(reply, cell_tests_points(all, i), answer->point_count,
                               sizeof *all->points))
             return STARG_ERROR_RANK;

@@ -3,7 +3,8 @@
  * see, by visibility/box.h.
  *
  * The root is the box of the solid, rounded outwards to multiples of a power of two, and a cell is
- * cut in the middle of its longest side, so that corners of cells are short binary fractions. Cells
+ * cut in the middle of its longest side, and what is outside is trimmed off at multiples of a
+ * fraction of the side, so that corners of cells are short binary fractions. Cells
  * are numbered in the order of creation, and tested by guard/cell_tests.c.
  *
  * Invariant: no point of a cell in the free space sees a witness that is not open in the cell. */
@@ -101,6 +102,12 @@ static starg_status look_from_cells(search_scene *scene, search_cells *cells, co
         if (parents->data[i] != UINT32_MAX)
             for (int w = 0; w < WITNESS_WORDS; w++)
                 tests[i].among.bits[w] &= cells->data[parents->data[i]].open.bits[w];
+        if (cells->data[list->data[i]].trimmed) {
+            const witness_row inherited = tests[i].among;
+            tests[i].among = (witness_row){{0}};
+            for (int w = 0; w < WITNESS_WORDS; w++)
+                cells->data[list->data[i]].open.bits[w] |= inherited.bits[w];
+        }
     }
     all.tests = tests;
     STARG_TRY(cell_tests_share(context, &all));
@@ -149,6 +156,27 @@ done:
 
 /* ---- splitting ---- */
 
+/* The cuts become cells within the cell; the last one is what was tested. */
+static starg_status trim(starg_context *context, search_cells *cells, size_t number,
+                         const cell_answer *answer) {
+    starg_status status = STARG_OK;
+    for (int64_t i = 0; i < answer->cut_count; i++) {
+        const box_cut *cut = &answer->cuts[i];
+        search_cell parts[2] = {cells->data[number], cells->data[number]};
+        parts[0].box.upper[cut->axis] = parts[1].box.lower[cut->axis] = cut->at;
+        parts[cut->above].open = (witness_row){{0}};
+        if (i + 1 == answer->cut_count)
+            parts[!cut->above].open = answer->open;
+        STARG_PUSH(context, STAGE, cells, parts[0]);
+        STARG_PUSH(context, STAGE, cells, parts[1]);
+        cells->data[number].children = (uint32_t)(cells->count - 2);
+        cells->data[number].trimmed = true;
+        number = cells->count - 1 - cut->above;
+    }
+done:
+    return status;
+}
+
 starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
                          size_t count, int tries, search_points *points) {
     starg_status status = STARG_OK;
@@ -165,7 +193,9 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
     all.tests = tests;
     STARG_TRY(cell_tests_share(context, &all));
     for (size_t i = 0; i < all.count; i++) {
-        const search_cell half = {.box = tests[i].box, .open = all.answers[i].open};
+        const bool trimmed = all.answers[i].cut_count > 0;
+        const search_cell half = {.box = tests[i].box,
+                                  .open = trimmed ? tests[i].among : all.answers[i].open};
         STARG_PUSH(context, STAGE, cells, half);
         if (i % 2 != 0) /* only after the second child: a cell has both children or none */
             cells->data[leaves[i / 2]].children = (uint32_t)(cells->count - 2);
@@ -173,6 +203,8 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
             STARG_PUSH(context, STAGE, points, all.points[i * (size_t)tries + k]);
         scene->work += all.answers[i].work + 2;
     }
+    for (size_t i = 0; i < all.count; i++)
+        STARG_TRY(trim(scene->context, cells, all.first + i, &all.answers[i]));
 done:
     starg_release(context, tests);
     starg_release(context, all.answers);

@@ -10,6 +10,7 @@ typedef struct search_cell {
     bvh_box box;
     witness_row open;  /* superset of what points of the box in the free space see */
     uint32_t children; /* the first of two consecutive ones; 0: a leaf */
+    bool trimmed;      /* one child is outside of the free space: only the other one is tested */
 } search_cell;
 
 typedef STARG_ARRAY(search_cell) search_cells;

@@ -34,13 +34,12 @@ void certificate_free(starg_context *context, guard_certificate *why) {
 
 /* ---- the proof of the bound ---- */
 
-void certificate_note_prices(guard_certificate *why, size_t bound,
-                             const uint64_t price[MOST_WITNESSES]) {
+void certificate_note_prices(guard_certificate *why, size_t bound, const whole_prices *prices) {
     if (why == NULL || bound <= why->proof.bound)
         return;
     why->proof.bound = bound;
     why->proof.rows.count = 0;
-    memcpy(why->proof.price, price, sizeof why->proof.price);
+    why->proof.prices = *prices;
 }
 
 starg_status certificate_note_rows(starg_context *context, guard_certificate *why, size_t bound,
@@ -94,27 +93,32 @@ typedef struct making {
     stored_reason *reasons;
 } making;
 
-static void begin(making *m) {
-    uint64_t all = 0;
-    uint32_t count = 0;
-    bool rows = m->proof->rows.count > 0;
-    for (size_t j = 0; j < MOST_WITNESSES; j++) {
-        if (j < m->scene->witnesses.count && (rows || m->proof->price[j] > 0)) {
+static void want_priced(making *m) {
+    const whole_prices *prices = &m->proof->prices;
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        if (prices->price[j] > 0)
             starg_bit_set(m->wanted.bits, j);
-            m->number[j] = count++;
-        }
-        all += m->proof->price[j];
+    for (size_t k = 0; k < prices->sets.count; k++)
+        for (size_t i = 0; i < prices->sets.set[k].count && prices->odd[k] > 0; i++)
+            starg_bit_set(m->wanted.bits, prices->sets.set[k].witness[i]);
+}
+
+static void begin(making *m) {
+    uint32_t count = 0;
+    if (m->proof->rows.count > 0)
+        m->wanted = search_scene_witnesses(m->scene, 0);
+    else {
+        want_priced(m);
+        m->most = (bound_worth_of_all(&m->proof->prices, m->options->redundancy) - 1) /
+                  (m->proof->bound - 1);
     }
-    if (!rows)
-        m->most = (all * m->options->redundancy - 1) / (m->proof->bound - 1);
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, m->wanted.bits[w])
+            m->number[64 * w + bit] = count++;
 }
 
 static bool is_cheap(const making *m, const witness_row *open) {
-    uint64_t sum = 0;
-    for (size_t w = 0; w < WITNESS_WORDS; w++)
-        STARG_FOR_BITS (bit, open->bits[w])
-            sum += m->proof->price[64 * w + bit];
-    return sum <= m->most;
+    return bound_worth(&m->proof->prices, open) <= m->most;
 }
 
 /* The row that contains the witnesses, starting with that of the last call; or UINT32_MAX. */
@@ -234,12 +238,12 @@ done:
 /* ---- the text ---- */
 
 /* A double as an integer and a power of two. */
-static void put_double(FILE *stream, double x) {
+static void put_double(FILE *stream, char before, double x) {
     int exponent;
     long long whole = (long long)ldexp(frexp(x, &exponent), 53);
     for (exponent -= 53; whole != 0 && whole % 2 == 0; exponent++)
         whole /= 2;
-    fprintf(stream, " %lld:%d", whole, whole == 0 ? 0 : exponent);
+    fprintf(stream, "%c%lld:%d", before, whole, whole == 0 ? 0 : exponent);
 }
 
 static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
@@ -249,7 +253,7 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_o
     uint64_t sum = STARG_CHECKSUM_BEGIN;
     for (size_t f = 0; f < mesh->face_count; f++)
         sum = starg_checksum_face(sum, mesh->vertices, mesh->faces + 3 * f);
-    fprintf(stream, "starguard-certificate 1\nvertices %zu\nfaces %zu\nchecksum %016llx\n",
+    fprintf(stream, "starguard-certificate 2\nvertices %zu\nfaces %zu\nchecksum %016llx\n",
             mesh->vertex_count, mesh->face_count, (unsigned long long)sum);
     fprintf(stream, "target %s\nrange",
             view->target == STARG_TARGET_VERTICES  ? "vertices"
@@ -258,14 +262,14 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_o
     if (isinf(view->range))
         fprintf(stream, " none");
     else
-        put_double(stream, view->range);
+        put_double(stream, ' ', view->range);
     fprintf(stream, "\nclearance");
-    put_double(stream, options->clearance);
+    put_double(stream, ' ', options->clearance);
     fprintf(stream, "\nredundancy %u\nbound %zu\nroot", options->redundancy, bound);
     for (int k = 0; k < 3; k++)
-        put_double(stream, root->lower[k]);
+        put_double(stream, ' ', root->lower[k]);
     for (int k = 0; k < 3; k++)
-        put_double(stream, root->upper[k]);
+        put_double(stream, ' ', root->upper[k]);
     fprintf(stream, "\n");
 }
 
@@ -308,12 +312,24 @@ static void put_reason(FILE *stream, const making *m, const stored_reason *r) {
         fprintf(stream, ":%u", r->seed);
 }
 
+/* In the middle of the longest side, or where the children say. */
+static void put_cut(FILE *stream, const search_cells *cells, const search_cell *cell) {
+    const bvh_box *lower = &cells->data[cell->children].box;
+    int axis = cell_cut_axis(&cell->box);
+    for (int k = 0; k < 3 && cell->trimmed; k++)
+        if (lower->upper[k] != cell->box.upper[k])
+            axis = k;
+    fprintf(stream, "%c", "xyz"[axis]);
+    if (cell->trimmed)
+        put_double(stream, '@', lower->upper[axis]);
+}
+
 static void put_cells(FILE *stream, const making *m) {
     fprintf(stream, "cells %zu\n", m->kept.count);
     for (size_t i = 0; i < m->kept.count; i++) {
         const kept_cell *kept = &m->kept.data[i];
         if (!kept->leaf)
-            fprintf(stream, "%c", "xyz"[cell_cut_axis(&m->cells->data[kept->number].box)]);
+            put_cut(stream, m->cells, &m->cells->data[kept->number]);
         else if (kept->barred || kept->outside)
             fprintf(stream, kept->barred ? "c" : "o");
         else if (kept->row != UINT32_MAX)
@@ -327,10 +343,18 @@ static void put_cells(FILE *stream, const making *m) {
 }
 
 static void put_prices(FILE *stream, const making *m) {
+    const whole_prices *prices = &m->proof->prices;
     fprintf(stream, "nodes 1\nprices");
     for (size_t j = 0; j < MOST_WITNESSES; j++)
-        if (m->proof->price[j] > 0)
-            fprintf(stream, " %u:%llu", m->number[j], (unsigned long long)m->proof->price[j]);
+        if (prices->price[j] > 0)
+            fprintf(stream, " %u:%llu", m->number[j], (unsigned long long)prices->price[j]);
+    for (size_t k = 0; k < prices->sets.count; k++) {
+        const odd_set *set = &prices->sets.set[k];
+        for (size_t i = 0; i < set->count && prices->odd[k] > 0; i++)
+            fprintf(stream, "%c%u", i == 0 ? ' ' : '+', m->number[set->witness[i]]);
+        if (prices->odd[k] > 0)
+            fprintf(stream, ":%llu", (unsigned long long)prices->odd[k]);
+    }
     fprintf(stream, "\n");
 }
 

@@ -10,8 +10,8 @@
 /* What proves the bound: prices, or rows that need a cover of this size, by branching. */
 typedef struct bound_proof {
     size_t bound;
-    uint64_t price[MOST_WITNESSES]; /* without rows */
-    STARG_ARRAY(witness_row) rows;  /* each leaf is within one of them */
+    whole_prices prices;           /* without rows */
+    STARG_ARRAY(witness_row) rows; /* each leaf is within one of them */
     branch_record branches;
 } bound_proof;
 
@@ -24,8 +24,7 @@ typedef struct guard_certificate {
 void certificate_free(starg_context *context, guard_certificate *why);
 
 /* Records the prices that proved `bound`, if it improves on the previous one. `why` may be NULL. */
-void certificate_note_prices(guard_certificate *why, size_t bound,
-                             const uint64_t price[MOST_WITNESSES]);
+void certificate_note_prices(guard_certificate *why, size_t bound, const whole_prices *prices);
 /* The same for rows; takes `branches` over. Errors: MEMORY. */
 starg_status certificate_note_rows(starg_context *context, guard_certificate *why, size_t bound,
                                    const witness_row *const *rows, size_t count,

@@ -2,6 +2,9 @@
 /* Prices of witnesses: the linear program max sum w, sum of w over each row <= 1, w >= 0, and its
  * dual, the fractional cover min sum x, sum of x over the rows of each witness >= 1, x >= 0.
  *
+ * Odd sets (guard/odd_sets.h) are further witnesses: a row holds as much of one as it holds halves,
+ * divided by the halves that all rows together hold at least. So all coefficients are at most 1.
+ *
  * A primal-dual interior-point method. It ends near the centre of the optimal prices, while the
  * simplex method ends at a vertex: prices spread over all faces that matter give better bounds in
  * the space between the known points. Both programs have known interior points to start from, and
@@ -28,8 +31,10 @@ static const double GAP = 1e-3; /* between the two objective values, where the i
 
 typedef struct program {
     const witness_row *const *rows;
-    size_t n, m;                  /* rows, wanted witnesses */
-    uint32_t *index;              /* column indices of all rows, one row after the other */
+    const odd_sets *sets;         /* their columns stand behind those of the witnesses */
+    size_t n, m;                  /* rows, wanted witnesses and sets */
+    uint32_t *index;              /* columns of all rows, one row after the other, ascending */
+    double *value;                /* what the row holds of the column */
     size_t *start;                /* by row, and the end */
     double *x, *s, *dx, *ds, *rx; /* by row */
     double *w, *t, *dw, *dt, *rw; /* by witness */
@@ -40,6 +45,7 @@ typedef struct program {
 
 static void program_free(starg_context *context, program *p) {
     starg_release(context, p->index);
+    starg_release(context, p->value);
     starg_release(context, p->start);
     starg_release(context, p->x);
     starg_release(context, p->w);
@@ -47,21 +53,40 @@ static void program_free(starg_context *context, program *p) {
     starg_release(context, p->first);
 }
 
-static void list_ones(program *p, const uint32_t *number, const witness_row *wanted) {
+/* Appends the columns of a row; returns their end. */
+static size_t list_row(program *p, const uint32_t *number, const witness_row *wanted, size_t i,
+                       size_t filled) {
+    witness_row held = {{0}};
+    uint8_t halves[MOST_ODD_SETS];
+    size_t first_set = p->m - p->sets->count;
+    for (size_t k = 0; k < WITNESS_WORDS; k++)
+        STARG_FOR_BITS (bit, p->rows[i]->bits[k] & wanted->bits[k])
+            starg_bit_set(held.bits, number[64 * k + bit]);
+    for (size_t k = 0; k < WITNESS_WORDS; k++)
+        STARG_FOR_BITS (bit, held.bits[k]) {
+            p->index[filled] = (uint32_t)(64 * k + bit);
+            p->value[filled++] = 1;
+        }
+    odd_sets_halves(p->sets, p->rows[i], halves);
+    for (size_t k = 0; k < p->sets->count; k++)
+        if (halves[k] > 0) {
+            p->index[filled] = (uint32_t)(first_set + k);
+            p->value[filled++] = (double)halves[k] / odd_set_need(&p->sets->set[k]);
+        }
+    return filled;
+}
+
+static void list_columns(program *p, const uint32_t *number, const witness_row *wanted) {
     size_t filled = 0;
     for (size_t i = 0; i < p->n; i++) {
         p->start[i] = filled;
-        for (size_t k = 0; k < WITNESS_WORDS; k++)
-            STARG_FOR_BITS (bit, p->rows[i]->bits[k] & wanted->bits[k])
-                p->index[filled++] = number[64 * k + bit];
+        filled = list_row(p, number, wanted, i, filled);
     }
     p->start[p->n] = filled;
     for (size_t f = 0; f < p->m; f++)
         p->first[f] = f;
     for (size_t i = 0; i < p->n; i++) {
-        size_t least = p->m;
-        for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
-            least = p->index[e] < least ? p->index[e] : least;
+        size_t least = p->start[i] < p->start[i + 1] ? p->index[p->start[i]] : p->m;
         for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
             p->first[p->index[e]] = least < p->first[p->index[e]] ? least : p->first[p->index[e]];
     }
@@ -117,7 +142,7 @@ static starg_status number_witnesses(starg_context *context, program *p, const w
         number[j] = UINT32_MAX;
     for (size_t k = 0; k < o->count; k++)
         number[o->queue[k]] = (uint32_t)(o->count - 1 - k);
-    p->m = o->count;
+    p->m = o->count + p->sets->count;
 done:
     starg_release(context, o);
     return status;
@@ -125,14 +150,25 @@ done:
 
 /* ---- steps ---- */
 
+static size_t count_entries(const program *p, const witness_row *wanted) {
+    uint8_t halves[MOST_ODD_SETS];
+    size_t entries = 0;
+    for (size_t i = 0; i < p->n; i++) {
+        for (size_t k = 0; k < WITNESS_WORDS; k++)
+            entries += (size_t)__builtin_popcountll(p->rows[i]->bits[k] & wanted->bits[k]);
+        odd_sets_halves(p->sets, p->rows[i], halves);
+        for (size_t k = 0; k < p->sets->count; k++)
+            entries += halves[k] > 0;
+    }
+    return entries;
+}
+
 static starg_status program_make(starg_context *context, program *p, const witness_row *wanted,
                                  const uint32_t *number) {
     starg_status status = STARG_OK;
-    size_t ones = 0;
-    for (size_t i = 0; i < p->n; i++)
-        for (size_t k = 0; k < WITNESS_WORDS; k++)
-            ones += (size_t)__builtin_popcountll(p->rows[i]->bits[k] & wanted->bits[k]);
-    STARG_NEW(context, STAGE, p->index, ones);
+    size_t entries = count_entries(p, wanted);
+    STARG_NEW(context, STAGE, p->index, entries);
+    STARG_NEW(context, STAGE, p->value, entries);
     STARG_NEW(context, STAGE, p->start, p->n + 1);
     STARG_NEW_ZERO(context, STAGE, p->x, 5 * p->n);
     STARG_NEW_ZERO(context, STAGE, p->w, 5 * p->m);
@@ -146,7 +182,7 @@ static starg_status program_make(starg_context *context, program *p, const witne
     p->dw = p->t + p->m;
     p->dt = p->dw + p->m;
     p->rw = p->dt + p->m;
-    list_ones(p, number, wanted);
+    list_columns(p, number, wanted);
 done:
     return status;
 }
@@ -157,13 +193,13 @@ static void sum_rows(const program *p, const double *of, double start, double *o
         out[f] = start;
     for (size_t i = 0; i < p->n; i++)
         for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
-            out[p->index[e]] += of[i];
+            out[p->index[e]] += p->value[e] * of[i];
 }
 
 static double sum_row(const program *p, size_t i, const double *of) {
     double sum = 0;
     for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
-        sum += of[p->index[e]];
+        sum += p->value[e] * of[p->index[e]];
     return sum;
 }
 
@@ -182,29 +218,17 @@ static void begin(program *p) {
     sum_rows(p, p->x, -1, p->t);
 }
 
-/* The witnesses of a row in ascending order; returns their number. */
-static size_t sort_ones(const program *p, size_t i, uint32_t out[MOST_WITNESSES]) {
-    witness_row ones = {{0}};
-    size_t count = 0;
-    for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
-        starg_bit_set(ones.bits, p->index[e]);
-    for (size_t k = 0; k < WITNESS_WORDS; k++)
-        STARG_FOR_BITS (bit, ones.bits[k])
-            out[count++] = (uint32_t)(64 * k + bit);
-    return count;
-}
-
 static void fill_matrix(program *p) {
     size_t m = p->m;
-    uint32_t ones[MOST_WITNESSES];
     memset(p->matrix, 0, m * m * sizeof *p->matrix);
     for (size_t i = 0; i < p->n; i++) {
-        double d = p->x[i] / p->s[i];
-        size_t count = sort_ones(p, i, ones);
+        const uint32_t *index = p->index + p->start[i];
+        const double *value = p->value + p->start[i];
+        size_t count = p->start[i + 1] - p->start[i];
         for (size_t a = 0; a < count; a++) {
-            double *line = p->matrix + ones[a] * m;
+            double *line = p->matrix + index[a] * m, d = value[a] * p->x[i] / p->s[i];
             for (size_t b = 0; b <= a; b++)
-                line[ones[b]] += d;
+                line[index[b]] += d * value[b];
         }
         p->work += count * count / 2;
     }
@@ -342,14 +366,20 @@ static void read_prices(const program *p, const uint32_t *number, witness_prices
         out->price[j] = number[j] == UINT32_MAX ? 0 : p->w[number[j]] / most;
         out->sum += out->price[j];
     }
+    for (size_t k = 0; k < p->sets->count; k++) {
+        double price = p->w[p->m - p->sets->count + k] / most;
+        out->odd[k] = price / odd_set_need(&p->sets->set[k]);
+        out->sum += price;
+    }
     memcpy(out->share, p->x, p->n * sizeof *p->x);
     out->work = p->work / 1000;
 }
 
 starg_status prices_find(starg_context *context, const witness_row *const *rows, size_t count,
-                         const witness_row *wanted, witness_prices *out) {
+                         const witness_row *wanted, const odd_sets *sets, witness_prices *out) {
+    static const odd_sets NONE = {0};
     starg_status status = STARG_OK;
-    program p = {.rows = rows, .n = count};
+    program p = {.rows = rows, .n = count, .sets = sets != NULL ? sets : &NONE};
     uint32_t number[MOST_WITNESSES];
     *out = (witness_prices){0};
     STARG_NEW(context, STAGE, out->share, count);

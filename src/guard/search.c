@@ -40,6 +40,7 @@
 static const char STAGE[] = "search";
 
 enum {
+    COMPARED = 800, /* comparisons of points that take as long as a test */
     LEAST_BATCH = 32,
     MOST_BATCH = 2048,
     TRIES = 2,
@@ -72,7 +73,7 @@ void search_prune_points(search *s, size_t first) {
         if (!needless || points[i].candidate != UINT32_MAX)
             points[kept++] = points[i];
     }
-    s->scene.work += (s->points.count - first) * s->points.count / 100;
+    s->scene.work += (s->points.count - first) * s->points.count / COMPARED;
     s->points.count = kept;
 }
 
@@ -131,7 +132,7 @@ starg_status search_list_leaves(const search *s, double most, scored_leaf **out,
         const search_cell *cell = &s->cells.data[i];
         if (cell->children != 0 || search_is_fine(s, cell))
             continue;
-        double value = row_value(&cell->open, s->prices.price);
+        double value = search_worth(s, &cell->open);
         if (value <= most)
             continue;
         double size = vec3_distance(cell->box.lower, cell->box.upper);
@@ -162,12 +163,12 @@ done:
 starg_status search_bound_points(search *s) {
     starg_status status = STARG_OK;
     const witness_row **rows = NULL;
-    uint64_t whole[MOST_WITNESSES];
+    whole_prices whole;
     STARG_NEW(context_of(s), STAGE, rows, s->points.count);
     for (size_t i = 0; i < s->points.count; i++)
         rows[i] = &s->points.data[i].seen;
-    bound_round(s->prices.price, whole);
-    s->known = bound_of_prices(rows, s->points.count, whole, s->redundancy);
+    bound_round(&s->prices, &s->odd, &whole);
+    s->known = bound_of_prices(rows, s->points.count, &whole, s->redundancy);
 done:
     starg_release(context_of(s), rows);
     return status;
@@ -177,16 +178,16 @@ done:
 static starg_status prove(search *s) {
     starg_status status = STARG_OK;
     const witness_row **rows = NULL;
-    uint64_t whole[MOST_WITNESSES];
+    whole_prices whole;
     size_t count = 0;
     STARG_NEW(context_of(s), STAGE, rows, s->cells.count);
     for (size_t i = 0; i < s->cells.count; i++)
         if (s->cells.data[i].children == 0)
             rows[count++] = &s->cells.data[i].open;
-    bound_round(s->prices.price, whole);
-    size_t bound = bound_of_prices(rows, count, whole, s->redundancy);
+    bound_round(&s->prices, &s->odd, &whole);
+    size_t bound = bound_of_prices(rows, count, &whole, s->redundancy);
     if (bound > s->bound)
-        certificate_note_prices(s->problem->certificate, bound, whole);
+        certificate_note_prices(s->problem->certificate, bound, &whole);
     s->bound = bound > s->bound ? bound : s->bound;
 done:
     starg_release(context_of(s), rows);
@@ -260,8 +261,8 @@ done:
 static starg_status go_on(search *s, const row_list *list, bool *changed) {
     starg_status status = STARG_OK;
     bool bind = search_fine_bind(s, list), turn = bind && ++s->refinements % 3 != 0;
-    *changed = false;
-    if (!turn)
+    STARG_TRY(search_find_odd(s, list, changed));
+    if (!*changed && !turn)
         STARG_TRY(ask_further(s, list, changed));
     if (!*changed && bind) {
         s->finest /= 2;

@@ -5,6 +5,7 @@
 
 #include "core/rng.h"
 #include "guard/cells.h"
+#include "guard/odd_sets.h"
 #include "guard/prices.h"
 #include "guard/stages.h"
 
@@ -18,6 +19,9 @@ typedef struct search {
     search_cells cells;
     search_points points;
     witness_prices prices;
+    odd_sets odd;                 /* that have prices beside the witnesses */
+    double odd_value;             /* of the prices when such sets were looked for last */
+    witness_row unpriced;         /* witnesses without a price, left out of the program */
     size_t redundancy;            /* how many guards must see a witness */
     uint16_t *need;               /* by column: how often it must be seen */
     uint32_t *views;              /* by column: how many of the first candidates see it */
@@ -44,6 +48,11 @@ static inline double search_value(const search *s) {
     return (double)s->redundancy * s->prices.sum;
 }
 
+/* What the row holds is worth at these prices. */
+static inline double search_worth(const search *s, const witness_row *row) {
+    return prices_of_row(&s->prices, &s->odd, row);
+}
+
 static inline starg_context *context_of(const search *s) {
     return s->problem->context;
 }
@@ -60,9 +69,11 @@ static inline void row_list_free(starg_context *context, row_list *list) {
     starg_release(context, list->points);
 }
 
-static inline bool is_needless(const row_list *list, const witness_row *row) {
+/* Does a row of the list hold what this one holds of these witnesses? */
+static inline bool is_needless(const row_list *list, const witness_row *row,
+                               const witness_row *among) {
     for (size_t k = 0; k < list->count; k++)
-        if (row_is_within(row, list->rows[k]))
+        if (row_is_within_among(row, list->rows[k], among))
             return true;
     return false;
 }
@@ -110,6 +121,10 @@ double search_largest_value(const search *s);
  * of their program, a subset of all. `prices.work` is that of all programs it took. Errors:
  * MEMORY. */
 starg_status search_find_prices(search *s, row_list *list);
+
+/* Odd sets of which the fractional cover by the list holds too little get prices (at first 0), if
+ * the last ones have raised the bound. *changed: there are some. Errors: MEMORY. */
+starg_status search_find_odd(search *s, const row_list *list, bool *changed);
 
 /* Is a leaf small enough to count as a point? Do such leaves hold the prices down? */
 bool search_is_fine(const search *s, const search_cell *leaf);

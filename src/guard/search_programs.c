@@ -35,10 +35,11 @@ static starg_status make_program(const search *s, const row_list *list, starg_bi
 
 /* Points worth at least `least` that see what no other of them does. */
 static void list_needed(const search *s, double least, row_list *list) {
+    const witness_row all = all_witnesses(s);
     list->count = 0;
     for (size_t i = 0; i < s->points.count; i++) {
         const witness_row *seen = &s->points.data[i].seen;
-        if (row_value(seen, s->prices.price) >= least && !is_needless(list, seen))
+        if (search_worth(s, seen) >= least && !is_needless(list, seen, &all))
             row_list_add(s, list, i);
     }
 }
@@ -110,7 +111,7 @@ static void list_useful_candidates(const search *s, uint32_t *list, size_t *coun
     *count = 0;
     for (size_t i = 0; i < s->points.count; i++)
         if (s->points.data[i].candidate != UINT32_MAX &&
-            row_value(&s->points.data[i].seen, s->prices.price) >= least)
+            search_worth(s, &s->points.data[i].seen) >= least)
             list[(*count)++] = (uint32_t)i;
 }
 

@@ -19,6 +19,15 @@ static inline bool row_is_within(const witness_row *a, const witness_row *b) {
     return outside == 0;
 }
 
+/* Of those in `among`? */
+static inline bool row_is_within_among(const witness_row *a, const witness_row *b,
+                                       const witness_row *among) {
+    uint64_t outside = 0;
+    for (int w = 0; w < WITNESS_WORDS; w++)
+        outside |= a->bits[w] & among->bits[w] & ~b->bits[w];
+    return outside == 0;
+}
+
 static inline double row_value(const witness_row *row, const double *prices) {
     double sum = 0;
     for (size_t w = 0; w < WITNESS_WORDS; w++)

@@ -35,7 +35,8 @@ typedef struct everywhere_cell {
 /* What a proof by branching says of one node. */
 typedef struct everywhere_node {
     uint32_t witness;    /* UINT32_MAX: prices                                           */
-    size_t first, count; /* of the numbers: rows; or witness, price, witness, price, ... */
+    size_t first, count; /* of the numbers: rows; or for each price the number of its witnesses,
+                            these, and the price */
 } everywhere_node;
 
 struct starg_certificate {

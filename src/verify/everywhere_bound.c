@@ -7,7 +7,10 @@
  * as often as it is to be seen. With rows, each leaf is within one, and the nodes prove that so
  * many rows do not hold all witnesses.
  *
- * Cost: the witnesses of all leaves; for each node those of all rows. */
+ * A price of several witnesses, an odd set, is paid for each half of the number that somebody sees
+ * of them, rounded up: all together see at least half of all, rounded up.
+ *
+ * Cost: the witnesses of all leaves, and their odd sets; for each node those of all rows. */
 #include <stdio.h>
 
 #include "core/int128.h"
@@ -17,9 +20,10 @@ static const char STAGE[] = "verify";
 
 typedef struct proving {
     const starg_certificate *own;
-    uint8_t *gone;      /* by row: covers that have it were dealt with */
-    uint64_t *price;    /* by witness */
-    size_t next, depth; /* the node that comes now */
+    uint8_t *gone;               /* by row: covers that have it were dealt with */
+    uint64_t *price;             /* by witness, of it alone */
+    const everywhere_node *sets; /* the node with the prices of odd sets */
+    size_t next, depth;          /* the node that comes now */
     everywhere_words *why;
 } proving;
 
@@ -32,14 +36,6 @@ static bool is_within(const uint64_t *a, const uint64_t *b, size_t words) {
         if ((a[w] & ~b[w]) != 0)
             return false;
     return true;
-}
-
-static uint64_t sum_of(const uint64_t *row, size_t words, const uint64_t *price) {
-    uint64_t sum = 0;
-    for (size_t w = 0; w < words; w++)
-        STARG_FOR_BITS (bit, row[w])
-            sum += price[64 * w + bit];
-    return sum;
 }
 
 /* ---- leaves ---- */
@@ -91,39 +87,57 @@ static bool is_in_row(void *user, size_t cell, const uint64_t *open) {
 
 /* ---- prices ---- */
 
-/* Reads the prices of a node, which are of witnesses in `wanted` (NULL: of any), and their sum. */
+/* Reads the prices of a node, which are of witnesses in `wanted` (NULL: of any), and what guards
+ * that see each of these `times` times have to pay at least. */
 static bool set_prices(proving *p, const everywhere_node *node, const uint64_t *wanted,
-                       uint64_t *sum) {
-    const uint64_t *numbers = p->own->numbers.data + node->first;
+                       size_t times, starg_uint128 *least) {
+    const uint64_t *at = p->own->numbers.data + node->first, *end = at + node->count;
     memset(p->price, 0, p->own->witness_count * sizeof *p->price);
-    *sum = 0;
-    for (size_t k = 0; k < node->count; k += 2) {
-        if ((wanted != NULL && !starg_bit_test(wanted, numbers[k])) || p->price[numbers[k]] != 0) {
+    p->sets = node;
+    *least = 0;
+    for (; at < end; at += at[0] + 2) {
+        uint64_t count = at[0], price = at[count + 1];
+        bool good = count > 1 || p->price[at[1]] == 0;
+        for (uint64_t k = 1; k <= count; k++)
+            good = good && (wanted == NULL || starg_bit_test(wanted, at[k]));
+        if (!good) {
             say(p, "the prices name a witness twice, or one that is held already: node", p->next);
             return false;
         }
-        p->price[numbers[k]] = numbers[k + 1];
-        *sum += numbers[k + 1];
+        if (count == 1)
+            p->price[at[1]] = price;
+        *least +=
+            (starg_uint128)price * (count == 1 ? times : ((starg_uint128)times * count + 1) / 2);
     }
     return true;
 }
 
-/* Is the sum, so many times, larger than `most` times `largest`? */
-static bool exceeds(uint64_t sum, size_t times, size_t most, uint64_t largest) {
-    return (starg_uint128)sum * times > (starg_uint128)most * largest;
+/* What somebody pays who sees the witnesses of the row. */
+static starg_uint128 paid_for(const proving *p, const uint64_t *row) {
+    const uint64_t *at = p->own->numbers.data + p->sets->first, *end = at + p->sets->count;
+    starg_uint128 sum = 0;
+    for (size_t w = 0; w < p->own->words; w++)
+        STARG_FOR_BITS (bit, row[w])
+            sum += p->price[64 * w + bit];
+    for (; at < end; at += at[0] + 2) {
+        uint64_t count = at[0], seen = 0;
+        for (uint64_t k = 1; k <= count && count > 1; k++)
+            seen += starg_bit_test(row, at[k]);
+        sum += (starg_uint128)at[count + 1] * ((seen + 1) / 2);
+    }
+    return sum;
 }
 
 typedef struct leaf_prices {
     proving *proving;
-    uint64_t all;
+    starg_uint128 least;
     size_t most;
 } leaf_prices;
 
 static bool is_cheap(void *user, size_t cell, const uint64_t *open) {
     const leaf_prices *own = user;
     proving *p = own->proving;
-    bool cheap =
-        exceeds(own->all, p->own->redundancy, own->most, sum_of(open, p->own->words, p->price));
+    bool cheap = own->least > own->most * paid_for(p, open);
     if (!cheap)
         say(p, "a leaf may see witnesses that are worth too much: the one on line",
             p->own->cell_line + cell);
@@ -139,7 +153,7 @@ static starg_status prove_by_leaves(proving *p, size_t most, bool *follows) {
         say(p, "without rows, one node with prices is expected; number of nodes", c->node_count);
         return STARG_OK;
     }
-    *follows = set_prices(p, &c->nodes[0], NULL, &own.all);
+    *follows = set_prices(p, &c->nodes[0], NULL, c->redundancy, &own.least);
     return *follows ? verify_visit_leaves(c, is_cheap, &own, follows) : STARG_OK;
 }
 
@@ -157,17 +171,15 @@ static bool holds_within(const starg_certificate *own, const uint64_t *a, const 
 static bool prices_prove(proving *p, const everywhere_node *node, const uint64_t *wanted,
                          size_t most) {
     const starg_certificate *own = p->own;
-    uint64_t sum;
-    if (!set_prices(p, node, wanted, &sum))
+    starg_uint128 least;
+    if (!set_prices(p, node, wanted, 1, &least))
         return false;
-    for (size_t i = 0; i < own->row_count; i++) {
-        uint64_t worth = p->gone[i] ? 0 : sum_of(own->rows + i * own->words, own->words, p->price);
-        if (!exceeds(sum, 1, most, worth)) {
+    for (size_t i = 0; i < own->row_count; i++)
+        if (!p->gone[i] && least <= most * paid_for(p, own->rows + i * own->words)) {
             say(p, "the prices do not prove what they should: node", p->next);
             return false;
         }
-    }
-    return sum > 0;
+    return least > 0;
 }
 
 /* Has each row that is left and holds the witness its branch, or one at least as good? */

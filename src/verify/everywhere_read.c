@@ -160,7 +160,9 @@ done:
 static starg_status read_head(reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(take_text(r, "starguard-certificate 1"));
+    STARG_TRY(take_text(r, "starguard-certificate "));
+    if (!take(r, '1')) /* the first version has no cuts at given places and no odd sets */
+        STARG_TRY(take_text(r, "2"));
     STARG_TRY(end_line(r));
     STARG_TRY(read_size(r, "vertices ", &own->vertex_count));
     STARG_TRY(read_size(r, "faces ", &own->face_count));
@@ -291,9 +293,26 @@ done:
     return status;
 }
 
-static starg_status read_cell(reader *r, everywhere_cell *cell) {
+/* Where a cell is cut: in the middle of the axis, unless a place is given. */
+static starg_status read_cut(reader *r, const everywhere_cell *cell, double *at) {
+    starg_status status = STARG_OK;
+    int k = cell->kind;
+    double lower = cell->box.lower[k], upper = cell->box.upper[k];
+    *at = fmin(fmax(0.5 * lower + 0.5 * upper, lower), upper);
+    if (!take(r, '@'))
+        return STARG_OK;
+    STARG_TRY(take_double(r, at));
+    if (!(*at >= lower && *at <= upper))
+        status = reject(r, "the cell is cut outside of itself");
+done:
+    return status;
+}
+
+static starg_status read_cell(reader *r, everywhere_cell *cell, double *at) {
     starg_status status = STARG_OK;
     STARG_TRY(read_kind(r, cell));
+    if (cell->kind < EVERYWHERE_LEAF)
+        STARG_TRY(read_cut(r, cell, at));
     cell->first = r->own->reasons.count;
     while (cell->kind <= EVERYWHERE_LEAF && take(r, ' '))
         STARG_TRY(read_reason(r));
@@ -303,11 +322,9 @@ done:
     return status;
 }
 
-static void halve(const verify_box *box, int axis, verify_box halves[2]) {
-    double middle = 0.5 * box->lower[axis] + 0.5 * box->upper[axis];
-    middle = fmin(fmax(middle, box->lower[axis]), box->upper[axis]);
+static void cut(const verify_box *box, int axis, double at, verify_box halves[2]) {
     halves[0] = halves[1] = *box;
-    halves[0].upper[axis] = halves[1].lower[axis] = middle;
+    halves[0].upper[axis] = halves[1].lower[axis] = at;
 }
 
 /* A cell is followed by all of its lower half, then the upper one. Boxes that are still to come
@@ -329,20 +346,21 @@ static starg_status read_cells(reader *r, const verify_box *root) {
     for (size_t i = 0; i < own->cell_count; i++) {
         everywhere_cell *cell = &own->cells[i];
         verify_box halves[2];
+        double at;
         if (left == 0) {
             status = reject(r, "the cells before this one fill the root: none may follow");
             goto done;
         }
         cell->box = stack[--left].box;
         int depth = stack[left].depth + 1;
-        STARG_TRY(read_cell(r, cell));
+        STARG_TRY(read_cell(r, cell, &at));
         if (cell->kind >= EVERYWHERE_LEAF)
             continue;
         if (depth > EVERYWHERE_DEPTH) {
             status = reject(r, "cells are cut too often");
             goto done;
         }
-        halve(&cell->box, cell->kind, halves);
+        cut(&cell->box, cell->kind, at, halves);
         for (int k = 1; k >= 0; k--) {
             stack[left].box = halves[k];
             stack[left++].depth = depth;
@@ -357,14 +375,34 @@ done:
 
 /* ---- branches ---- */
 
+/* One witness, or an odd number of them in ascending order. */
+static starg_status read_priced(reader *r) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    uint64_t witness, before = 0;
+    size_t first = own->numbers.count, count = 0;
+    STARG_PUSH(r->context, STAGE, &own->numbers, 0);
+    do {
+        STARG_TRY(take_witness(r, &witness));
+        if (count++ > 0 && witness <= before)
+            return reject(r, "the witnesses of a set are not in ascending order");
+        before = witness;
+        STARG_PUSH(r->context, STAGE, &own->numbers, witness);
+    } while (take(r, '+'));
+    own->numbers.data[first] = count;
+    if (count % 2 == 0)
+        status = reject(r, "a set has an odd number of witnesses");
+done:
+    return status;
+}
+
 static starg_status read_prices(reader *r) {
     starg_status status = STARG_OK;
-    uint64_t witness, price;
+    uint64_t price;
     while (take(r, ' ')) {
-        STARG_TRY(take_witness(r, &witness));
+        STARG_TRY(read_priced(r));
         STARG_TRY(take_text(r, ":"));
         STARG_TRY(take_number(r, EVERYWHERE_PRICE, &price));
-        STARG_PUSH(r->context, STAGE, &r->own->numbers, witness);
         STARG_PUSH(r->context, STAGE, &r->own->numbers, price);
     }
 done:

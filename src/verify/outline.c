@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The outline of a certificate: its witnesses, and the cells from which a guard may see its share
  * of them. The prices are those of the first node; a proof that begins with a branch has none
- * there, and all witnesses weigh the same. Nothing is checked. Cost: the witnesses of all leaves.
+ * there, and all witnesses weigh the same. Of an odd set each witness weighs half. Nothing is
+ * checked. Cost: the witnesses of all leaves.
  */
 #include "core/int128.h"
 #include "verify/everywhere.h"
@@ -19,10 +20,10 @@ static void set_prices(sharing *s) {
     bool priced = own->node_count > 0 && own->nodes[0].witness == UINT32_MAX;
     for (size_t j = 0; j < own->witness_count; j++)
         s->price[j] = priced ? 0 : 1;
-    for (size_t k = 0; priced && k < own->nodes[0].count; k += 2) {
-        const uint64_t *number = own->numbers.data + own->nodes[0].first + k;
-        s->price[number[0]] = number[1];
-    }
+    const uint64_t *at = own->numbers.data;
+    for (size_t k = 0; priced && k < own->nodes[0].count; k += at[k] + 2)
+        for (uint64_t i = 1; i <= at[k]; i++)
+            s->price[at[k + i]] += at[k + at[k] + 1] / (at[k] > 1 ? 2 : 1);
     for (size_t j = 0; j < own->witness_count; j++)
         s->all += s->price[j];
 }

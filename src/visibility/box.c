@@ -287,6 +287,13 @@ static void set_current(box_worker *w, const bvh_box *box) {
             fmin(fmax(0.5 * box->lower[k] + 0.5 * box->upper[k], box->lower[k]), box->upper[k]);
 }
 
+static bool holds(const bvh_box *box, const double p[3]) {
+    for (int k = 0; k < 3; k++)
+        if (p[k] < box->lower[k] || p[k] > box->upper[k])
+            return false;
+    return true;
+}
+
 /* What is outside of the bounding box of all is outside of the solid. False: all of it. */
 static bool crop(const bvh_box *all, const bvh_box *box, bvh_box *out) {
     bool any = true;
@@ -298,15 +305,22 @@ static bool crop(const bvh_box *all, const bvh_box *box, bvh_box *out) {
     return any;
 }
 
-/* False: the box is outside of the solid. */
-static bool begin(box_worker *w, const bvh_box *box) {
+/* Outside of a solid there are boxes for which the error bounds do not hold. */
+static bool is_in_reach(const box_scene *scene, const bvh_box *box) {
+    return scene->solid->ambient == 0 ||
+           (holds(&scene->all, box->lower) && holds(&scene->all, box->upper));
+}
+
+bool box_enter(box_worker *w, const bvh_box *box) {
     const starg_solid *solid = w->scene->solid;
     w->box = *box;
+    w->crossing_count = 0;
+    if (!is_in_reach(w->scene, box))
+        return true;
     if (solid->ambient == 0 && !crop(&w->scene->tree->nodes[0].box, box, &w->box))
         return false;
     renew_marks(w);
     w->question++;
-    w->crossing_count = 0;
     set_current(w, &w->box);
     bvh_query_box(w->scene->tree, &w->box, add_crossing, w);
     return w->crossing_count > 0 || starg_solid_contains(solid, w->centre);
@@ -317,13 +331,6 @@ static bool is_beyond(const bvh_box *box, const double v[3], double range) {
     for (int k = 0; k < 3; k++)
         nearest[k] = fmin(fmax(v[k], box->lower[k]), box->upper[k]);
     return range < 1e100 && compare_distance(nearest, v, range) > 0;
-}
-
-static bool holds(const bvh_box *box, const double p[3]) {
-    for (int k = 0; k < 3; k++)
-        if (p[k] < box->lower[k] || p[k] > box->upper[k])
-            return false;
-    return true;
 }
 
 /* Why the current box does not see the vertex. */
@@ -416,16 +423,10 @@ static box_reason ask(box_worker *w, const box_question *q, uint32_t target, boo
     return hidden_by(w->scene, kind, target, seed, false);
 }
 
-/* Outside of a solid there are boxes for which the error bounds do not hold. */
-static bool is_in_reach(const box_scene *scene, const bvh_box *box) {
-    return scene->solid->ambient == 0 ||
-           (holds(&scene->all, box->lower) && holds(&scene->all, box->upper));
-}
-
 void box_look(box_worker *w, const box_question *q, uint64_t *open, box_reason *reasons) {
     memset(open, 0, starg_bit_words(q->count) * sizeof *open);
     bool reached = is_in_reach(w->scene, &q->box);
-    bool outside = reached && !begin(w, &q->box);
+    bool outside = !box_enter(w, &q->box);
     for (size_t i = 0; i < q->count; i++) {
         if (q->among != NULL && !starg_bit_test(q->among, i))
             continue;

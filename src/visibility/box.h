@@ -84,6 +84,19 @@ typedef struct box_question {
 void box_look(box_worker *worker, const box_question *question, uint64_t *open,
               box_reason *reasons);
 
+/* A plane across an axis, and what is cut off there. */
+typedef struct box_cut {
+    double at;
+    int axis;
+    bool above; /* what is above, or below */
+} box_cut;
+
+enum { BOX_CUTS = 6 };
+
+/* Cuts off parts of the box that box_look finds to be outside of the free space; returns the number
+ * of cuts, in this order. */
+int box_trim(box_worker *worker, bvh_box *box, box_cut cuts[BOX_CUTS]);
+
 /* How many vertices were compared with boxes so far (a face whose plane does not decide counts for
  * each of its vertices that was looked at). */
 uint64_t box_worker_tests(const box_worker *worker);

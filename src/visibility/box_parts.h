@@ -83,6 +83,10 @@ typedef enum box_flood_kind {
 bool box_flood_closes(box_worker *worker, const box_shaft *shaft, uint32_t seed, int side,
                       box_flood_kind kind, uint32_t first);
 
+/* Begins a question about the box: lists the triangles that may meet it. False: the box is surely
+ * outside of the free space. */
+bool box_enter(box_worker *worker, const bvh_box *box);
+
 /* The next triangle around its vertex: corner numbers are 3 x rank + corner. */
 static inline uint32_t box_turn(const box_scene *scene, uint32_t corner) {
     uint32_t k = corner % 3;

@@ -63,7 +63,7 @@ static void test_prices_meet_their_cover(void **state) {
         problem p = random_problem(item);
         link_rows(&p);
         witness_prices prices;
-        test_ok(context, prices_find(context, p.list, p.count, &p.wanted, &prices));
+        test_ok(context, prices_find(context, p.list, p.count, &p.wanted, NULL, &prices));
         double cover = 0;
         for (size_t i = 0; i < p.count; i++) {
             assert_true(row_value(&p.rows[i], prices.price) <= 1 + 1e-12);
@@ -97,7 +97,7 @@ static void test_bounds_against_enumeration(void **state) {
         size_t least = 1;
         while (!holds(&p, p.wanted, least))
             least++;
-        test_ok(context, prices_find(context, p.list, p.count, &p.wanted, &prices));
+        test_ok(context, prices_find(context, p.list, p.count, &p.wanted, NULL, &prices));
         bound_round(prices.price, whole);
         size_t bound = bound_of_prices(p.list, p.count, whole, 1);
         assert_true(bound <= least && (double)bound > prices.sum - 1e-2);
@@ -124,7 +124,7 @@ static void test_corrupted_row_is_noticed(void **state) {
         link_rows(&p);
         witness_prices prices;
         uint64_t whole[MOST_WITNESSES], work = 0;
-        test_ok(context, prices_find(context, p.list, p.count, &p.wanted, &prices));
+        test_ok(context, prices_find(context, p.list, p.count, &p.wanted, NULL, &prices));
         bound_round(prices.price, whole);
         size_t bound = bound_of_prices(p.list, p.count, whole, 1);
         if (bound > 1) {
