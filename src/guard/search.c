@@ -40,10 +40,11 @@
 static const char STAGE[] = "search";
 
 enum {
-    COMPARED = 800, /* comparisons of points that take as long as a test */
+    VALUES = 5,     /* values of rows that take as long as a test */
+    COMPARED = 300, /* comparisons of points that take as long as a test */
     LEAST_BATCH = 32,
     MOST_BATCH = 2048,
-    TRIES = 2,
+    TRIES = 1,
     FEW_NODES = 10,
     MANY_NODES = 300,
     CLOSINGS = 3,
@@ -124,11 +125,9 @@ int search_by_score(const void *a, const void *b) {
     return (x->cell > y->cell) - (x->cell < y->cell);
 }
 
-starg_status search_list_leaves(const search *s, double most, scored_leaf **out, size_t *count) {
+starg_status search_list_leaves(search *s, double most, size_t first, leaf_list *list) {
     starg_status status = STARG_OK;
-    *count = 0;
-    STARG_NEW(context_of(s), STAGE, *out, s->cells.count);
-    for (size_t i = 0; i < s->cells.count; i++) {
+    for (size_t i = first; i < s->cells.count; i++) {
         const search_cell *cell = &s->cells.data[i];
         if (cell->children != 0 || search_is_fine(s, cell))
             continue;
@@ -136,10 +135,20 @@ starg_status search_list_leaves(const search *s, double most, scored_leaf **out,
         if (value <= most)
             continue;
         double size = vec3_distance(cell->box.lower, cell->box.upper);
-        (*out)[(*count)++] = (scored_leaf){(value - most) * sqrt(size), (uint32_t)i};
+        scored_leaf leaf = {(value - most) * sqrt(size), (uint32_t)i};
+        STARG_PUSH(context_of(s), STAGE, list, leaf);
     }
+    s->scene.work += (s->cells.count - first) / VALUES;
 done:
     return status;
+}
+
+static void drop_split(const search *s, leaf_list *list) {
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++)
+        if (s->cells.data[list->data[i].cell].children == 0)
+            list->data[kept++] = list->data[i];
+    list->count = kept;
 }
 
 starg_status search_split(search *s, scored_leaf *list, size_t count, int tries) {
@@ -225,21 +234,20 @@ static size_t next_aim(const search *s) {
  * the prices. *changed: there are some. */
 static starg_status split_costly(search *s, bool *changed) {
     starg_status status = STARG_OK;
-    scored_leaf *leaves = NULL;
-    size_t count, aim = next_aim(s);
+    leaf_list leaves = {0};
+    size_t aim = next_aim(s);
     double most = aim > 1 ? search_value(s) / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
     uint64_t enough = s->scene.work + s->prices.work;
-    *changed = false;
-    do {
-        STARG_TRY(search_list_leaves(s, most, &leaves, &count));
-        if (count > 0)
-            STARG_TRY(search_split(s, leaves, count, TRIES));
-        *changed = *changed || count > 0;
-        starg_release(context_of(s), leaves);
-        leaves = NULL;
-    } while (count > 0 && !s->ended && s->scene.work < enough);
+    STARG_TRY(search_list_leaves(s, most, 0, &leaves));
+    *changed = leaves.count > 0;
+    while (leaves.count > 0 && !s->ended && s->scene.work < enough) {
+        size_t first = s->cells.count;
+        STARG_TRY(search_split(s, leaves.data, leaves.count, TRIES));
+        drop_split(s, &leaves);
+        STARG_TRY(search_list_leaves(s, most, first, &leaves));
+    }
 done:
-    starg_release(context_of(s), leaves);
+    STARG_ARRAY_FREE(context_of(s), &leaves);
     return status;
 }
 

@@ -33,8 +33,8 @@ uint64_t search_improve_work(const search *s) {
 
 starg_status search_improve(search *s, row_list *list) {
     starg_status status = STARG_OK;
-    scored_leaf *leaves = NULL;
-    size_t count, before = s->count;
+    leaf_list leaves = {0};
+    size_t before = s->count;
     double most;
     bool changed = false;
     STARG_TRY(search_find_prices(s, list));
@@ -53,12 +53,12 @@ starg_status search_improve(search *s, row_list *list) {
         STARG_TRY(search_add_short(s, list, &changed));
     if (changed)
         goto done;
-    STARG_TRY(search_list_leaves(s, 1, &leaves, &count));
-    if (count > 0)
-        STARG_TRY(search_split(s, leaves, count, TRIES));
-    s->ended = count == 0;
+    STARG_TRY(search_list_leaves(s, 1, 0, &leaves));
+    if (leaves.count > 0)
+        STARG_TRY(search_split(s, leaves.data, leaves.count, TRIES));
+    s->ended = leaves.count == 0;
 done:
-    starg_release(context_of(s), leaves);
+    STARG_ARRAY_FREE(context_of(s), &leaves);
     return status;
 }
 

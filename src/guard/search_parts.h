@@ -170,6 +170,8 @@ typedef struct scored_leaf {
     uint32_t cell;
 } scored_leaf;
 
+typedef STARG_ARRAY(scored_leaf) leaf_list;
+
 /* Sorts the leaves and splits those at the front that can be split, about a quarter of them, with
  * `tries` points in each part. Errors: MEMORY, CANCELLED. */
 starg_status search_split(search *s, scored_leaf *list, size_t count, int tries);
@@ -177,8 +179,8 @@ starg_status search_split(search *s, scored_leaf *list, size_t count, int tries)
 /* By decreasing score, then by number. */
 int search_by_score(const void *a, const void *b);
 
-/* Leaves whose value may exceed `most`, in an array that starg_release frees. Errors: MEMORY. */
-starg_status search_list_leaves(const search *s, double most, scored_leaf **out, size_t *count);
+/* Appends leaves from number `first` on that are worth more than `most`. Errors: MEMORY. */
+starg_status search_list_leaves(search *s, double most, size_t first, leaf_list *list);
 
 /* The integer program over the points: do fewer guards see all witnesses? *changed: there are
  * better guards, or more witnesses. Errors: MEMORY, CANCELLED. */

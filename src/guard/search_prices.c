@@ -18,7 +18,7 @@
 static const char STAGE[] = "search";
 
 /* Comparisons and values of rows that take as long as a test of a witness. */
-enum { PROGRAMS = 6, COMPARISONS = 400, VALUES = 12 };
+enum { PROGRAMS = 6, COMPARISONS = 150, VALUES = 5 };
 
 /* The least share of a fractional cover that counts. */
 static const double LEAST_SHARE = 1e-6;
