@@ -240,7 +240,8 @@ static starg_status split_costly(search *s, bool *changed) {
     uint64_t enough = s->scene.work + s->prices.work;
     STARG_TRY(search_list_leaves(s, most, 0, &leaves));
     *changed = leaves.count > 0;
-    while (leaves.count > 0 && !s->ended && s->scene.work < enough) {
+    for (bool more = *changed; more;
+         more = leaves.count > 0 && !s->ended && s->scene.work < enough) {
         size_t first = s->cells.count;
         STARG_TRY(search_split(s, leaves.data, leaves.count, TRIES));
         drop_split(s, &leaves);
@@ -336,8 +337,12 @@ static starg_status prove_by_leaves(search *s) {
         return STARG_OK;
     s->finest = INFINITY;
     STARG_TRY(row_list_make(context_of(s), 2 * s->points.count + s->cells.count, &list));
-    STARG_TRY(search_find_prices(s, &list));
-    STARG_TRY(prove(s));
+    s->odd_rounds = 0;
+    for (bool changed = true; changed;) {
+        STARG_TRY(search_find_prices(s, &list));
+        STARG_TRY(prove(s));
+        STARG_TRY(search_find_odd(s, &list, &changed));
+    }
 done:
     row_list_free(context_of(s), &list);
     return status;

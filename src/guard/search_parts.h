@@ -21,6 +21,7 @@ typedef struct search {
     witness_prices prices;
     odd_sets odd;                 /* that have prices beside the witnesses */
     double odd_value;             /* of the prices when such sets were looked for last */
+    int odd_rounds;               /* that looked for such sets, one after the other */
     witness_row unpriced;         /* witnesses without a price, left out of the program */
     size_t redundancy;            /* how many guards must see a witness */
     uint16_t *need;               /* by column: how often it must be seen */
@@ -123,7 +124,8 @@ double search_largest_value(const search *s);
 starg_status search_find_prices(search *s, row_list *list);
 
 /* Odd sets of which the fractional cover by the list holds too little get prices (at first 0), if
- * the last ones have raised the bound. *changed: there are some. Errors: MEMORY. */
+ * the prices have changed since. A few times in a row, then other means have their turn. *changed:
+ * there are some. Errors: MEMORY. */
 starg_status search_find_odd(search *s, const row_list *list, bool *changed);
 
 /* Is a leaf small enough to count as a point? Do such leaves hold the prices down? */

@@ -18,7 +18,7 @@
 static const char STAGE[] = "search";
 
 /* Comparisons and values of rows that take as long as a test of a witness. */
-enum { PROGRAMS = 6, COMPARISONS = 150, VALUES = 5 };
+enum { PROGRAMS = 6, COMPARISONS = 150, VALUES = 5, ODD_ROUNDS = 5 };
 
 /* The least share of a fractional cover that counts. */
 static const double LEAST_SHARE = 1e-6;
@@ -29,8 +29,8 @@ static const double BINDING = 0.98;
 /* Of a witness that stays in the program. */
 static const double LEAST_PRICE = 1e-4;
 
-/* Of the bound, between two searches for odd sets. */
-static const double LEAST_RISE = 5e-3;
+/* Of the sum of prices, between two searches for odd sets. */
+static const double LEAST_CHANGE = 5e-3;
 
 bool search_is_fine(const search *s, const search_cell *leaf) {
     return cell_length(&leaf->box) <= s->finest;
@@ -135,9 +135,13 @@ starg_status search_find_odd(search *s, const row_list *list, bool *changed) {
     size_t added = 0;
     const odd_sets_question question = {list->rows, s->prices.share, list->count, s->prices.price};
     *changed = false;
-    if (s->redundancy > 1 || fabs(search_value(s) - s->odd_value) < LEAST_RISE)
+    if (s->redundancy > 1 || s->odd_rounds == ODD_ROUNDS ||
+        fabs(search_value(s) - s->odd_value) < LEAST_CHANGE) {
+        s->odd_rounds = 0;
         return STARG_OK;
+    }
     s->odd_value = search_value(s);
+    s->odd_rounds++;
     STARG_TRY(
         odd_sets_renew(context_of(s), &question, &s->odd, s->prices.odd, &added, &s->scene.work));
     *changed = added > 0;

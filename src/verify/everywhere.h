@@ -6,6 +6,7 @@
 #define STARG_VERIFY_EVERYWHERE_H
 
 #include "core/bits.h"
+#include "core/int128.h"
 #include "core/memory.h"
 #include "starguard/verify.h"
 #include "verify/facts.h"
@@ -74,6 +75,14 @@ typedef bool everywhere_visit(void *user, size_t cell, const uint64_t *open);
  * CANCELLED. */
 starg_status verify_visit_leaves(const starg_certificate *certificate, everywhere_visit *visit,
                                  void *user, bool *all);
+
+/* By the prices of a node: what guards pay at least who see each witness `times` times, and what
+ * one pays who sees the witnesses of the row. A price of several witnesses is paid for each half of
+ * what one sees of them. */
+starg_uint128 verify_least_paid(const starg_certificate *certificate, const everywhere_node *node,
+                                size_t times);
+starg_uint128 verify_paid(const starg_certificate *certificate, const everywhere_node *node,
+                          const uint64_t *row);
 
 /* Does the bound follow if all reasons hold? `why` says what is wrong if it does not. Errors:
  * MEMORY, CANCELLED. */

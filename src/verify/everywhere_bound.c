@@ -13,7 +13,6 @@
  * Cost: the witnesses of all leaves, and their odd sets; for each node those of all rows. */
 #include <stdio.h>
 
-#include "core/int128.h"
 #include "verify/everywhere.h"
 
 static const char STAGE[] = "verify";
@@ -87,45 +86,40 @@ static bool is_in_row(void *user, size_t cell, const uint64_t *open) {
 
 /* ---- prices ---- */
 
-/* Reads the prices of a node, which are of witnesses in `wanted` (NULL: of any), and what guards
- * that see each of these `times` times have to pay at least. */
-static bool set_prices(proving *p, const everywhere_node *node, const uint64_t *wanted,
-                       size_t times, starg_uint128 *least) {
-    const uint64_t *at = p->own->numbers.data + node->first, *end = at + node->count;
-    memset(p->price, 0, p->own->witness_count * sizeof *p->price);
-    p->sets = node;
-    *least = 0;
-    for (; at < end; at += at[0] + 2) {
-        uint64_t count = at[0], price = at[count + 1];
-        bool good = count > 1 || p->price[at[1]] == 0;
-        for (uint64_t k = 1; k <= count; k++)
-            good = good && (wanted == NULL || starg_bit_test(wanted, at[k]));
-        if (!good) {
-            say(p, "the prices name a witness twice, or one that is held already: node", p->next);
-            return false;
-        }
-        if (count == 1)
-            p->price[at[1]] = price;
-        *least +=
-            (starg_uint128)price * (count == 1 ? times : ((starg_uint128)times * count + 1) / 2);
-    }
-    return true;
-}
-
-/* What somebody pays who sees the witnesses of the row. */
-static starg_uint128 paid_for(const proving *p, const uint64_t *row) {
-    const uint64_t *at = p->own->numbers.data + p->sets->first, *end = at + p->sets->count;
+starg_uint128 verify_least_paid(const starg_certificate *own, const everywhere_node *node,
+                                size_t times) {
+    const uint64_t *at = own->numbers.data + node->first, *end = at + node->count;
     starg_uint128 sum = 0;
-    for (size_t w = 0; w < p->own->words; w++)
-        STARG_FOR_BITS (bit, row[w])
-            sum += p->price[64 * w + bit];
     for (; at < end; at += at[0] + 2) {
-        uint64_t count = at[0], seen = 0;
-        for (uint64_t k = 1; k <= count && count > 1; k++)
-            seen += starg_bit_test(row, at[k]);
-        sum += (starg_uint128)at[count + 1] * ((seen + 1) / 2);
+        starg_uint128 seen = (starg_uint128)at[0] * times;
+        sum += at[at[0] + 1] * (at[0] == 1 ? seen : (seen + 1) / 2);
     }
     return sum;
+}
+
+starg_uint128 verify_paid(const starg_certificate *own, const everywhere_node *node,
+                          const uint64_t *row) {
+    const uint64_t *at = own->numbers.data + node->first, *end = at + node->count;
+    starg_uint128 sum = 0;
+    for (; at < end; at += at[0] + 2) {
+        uint64_t seen = 0;
+        for (uint64_t k = 1; k <= at[0]; k++)
+            seen += starg_bit_test(row, at[k]);
+        sum += (starg_uint128)at[at[0] + 1] * ((seen + 1) / 2);
+    }
+    return sum;
+}
+
+/* Are the prices of the node of witnesses in `wanted` only? */
+static bool are_wanted(proving *p, const everywhere_node *node, const uint64_t *wanted) {
+    const uint64_t *at = p->own->numbers.data + node->first, *end = at + node->count;
+    for (; at < end; at += at[0] + 2)
+        for (uint64_t k = 1; k <= at[0]; k++)
+            if (!starg_bit_test(wanted, at[k])) {
+                say(p, "the prices name a witness that is held already: node", p->next);
+                return false;
+            }
+    return true;
 }
 
 typedef struct leaf_prices {
@@ -137,7 +131,7 @@ typedef struct leaf_prices {
 static bool is_cheap(void *user, size_t cell, const uint64_t *open) {
     const leaf_prices *own = user;
     proving *p = own->proving;
-    bool cheap = own->least > own->most * paid_for(p, open);
+    bool cheap = own->least > own->most * verify_paid(p->own, &p->own->nodes[0], open);
     if (!cheap)
         say(p, "a leaf may see witnesses that are worth too much: the one on line",
             p->own->cell_line + cell);
@@ -153,8 +147,8 @@ static starg_status prove_by_leaves(proving *p, size_t most, bool *follows) {
         say(p, "without rows, one node with prices is expected; number of nodes", c->node_count);
         return STARG_OK;
     }
-    *follows = set_prices(p, &c->nodes[0], NULL, c->redundancy, &own.least);
-    return *follows ? verify_visit_leaves(c, is_cheap, &own, follows) : STARG_OK;
+    own.least = verify_least_paid(c, &c->nodes[0], c->redundancy);
+    return verify_visit_leaves(c, is_cheap, &own, follows);
 }
 
 /* ---- branches ---- */
@@ -171,11 +165,11 @@ static bool holds_within(const starg_certificate *own, const uint64_t *a, const 
 static bool prices_prove(proving *p, const everywhere_node *node, const uint64_t *wanted,
                          size_t most) {
     const starg_certificate *own = p->own;
-    starg_uint128 least;
-    if (!set_prices(p, node, wanted, 1, &least))
+    const starg_uint128 least = verify_least_paid(own, node, 1);
+    if (!are_wanted(p, node, wanted))
         return false;
     for (size_t i = 0; i < own->row_count; i++)
-        if (!p->gone[i] && least <= most * paid_for(p, own->rows + i * own->words)) {
+        if (!p->gone[i] && least <= most * verify_paid(own, node, own->rows + i * own->words)) {
             say(p, "the prices do not prove what they should: node", p->next);
             return false;
         }
@@ -297,12 +291,10 @@ starg_status verify_check_bound(const starg_certificate *own, bool *follows,
         return STARG_OK;
     }
     STARG_NEW_ZERO(own->context, STAGE, p.gone, own->row_count);
-    STARG_NEW_ZERO(own->context, STAGE, p.price, own->witness_count);
     if (own->bound > 1)
         STARG_TRY(own->row_count > 0 ? prove_by_rows(&p, own->bound - 1, follows)
                                      : prove_by_leaves(&p, own->bound - 1, follows));
 done:
     starg_release(own->context, p.gone);
-    starg_release(own->context, p.price);
     return status;
 }

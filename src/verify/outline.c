@@ -4,40 +4,31 @@
  * there, and all witnesses weigh the same. Of an odd set each witness weighs half. Nothing is
  * checked. Cost: the witnesses of all leaves.
  */
-#include "core/int128.h"
 #include "verify/everywhere.h"
 
 static const char STAGE[] = "certificate";
 
 typedef struct sharing {
     const starg_certificate *own;
-    uint64_t *price, all;
+    const everywhere_node *priced; /* NULL: all witnesses weigh the same */
+    starg_uint128 all;
     starg_certificate_outline *out;
 } sharing;
 
 static void set_prices(sharing *s) {
     const starg_certificate *own = s->own;
-    bool priced = own->node_count > 0 && own->nodes[0].witness == UINT32_MAX;
-    for (size_t j = 0; j < own->witness_count; j++)
-        s->price[j] = priced ? 0 : 1;
-    const uint64_t *at = own->numbers.data;
-    for (size_t k = 0; priced && k < own->nodes[0].count; k += at[k] + 2)
-        for (uint64_t i = 1; i <= at[k]; i++)
-            s->price[at[k + i]] += at[k + at[k] + 1] / (at[k] > 1 ? 2 : 1);
-    for (size_t j = 0; j < own->witness_count; j++)
-        s->all += s->price[j];
+    if (own->node_count > 0 && own->nodes[0].witness == UINT32_MAX)
+        s->priced = &own->nodes[0];
+    s->all = s->priced != NULL ? verify_least_paid(own, s->priced, own->redundancy)
+                               : (starg_uint128)own->witness_count * own->redundancy;
 }
 
 static bool keep_leaf(void *user, size_t cell, const uint64_t *open) {
     sharing *s = user;
     const verify_box *box = &s->own->cells[cell].box;
-    uint64_t sum = 0;
-    for (size_t w = 0; w < s->own->words; w++)
-        STARG_FOR_BITS (bit, open[w])
-            sum += s->price[64 * w + bit];
-    bool has_share =
-        sum > 0 && (starg_uint128)sum * s->own->bound >= (starg_uint128)s->all * s->own->redundancy;
-    if (has_share) {
+    starg_uint128 sum = s->priced != NULL ? verify_paid(s->own, s->priced, open)
+                                          : starg_bit_count(open, s->own->words);
+    if (sum > 0 && sum * s->own->bound >= s->all) {
         double *kept = s->out->cells + 6 * s->out->cell_count++;
         memcpy(kept, box->lower, sizeof box->lower);
         memcpy(kept + 3, box->upper, sizeof box->upper);
@@ -62,13 +53,11 @@ starg_status starg_certificate_outline_create(starg_context *context,
     STARG_NEW(context, STAGE, s.out->witnesses, own->witness_count);
     memcpy(s.out->witnesses, own->witnesses, own->witness_count * sizeof *own->witnesses);
     STARG_NEW(context, STAGE, s.out->cells, 6 * own->cell_count);
-    STARG_NEW(context, STAGE, s.price, own->witness_count);
     set_prices(&s);
     STARG_TRY(verify_visit_leaves(own, keep_leaf, &s, &all));
     *out = s.out;
     s.out = NULL;
 done:
-    starg_release(context, s.price);
     starg_certificate_outline_free(context, s.out);
     return status;
 }

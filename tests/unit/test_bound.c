@@ -3,6 +3,7 @@
 #include "support.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/rng.h"
@@ -93,13 +94,14 @@ static void test_bounds_against_enumeration(void **state) {
         problem p = random_problem(item);
         link_rows(&p);
         witness_prices prices;
-        uint64_t whole[MOST_WITNESSES], work = 0;
+        whole_prices whole;
+        uint64_t work = 0;
         size_t least = 1;
         while (!holds(&p, p.wanted, least))
             least++;
         test_ok(context, prices_find(context, p.list, p.count, &p.wanted, NULL, &prices));
-        bound_round(prices.price, whole);
-        size_t bound = bound_of_prices(p.list, p.count, whole, 1);
+        bound_round(&prices, NULL, &whole);
+        size_t bound = bound_of_prices(p.list, p.count, &whole, 1);
         assert_true(bound <= least && (double)bound > prices.sum - 1e-2);
         for (size_t most = 0; most <= least; most++) {
             bool proven;
@@ -114,6 +116,107 @@ static void test_bounds_against_enumeration(void **state) {
     test_context_free(context);
 }
 
+static size_t held_of(const witness_row *row, const odd_set *set) {
+    size_t held = 0;
+    for (size_t i = 0; i < set->count; i++)
+        held += starg_bit_test(row->bits, set->witness[i]);
+    return held;
+}
+
+/* The fractional cover holds too little of each set from number `first` on. */
+static void check_violated(const problem *p, const witness_prices *prices, const odd_sets *sets,
+                           size_t first) {
+    for (size_t k = first; k < sets->count; k++) {
+        const odd_set *set = &sets->set[k];
+        double halves = 0;
+        assert_true(set->count % 2 == 1 && set->count >= 3 && set->count <= ODD_SET_SIZE);
+        for (size_t i = 1; i < set->count; i++)
+            assert_true(set->witness[i - 1] < set->witness[i]);
+        for (size_t i = 0; i < p->count; i++)
+            halves += (double)((held_of(p->list[i], set) + 1) / 2) * prices->share[i];
+        assert_true(halves < (set->count + 1.0) / 2 - 0.01);
+    }
+}
+
+static void check_worth(const problem *p, const witness_prices *prices, const odd_sets *sets) {
+    for (size_t i = 0; i < p->count; i++) {
+        double worth = row_value(p->list[i], prices->price);
+        for (size_t k = 0; k < sets->count; k++)
+            worth += (double)((held_of(p->list[i], &sets->set[k]) + 1) / 2) * prices->odd[k];
+        assert_true(worth <= 1 + 1e-9);
+        assert_true(fabs(worth - prices_of_row(prices, sets, p->list[i])) < 1e-12);
+    }
+}
+
+/* Odd sets that are found are violated, and what they prove is true. */
+static void test_odd_sets(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t raised = 0, sharp = 0;
+    odd_sets *sets = calloc(1, sizeof *sets);
+    assert_non_null(sets);
+    for (uint64_t item = 0; item < 300; item++) {
+        problem p = random_problem(item);
+        link_rows(&p);
+        size_t least = 1, added = 1, first = 0;
+        uint64_t work = 0;
+        sets->count = 0;
+        while (!holds(&p, p.wanted, least))
+            least++;
+        for (int round = 0; round < 10 && added > 0; round++) {
+            witness_prices prices;
+            whole_prices whole;
+            test_ok(context, prices_find(context, p.list, p.count, &p.wanted, sets, &prices));
+            check_worth(&p, &prices, sets);
+            bound_round(&prices, sets, &whole);
+            size_t bound = bound_of_prices(p.list, p.count, &whole, 1);
+            assert_true(bound <= least && (double)bound > prices.sum - 1e-2);
+            if (round == 0)
+                first = bound;
+            raised += round > 0 && bound > first;
+            sharp += round > 0 && bound > first && bound == least;
+            first = bound > first ? bound : first;
+            const odd_sets_question question = {p.list, prices.share, p.count, prices.price};
+            test_ok(context, odd_sets_renew(context, &question, sets, prices.odd, &added, &work));
+            check_violated(&p, &prices, sets, sets->count - added);
+            prices_free(context, &prices);
+        }
+    }
+    print_message("bounds raised %zu times, %zu times to the optimum\n", raised, sharp);
+    assert_true(raised > 5 && sharp > 3);
+    free(sets);
+    test_context_free(context);
+}
+
+/* Three witnesses of which any two are seen together need two. */
+static void test_three(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    odd_sets *sets = calloc(1, sizeof *sets);
+    problem p = {.count = 3};
+    witness_prices prices;
+    uint64_t work = 0;
+    size_t added;
+    assert_non_null(sets);
+    link_rows(&p);
+    for (size_t i = 0; i < 3; i++) {
+        starg_bit_set(p.rows[i].bits, 10 * i);
+        starg_bit_set(p.rows[i].bits, 10 * ((i + 1) % 3));
+        starg_bit_set(p.wanted.bits, 10 * i);
+    }
+    test_ok(context, prices_find(context, p.list, 3, &p.wanted, sets, &prices));
+    assert_true(fabs(prices.sum - 1.5) < 2e-3);
+    const odd_sets_question question = {p.list, prices.share, 3, prices.price};
+    test_ok(context, odd_sets_renew(context, &question, sets, prices.odd, &added, &work));
+    assert_int_equal(added, 1);
+    prices_free(context, &prices);
+    test_ok(context, prices_find(context, p.list, 3, &p.wanted, sets, &prices));
+    assert_true(fabs(prices.sum - 2) < 2e-3);
+    prices_free(context, &prices);
+    free(sets);
+    test_context_free(context);
+}
+
 /* If a leaf may see more than before, what was proven without that is no longer proven. */
 static void test_corrupted_row_is_noticed(void **state) {
     (void)state;
@@ -123,14 +226,15 @@ static void test_corrupted_row_is_noticed(void **state) {
         problem p = random_problem(item);
         link_rows(&p);
         witness_prices prices;
-        uint64_t whole[MOST_WITNESSES], work = 0;
+        whole_prices whole;
+        uint64_t work = 0;
         test_ok(context, prices_find(context, p.list, p.count, &p.wanted, NULL, &prices));
-        bound_round(prices.price, whole);
-        size_t bound = bound_of_prices(p.list, p.count, whole, 1);
+        bound_round(&prices, NULL, &whole);
+        size_t bound = bound_of_prices(p.list, p.count, &whole, 1);
         if (bound > 1) {
             bool proven = true;
             p.rows[starg_hash64(item) % p.count] = p.wanted;
-            assert_int_equal(bound_of_prices(p.list, p.count, whole, 1), 1);
+            assert_int_equal(bound_of_prices(p.list, p.count, &whole, 1), 1);
             test_ok(context, bound_by_branching(context, p.list, p.count, &p.wanted, bound - 1,
                                                 1000, &proven, NULL, &work));
             assert_false(proven);
@@ -146,6 +250,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_prices_meet_their_cover),
         cmocka_unit_test(test_bounds_against_enumeration),
+        cmocka_unit_test(test_odd_sets),
+        cmocka_unit_test(test_three),
         cmocka_unit_test(test_corrupted_row_is_noticed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -427,6 +427,62 @@ static void test_scales(void **state) {
     }
 }
 
+/* ---- trimming ---- */
+
+/* Cuts follow from the box, each part that goes is outside, and all points inside stay. */
+static void check_trimmed(const setting *s, const bvh_box *box, starg_rng *rng, double *cut_off) {
+    bvh_box left = *box, rest = *box;
+    box_cut cuts[BOX_CUTS];
+    double points[60 * 3], share = 1;
+    int count = box_trim(s->worker, &left, cuts);
+    assert_in_range(count, 0, BOX_CUTS);
+    for (int i = 0; i < count; i++) {
+        int k = cuts[i].axis;
+        double *end = cuts[i].above ? &rest.upper[k] : &rest.lower[k];
+        assert_true(cuts[i].at > rest.lower[k] && cuts[i].at < rest.upper[k]);
+        *end = cuts[i].at;
+    }
+    assert_memory_equal(&rest, &left, sizeof left);
+    size_t inside = box_points(s->solid, box, rng, 60, points);
+    for (size_t i = 0; i < inside; i++)
+        for (int k = 0; k < 3; k++)
+            assert_true(points[3 * i + k] >= left.lower[k] && points[3 * i + k] <= left.upper[k]);
+    for (int k = 0; k < 3 && count > 0; k++)
+        if (left.upper[k] < box->upper[k] || left.lower[k] > box->lower[k])
+            share *= (left.upper[k] - left.lower[k]) / (box->upper[k] - box->lower[k]);
+    *cut_off += 1 - share;
+}
+
+static void test_trim(void **state) {
+    (void)state;
+    setting settings[] = {setting_of_shape(shape_room()), setting_of_shape(shape_cavity()),
+                          setting_of_shape(shape_columns()), setting_of_shape(shape_blob(2, 5))};
+    double cut_off = 0;
+    size_t rounds = test_rounds(400, 20000);
+    for (size_t i = 0; i < 4; i++) {
+        for (size_t item = 0; item < rounds; item++) {
+            starg_rng rng = starg_rng_make(41, i, item);
+            bvh_box box = box_about(settings[i].solid, &rng, item);
+            check_trimmed(&settings[i], &box, &rng, &cut_off);
+        }
+        setting_free(&settings[i]);
+    }
+    print_message("%.1f %% of the boxes were cut off\n", 100 * cut_off / (double)(4 * rounds));
+    assert_true(cut_off > 0.02 * (double)(4 * rounds));
+}
+
+/* Of a box with a thin slice of a cube at one side the slice stays. */
+static void test_trim_slice(void **state) {
+    (void)state;
+    setting s = setting_of_shape(shape_cube(2));
+    bvh_box box = {{1.9375, 0.25, 0.25}, {3.9375, 0.75, 0.75}};
+    box_cut cuts[BOX_CUTS];
+    assert_int_equal(box_trim(s.worker, &box, cuts), 1);
+    assert_true(cuts[0].axis == 0 && cuts[0].above && cuts[0].at == box.upper[0]);
+    assert_true(box.upper[0] > 2 && box.upper[0] < 2.25);
+    setting_free(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_all_is_open_in_a_cube),
@@ -441,6 +497,8 @@ int main(void) {
         cmocka_unit_test(test_small_solids),
         cmocka_unit_test(test_intersecting_shells),
         cmocka_unit_test(test_scales),
+        cmocka_unit_test(test_trim),
+        cmocka_unit_test(test_trim_slice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
