@@ -7,7 +7,7 @@
  *
  * Witnesses are a subset of the faces: guards that see everything see these, so a bound for them is
  * a bound for all. Cells (guard/cells.h) cover the whole space, and each stores the witnesses that
- * it may see. Points are candidates, moved points, centres of cells and random points. A first loop
+ * it may see. Points are candidates, moved points, and centres of cells. A first loop
  * only looks for guards (guard/search_improve.c). A second one improves both ends:
  *   1. find prices of the witnesses from the known points (guard/prices.c): no point exceeds 1;
  *   2. if the prices leave room for fewer guards, an integer program over the points looks for
@@ -17,8 +17,9 @@
  *      of high price and large size, for as long as the prices took; add their points and return to
  *      1. Small cells are not split, but count as points in the prices (guard/search_prices.c);
  *   4. if there are no such cells, the prices prove the bound (guard/bound.c). If the bound is
- *      below the number of guards, smaller cells are split as well; and by turns faces that the
- *      fractional cover does not see enough become witnesses;
+ *      below the number of guards, odd sets of witnesses get prices (guard/odd_sets.h), and smaller
+ *      cells are split as well; by turns faces that the fractional cover does not see enough become
+ *      witnesses;
  *   5. if there are no such faces either, solve an integer program over cells and points: cells
  *      that would allow fewer guards are split, with more points; if no cells would, branching
  *      proves it, with separate prices in each branch.

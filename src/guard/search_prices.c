@@ -9,8 +9,9 @@
  * than those of the points at first, and the loop of the search (guard/search.c) halves `finest`
  * while that matters.
  *
- * The program starts with rows of high value at the previous prices; a row left out is added once
- * it exceeds 1. */
+ * The program starts with rows of high value at the previous prices, and without witnesses that had
+ * no price; a row left out is added once it exceeds 1, a witness once the cover holds too little of
+ * it. Odd sets of witnesses (guard/odd_sets.h) have prices like witnesses. */
 #include <math.h>
 
 #include "guard/search_parts.h"

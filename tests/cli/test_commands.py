@@ -354,7 +354,7 @@ class Guard(support.Case):
         self.run_text(*prove, "-o", "plain.json")
         self.run_text(*prove, "-o", "g.json", "--certificate", "why.txt")
         self.assertEqual(self.read("plain.json"), self.read("g.json"))
-        self.assertTrue(self.read("why.txt").startswith(b"starguard-certificate 1\n"))
+        self.assertTrue(self.read("why.txt").startswith(b"starguard-certificate 2\n"))
         out = self.run_text("verify", maze, "g.json")[0]
         self.assertRegex(out, r"not checked: that at least \d+ guards? (is|are) needed, wherever they stand")
         told = self.run_json("verify", maze, "g.json", "why.txt")["results"]

@@ -184,7 +184,7 @@ class Forged(support.Case):
         plain = self.read("p.json")
         report = self.decompose(*prove, "--certificate", "why.txt", model="maze.off")
         self.assertEqual(self.read("p.json"), plain)
-        self.assertTrue(self.read("why.txt").startswith(b"starguard-certificate 1\n"))
+        self.assertTrue(self.read("why.txt").startswith(b"starguard-certificate 2\n"))
         self.assertIn(b"\ntarget corners\n", self.read("why.txt"))
         bound, pieces = report["lower_bound"], len(report["pieces"])
         self.assertLessEqual(bound, pieces)
