@@ -60,6 +60,18 @@ done:
     return status;
 }
 
+static bool is_sound_answer(const cell_tests *all, const cell_answer *answer) {
+    if (answer->point_count > (uint64_t)all->tries || answer->cut_count < 0 ||
+        answer->cut_count > BOX_CUTS)
+        return false;
+    for (int64_t i = 0; i < answer->cut_count; i++) {
+        const box_cut *cut = &answer->cuts[i];
+        if (cut->axis < 0 || cut->axis > 2 || cut->above < 0 || cut->above > 1)
+            return false;
+    }
+    return true;
+}
+
 /* A reply holds for each box its answer, and the points that it counts. */
 static starg_status take(starg_context *context, void *shared, size_t first, size_t count,
                          starg_bytes_reader *reply) {
@@ -67,9 +79,7 @@ static starg_status take(starg_context *context, void *shared, size_t first, siz
     (void)context;
     for (size_t i = first; i < first + count; i++) {
         cell_answer *answer = &all->answers[i];
-        if (!starg_bytes_take(reply, answer, 1, sizeof *answer) ||
-            answer->point_count > (uint64_t)all->tries || answer->cut_count < 0 ||
-            answer->cut_count > BOX_CUTS ||
+        if (!starg_bytes_take(reply, answer, 1, sizeof *answer) || !is_sound_answer(all, answer) ||
             !starg_bytes_take(reply, cell_tests_points(all, i), answer->point_count,
                               sizeof *all->points))
             return STARG_ERROR_RANK;

@@ -87,8 +87,7 @@ void box_look(box_worker *worker, const box_question *question, uint64_t *open,
 /* A plane across an axis, and what is cut off there. */
 typedef struct box_cut {
     double at;
-    int axis;
-    bool above; /* what is above, or below */
+    int axis, above; /* above 1: what is above the plane is cut off, 0: what is below */
 } box_cut;
 
 enum { BOX_CUTS = 6 };

@@ -58,7 +58,7 @@ static void extend(const box_scene *scene, uint32_t rank, const bvh_box *box, bv
 }
 
 /* Where to cut a side off, beyond the bounds: NAN if that is not worth it. */
-static double place_cut(const bvh_box *box, const bvh_box *bounds, int axis, bool above) {
+static double place_cut(const bvh_box *box, const bvh_box *bounds, int axis, int above) {
     double length = box->upper[axis] - box->lower[axis];
     int exponent;
     frexp(length, &exponent);
@@ -78,8 +78,8 @@ int box_trim(box_worker *w, bvh_box *box, box_cut cuts[BOX_CUTS]) {
     for (size_t i = 0; i < w->crossing_count; i++)
         extend(w->scene, w->crossing[i], box, &bounds);
     for (int side = 0; side < BOX_CUTS; side++) {
-        const box_cut cut = {place_cut(box, &bounds, side / 2, side % 2 != 0), side / 2,
-                             side % 2 != 0};
+        const int axis = side / 2, above = side % 2;
+        const box_cut cut = {place_cut(box, &bounds, axis, above), axis, above};
         bvh_box off = *box, left = *box;
         if (isnan(cut.at))
             continue;
