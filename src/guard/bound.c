@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The bound of a search, in integers: however floating point found the prices, this sum and this
  * maximum are exact. Prices are below 2^44 and there are at most 2^10 witnesses, so sums stay below
- * 2^54, and below 2^64 when each witness must be seen 1,000 times. */
+ * 2^54, and below 2^64 when each witness must be seen 1,000 times; halves of odd sets, which have
+ * prices only where each must be seen once, add less than 2^54. */
 #include "guard/bound.h"
 
 static const char STAGE[] = "search";

@@ -4,8 +4,8 @@
  *
  * The root is the box of the solid, rounded outwards to multiples of a power of two, and a cell is
  * cut in the middle of its longest side, and what is outside is trimmed off at multiples of a
- * fraction of the side, so that corners of cells are short binary fractions. Cells
- * are numbered in the order of creation, and tested by guard/cell_tests.c.
+ * fraction of the side, so that corners of cells are short binary fractions. Cells are numbered in
+ * the order of creation, and tested by guard/cell_tests.c.
  *
  * Invariant: no point of a cell in the free space sees a witness that is not open in the cell. */
 #include "guard/cells.h"

@@ -5,7 +5,6 @@
 
 #include "core/rng.h"
 #include "guard/cells.h"
-#include "guard/odd_sets.h"
 #include "guard/prices.h"
 #include "guard/stages.h"
 

@@ -459,7 +459,10 @@ static void put_set(FILE *stream, const char *before, uint64_t set, const char *
             fprintf(stream, "%s%d%s", before, j, behind);
 }
 
-static void put_model(FILE *stream, size_t witnesses, size_t bound) {
+/* The lines before the rows. `size` has to live as long as the stream. */
+static FILE *begin_certificate(size_t witnesses, size_t bound, char **text, size_t *size) {
+    FILE *stream = open_memstream(text, size);
+    assert_non_null(stream);
     fprintf(stream,
             "starguard-certificate 2\nvertices 99\nfaces 99\nchecksum 0123456789abcdef\n"
             "target faces\nrange none\nclearance 0:0\nredundancy 1\nbound %zu\nroot 0:0 0:0 0:0 "
@@ -467,6 +470,7 @@ static void put_model(FILE *stream, size_t witnesses, size_t bound) {
             bound);
     fprintf(stream, "witnesses %zu\n", witnesses);
     put_set(stream, "", (UINT64_C(1) << witnesses) - 1, "\n");
+    return stream;
 }
 
 static void put_leaves(FILE *stream, const witness_row *const *rows, size_t count, size_t witnesses,
@@ -488,9 +492,7 @@ static char *certificate_of_rows(const witness_row *const *rows, size_t count, s
                                  size_t bound, const branch_record *record) {
     char *text = NULL;
     size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    put_model(stream, witnesses, bound);
+    FILE *stream = begin_certificate(witnesses, bound, &text, &size);
     fprintf(stream, "rows %zu\n", count);
     for (size_t i = 0; i < count; i++) {
         uint64_t lowest = rows[i]->bits[0] & -rows[i]->bits[0];
@@ -519,9 +521,7 @@ static char *certificate_of_prices(const witness_row *const *rows, size_t count,
                                    size_t bound, const whole_prices *prices) {
     char *text = NULL;
     size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    put_model(stream, witnesses, bound);
+    FILE *stream = begin_certificate(witnesses, bound, &text, &size);
     fprintf(stream, "rows 0\n");
     put_leaves(stream, rows, count, witnesses, false);
     fprintf(stream, "nodes 1\nprices");
@@ -728,10 +728,8 @@ static void test_one_odd_set(void **state) {
         size_t size;
         const witness_row rows[3] = {{{3}}, {{6}}, {{5}}};
         const witness_row *list[3] = {&rows[0], &rows[1], &rows[2]};
-        FILE *stream = open_memstream(&text, &size);
+        FILE *stream = begin_certificate(3, (size_t)proofs[i].bound, &text, &size);
         starg_certificate *read = NULL;
-        assert_non_null(stream);
-        put_model(stream, 3, (size_t)proofs[i].bound);
         fprintf(stream, "rows 0\n");
         put_leaves(stream, list, 3, 3, false);
         fprintf(stream, "nodes 1\nprices %s\n", proofs[i].prices);
