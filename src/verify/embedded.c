@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Checks that a surface is embedded: its faces have area and meet only in shared corners and edges,
- * and the faces at each vertex form one fan.
+/* Where is a surface embedded: which faces have area and meet others only in shared corners and
+ * edges, where the faces at each vertex form one fan? And on which of them is the outer side surely
+ * outside of the solid?
  *
  * Two triangles have a common point exactly if an edge of one meets the other. If they share one
  * corner, any other common point lies on a common segment from that corner, which extends to the
  * opposite edge of one of them; if they share an edge, they have more in common only if coplanar
- * and on the same side of the edge. All by exact signs. Cost: O(n log n) for ordinary surfaces. */
+ * and on the same side of the edge. All by exact signs.
+ *
+ * The winding number beside such faces is the same on both sides of an edge between two of them,
+ * since nothing else meets the edge. So it is found for one face of each connected part, by a short
+ * segment across it that meets no other face. Cost: O(n log n) for ordinary surfaces. */
+#include <math.h>
+
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "verify/hidden.h"
@@ -65,7 +72,7 @@ static bool is_contact(const verify_surface *surface, uint32_t f, uint32_t g) {
 
 typedef struct search {
     const verify_scene *scene;
-    uint8_t *clear; /* by face */
+    uint8_t *sound; /* by face */
 } search;
 
 typedef struct one_face {
@@ -75,7 +82,7 @@ typedef struct one_face {
 
 static bool is_clear_of(void *data, uint32_t other) {
     const one_face *own = data;
-    return other <= own->face || !is_contact(own->surface, own->face, other);
+    return other == own->face || !is_contact(own->surface, own->face, other);
 }
 
 static starg_status examine_face(starg_context *context, void *shared, void *scratch, size_t f) {
@@ -93,13 +100,14 @@ static starg_status examine_face(starg_context *context, void *shared, void *scr
             upper[k] = t[i][k] > upper[k] ? t[i][k] : upper[k];
         }
     }
-    own->clear[f] =
+    own->sound[f] =
         broad_axis(t) >= 0 && verify_tree_visit(own->scene->tree, lower, upper, is_clear_of, &one);
     return STARG_OK;
 }
 
-/* Do the faces at each vertex form one fan? Walks around from one edge must reach all. */
-static bool has_single_fans(const verify_scene *scene, uint32_t *count) {
+/* Faces at a vertex where they form more than one fan are not sound: does a walk around from one
+ * edge reach all? */
+static void drop_fans(const verify_scene *scene, uint32_t *count, uint8_t *sound) {
     const verify_surface *surface = scene->surface;
     for (size_t e = 0; e < 3 * surface->face_count; e++)
         count[surface->faces[e]]++;
@@ -111,28 +119,107 @@ static bool has_single_fans(const verify_scene *scene, uint32_t *count) {
             passed++;
             e = scene->twin[e % 3 == 0 ? e + 2 : e - 1];
         } while (e != first);
-        if (passed != count[v])
-            return false;
+        count[v] = passed == count[v];
     }
-    return true;
+    for (size_t e = 0; e < 3 * surface->face_count; e++)
+        if (!count[surface->faces[e]])
+            sound[e / 3] = 0;
 }
 
-starg_status verify_find_embedded(const verify_scene *scene, bool *embedded) {
+/* ---- what is beside them ---- */
+
+typedef struct needle {
+    const verify_surface *surface;
+    uint32_t face;
+    double inner[3], outer[3];
+} needle;
+
+static bool is_missed(void *data, uint32_t other) {
+    const needle *own = data;
+    const double *t[3];
+    verify_corners(own->surface, other, t);
+    return other == own->face || !segment_meets(own->inner, own->outer, t);
+}
+
+/* A segment across the face that meets no other one. */
+static bool find_needle(const verify_scene *scene, uint32_t face, needle *out) {
+    const double *t[3];
+    double u[3], v[3], normal[3], length = 0, size = 0;
+    verify_corners(scene->surface, face, t);
+    *out = (needle){.surface = scene->surface, .face = face};
+    for (int k = 0; k < 3; k++) {
+        u[k] = t[1][k] - t[0][k];
+        v[k] = t[2][k] - t[0][k];
+        size = fmax(size, fmax(fabs(u[k]), fabs(v[k])));
+    }
+    for (int k = 0; k < 3; k++) {
+        normal[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+        length = fmax(length, fabs(normal[k]));
+    }
+    for (int k = 0; k < 3; k++) {
+        double middle = (t[0][k] + t[1][k] + t[2][k]) / 3, step = size / 512 * normal[k] / length;
+        out->inner[k] = middle - step;
+        out->outer[k] = middle + step;
+        if (!(fabs(out->inner[k]) < 1e100 && fabs(out->outer[k]) < 1e100))
+            return false;
+    }
+    return verify_side(t[0], t[1], t[2], out->inner) > 0 &&
+           verify_side(t[0], t[1], t[2], out->outer) < 0 &&
+           segment_meets(out->inner, out->outer, t) &&
+           verify_tree_follow(scene->tree, out->inner, out->outer, is_missed, out);
+}
+
+/* Faces whose outer side is not surely outside of the solid are not sound. `part` has room for all
+ * faces. */
+static void drop_inner(const verify_scene *scene, uint8_t *seen, uint32_t *part, uint8_t *sound) {
+    for (uint32_t f = 0; f < scene->surface->face_count; f++) {
+        size_t count = 0;
+        bool outside = false, on_surface = false;
+        needle found;
+        if (seen[f] || !sound[f])
+            continue;
+        part[count++] = f;
+        seen[f] = 1;
+        for (size_t i = 0; i < count; i++)
+            for (size_t k = 0; k < 3; k++) {
+                uint32_t next = scene->twin[3 * (size_t)part[i] + k] / 3;
+                if (sound[next] && !seen[next]) {
+                    seen[next] = 1;
+                    part[count++] = next;
+                }
+            }
+        for (size_t i = 0; i < count; i++)
+            if (find_needle(scene, part[i], &found)) {
+                outside = verify_tree_winding(scene->tree, found.outer, &on_surface) < 1;
+                break;
+            }
+        for (size_t i = 0; i < count && (!outside || on_surface); i++)
+            sound[part[i]] = 0;
+    }
+}
+
+starg_status verify_find_sound(const verify_scene *scene, uint8_t *sound, bool *embedded) {
     starg_status status = STARG_OK;
-    starg_context *context = scene->surface->context;
-    search own = {.scene = scene};
-    uint32_t *count = NULL;
-    size_t faces = scene->surface->face_count;
-    STARG_NEW_ZERO(context, STAGE, own.clear, faces);
-    STARG_NEW_ZERO(context, STAGE, count, scene->surface->vertex_count);
+    const verify_surface *surface = scene->surface;
+    starg_context *context = surface->context;
+    search own = {scene, sound};
+    uint32_t *count = NULL, *part = NULL;
+    uint8_t *seen = NULL;
+    size_t faces = surface->face_count;
+    STARG_NEW_ZERO(context, STAGE, count, surface->vertex_count);
+    STARG_NEW(context, STAGE, part, faces);
+    STARG_NEW_ZERO(context, STAGE, seen, faces);
     const starg_parallel_loop loop = {
         .stage = STAGE, .count = faces, .shared = &own, .item = examine_face, .silent = true};
     STARG_TRY(starg_parallel_for(context, &loop));
-    *embedded = has_single_fans(scene, count);
+    drop_fans(scene, count, sound);
+    *embedded = true;
     for (size_t f = 0; f < faces; f++)
-        *embedded = *embedded && own.clear[f];
+        *embedded = *embedded && sound[f];
+    drop_inner(scene, seen, part, sound);
 done:
-    starg_release(context, own.clear);
     starg_release(context, count);
+    starg_release(context, part);
+    starg_release(context, seen);
     return status;
 }

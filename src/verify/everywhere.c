@@ -86,7 +86,7 @@ static starg_status check_cell(starg_context *context, void *shared, void *scrat
     return verify_watch_failed(scratch) ? STARG_ERROR_MEMORY : STARG_OK;
 }
 
-/* Reasons that hold only if the surface is embedded. */
+/* Reasons that hold only where the surface is embedded. */
 static bool needs_embedding(const starg_certificate *c) {
     for (size_t i = 0; i < c->reasons.count; i++)
         if (strchr("sfe", c->reasons.data[i].kind) != NULL)

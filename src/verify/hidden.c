@@ -344,7 +344,7 @@ static bool entry_hides(verify_watch *w, const shaft *s) {
         verify_corners(w->scene->surface, w->met.data[i], t);
         if (s->box != &w->box && !face_meets_box(t, s->box))
             continue;
-        if (!closes(w, s, w->met.data[i], -1, ENTRY))
+        if (!w->scene->sound[w->met.data[i]] || !closes(w, s, w->met.data[i], -1, ENTRY))
             return false;
         any = true;
     }
@@ -492,7 +492,8 @@ static bool hides_vertex(verify_watch *w, const verify_box *box, double range,
     shaft s;
     if (reason->kind == 'r')
         return is_far(box, v, range);
-    if (holds(box, v) || (reason->kind != 'p' && !scene->embedded))
+    if (holds(box, v) ||
+        (strchr("sf", reason->kind) != NULL && !scene->sound_about[reason->vertex]))
         return false;
     make_shaft(w, reason->vertex, box, &s);
     switch (reason->kind) {
@@ -599,8 +600,15 @@ starg_status verify_scene_create(const verify_surface *surface, const verify_tre
         out->outgoing[v] = UINT32_MAX;
     for (size_t e = 3 * surface->face_count; e-- > 0;)
         out->outgoing[surface->faces[e]] = (uint32_t)e;
-    if (embedding)
-        STARG_TRY(verify_find_embedded(out, &out->embedded));
+    STARG_NEW_ZERO(surface->context, "verify", out->sound, surface->face_count);
+    STARG_NEW_ZERO(surface->context, "verify", out->sound_about, surface->vertex_count);
+    if (embedding) {
+        STARG_TRY(verify_find_sound(out, out->sound, &out->embedded));
+        memset(out->sound_about, 1, surface->vertex_count);
+        for (size_t e = 0; e < 3 * surface->face_count; e++)
+            if (!out->sound[e / 3])
+                out->sound_about[surface->faces[e]] = 0;
+    }
 done:
     if (status != STARG_OK)
         verify_scene_free(out);
@@ -612,5 +620,7 @@ void verify_scene_free(verify_scene *scene) {
         return;
     starg_release(scene->surface->context, scene->twin);
     starg_release(scene->surface->context, scene->outgoing);
+    starg_release(scene->surface->context, scene->sound);
+    starg_release(scene->surface->context, scene->sound_about);
     *scene = (verify_scene){0};
 }

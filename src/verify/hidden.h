@@ -27,10 +27,12 @@ typedef struct verify_scene {
     uint32_t *outgoing; /* by vertex: a directed edge that starts there, or UINT32_MAX */
     bool embedded; /* faces meet only in shared corners and edges, the faces at each vertex form one
                       fan, and all have area */
+    uint8_t *sound;       /* by face: is it so there, and outside of the solid right beyond it? */
+    uint8_t *sound_about; /* by vertex: are all of its faces sound? */
 } verify_scene;
 
-/* `embedding`: check whether it is embedded; otherwise it counts as not embedded. Errors: MEMORY,
- * CANCELLED. */
+/* `embedding`: check where it is embedded; otherwise it counts as not embedded anywhere. Errors:
+ * MEMORY, CANCELLED. */
 starg_status verify_scene_create(const verify_surface *surface, const verify_tree *tree,
                                  bool embedding, verify_scene *out);
 void verify_scene_free(verify_scene *scene);
@@ -54,8 +56,8 @@ bool verify_box_outside(verify_watch *watch);
 bool verify_box_hides(verify_watch *watch, starg_target kind, uint32_t target, double range,
                       const verify_reason *reason);
 
-/* Do faces meet only in shared corners and edges, and do the faces at each vertex form one fan
- * (verify/embedded.c)? Errors: MEMORY, CANCELLED. */
-starg_status verify_find_embedded(const verify_scene *scene, bool *embedded);
+/* Which faces are sound, and is the surface embedded (verify/embedded.c)? `sound` is by face.
+ * Errors: MEMORY, CANCELLED. */
+starg_status verify_find_sound(const verify_scene *scene, uint8_t *sound, bool *embedded);
 
 #endif

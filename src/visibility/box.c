@@ -67,7 +67,6 @@ starg_status box_scene_create(starg_context *context, const starg_solid *solid, 
     scene->points = solid->mesh->vertices;
     scene->vertex_count = solid->mesh->vertex_count;
     scene->face_count = solid->mesh->face_count;
-    scene->embedded = solid->check->embedded;
     solid_extent(solid, &scene->all);
     const bvh_box *all = &scene->all;
     for (int k = 0; k < 3; k++) {
@@ -78,6 +77,7 @@ starg_status box_scene_create(starg_context *context, const starg_solid *solid, 
     STARG_NEW(context, STAGE, scene->rank_of, scene->face_count);
     STARG_NEW(context, STAGE, scene->outgoing, scene->vertex_count);
     make_triangles(scene, topology);
+    STARG_TRY(box_find_sound(scene));
     STARG_TRY(box_tree_create(context, scene->tree, scene->centre, scene->extent, &scene->boxes));
     *out = scene;
 done:
@@ -94,6 +94,8 @@ void box_scene_free(box_scene *scene) {
     starg_release(scene->context, scene->triangles);
     starg_release(scene->context, scene->rank_of);
     starg_release(scene->context, scene->outgoing);
+    starg_release(scene->context, scene->sound);
+    starg_release(scene->context, scene->sound_about);
     starg_release(scene->context, scene);
 }
 

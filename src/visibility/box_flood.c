@@ -21,18 +21,18 @@
  * then C is open and closed in c and not empty; c is connected, so C = c. For each p in c the
  * boundary meets [v, p] in a point other than v and p: p does not see v. (This needs no embedding.)
  *
- * Entry. Let the boundary be embedded and let some triangles meet c. If all those lie in patches
+ * Entry. Let some triangles meet c, all of them sound (box_sound.c). If all those lie in patches
  * that close, and turn their outer side to v (then all of these patches do), no point of c inside
  * the solid sees v. Proof: let G be a connected component of the part of c inside the solid, and P
  * the union of the patches. G is open in c and does not meet P, so that by the lemma either all
  * points of G are hidden by P or none. If the closure of G did not meet the boundary, G would be
  * closed and open in c, so all of c, which no triangle could meet. So a point y of the boundary
  * lies in c and in the closure of G; the triangles through y meet c and are in P. They are one fan
- * (or edge, or interior) that turns its outer side to v: as the boundary is embedded, their link in
+ * (or edge, or interior) that turns its outer side to v: as nothing else meets them, their link in
  * a small sphere about y is a simple closed curve that runs about the axis through v in one sense,
  * so it does so exactly once; the side towards v is the outer one, the other the inner one. A point
- * of G near y is on the inner side, and its segment to v, almost parallel to the axis, has to pass
- * the fan. So one point of G is hidden, and with it all.
+ * of G near y is on the inner side, the other one not being free, and its segment to v, almost
+ * parallel to the axis, has to pass the fan. So one point of G is hidden, and with it all.
  *
  * If c is clipped, or the free space is asked for in a part of c only, the same holds with the
  * part.
@@ -223,16 +223,14 @@ static bool some_meets(const box_worker *w) {
 bool box_entry_hides(box_worker *w, const box_shaft *shaft) {
     const box_scene *scene = w->scene;
     uint32_t first = w->flood;
-    if (!scene->embedded)
-        return false;
     for (size_t i = 0; i < w->crossing_count; i++) {
         uint32_t rank = w->crossing[i];
         const box_triangle *t = &scene->triangles[rank];
-        if (w->visit[rank] > first)
-            continue;
         if (w->current != &w->box && !box_may_cross(scene, t, w->current))
             continue;
-        if (!box_flood_closes(w, shaft, rank, -1, FLOOD_ENTRY, first))
+        if (!scene->sound[rank])
+            return false;
+        if (w->visit[rank] <= first && !box_flood_closes(w, shaft, rank, -1, FLOOD_ENTRY, first))
             return false;
     }
     return some_meets(w);

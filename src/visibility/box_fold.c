@@ -26,7 +26,7 @@
  * where it begins on the inner side, to the other: it covers all directions of S near a. Again H
  * has hidden points. So all of H is hidden.
  *
- * Needs an embedded boundary. Cost: that of the floods. */
+ * Needs sound triangles around v (box_sound.c). Cost: that of the floods. */
 #include "visibility/box_parts.h"
 
 /* Is the triangle of this corner, v, followed by a patch that closes, on its inner side? */
@@ -51,7 +51,7 @@ bool box_fold_hides(box_worker *w, const box_shaft *shaft, bool recorded, uint32
     uint32_t begin = scene->outgoing[w->vertex], corner = begin, first = w->flood;
     bool any = false;
     *seed = BOX_NONE;
-    if (!scene->embedded)
+    if (!scene->sound_about[w->vertex])
         return false;
     do {
         if (box_arc_may_meet(scene, shaft, corner)) {

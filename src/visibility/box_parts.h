@@ -29,7 +29,8 @@ struct box_scene {
     uint32_t *outgoing;      /* by vertex: 3 x rank + corner of one triangle, or BOX_NONE    */
     bvh_box all;             /* of the blockers and of places where guards may be */
     double centre[3], extent;
-    bool embedded; /* no two blockers meet but where they share corners */
+    uint8_t *sound;       /* by rank: nonzero if it bounds the free space cleanly (box_sound.c) */
+    uint8_t *sound_about; /* by vertex: do all of its triangles? */
 };
 
 struct box_worker {
@@ -67,6 +68,9 @@ static inline int box_side(const box_scene *scene, const box_triangle *t, const 
         return -1;
     return orient3d(box_corner(scene, t, 0), box_corner(scene, t, 1), box_corner(scene, t, 2), p);
 }
+
+/* Fills `sound` and `sound_about` from the rest of the scene. Errors: MEMORY. */
+starg_status box_find_sound(box_scene *scene);
 
 /* May the triangle meet the box? False only if it surely does not. */
 bool box_may_cross(const box_scene *scene, const box_triangle *t, const bvh_box *box);

@@ -2,11 +2,11 @@
 /* Does every segment from a vertex v to a box c begin outside the solid?
  *
  * The triangles around v cut the sphere of directions from v along a closed curve of arcs, its
- * link; if the boundary is embedded the curve is simple, and directions on one side of it lead into
- * the solid, on the other side out of it, and along it on the boundary. The directions D to the
- * points of c are connected. If D does not meet the link, all of D is on one side. If that is the
- * outer one, every segment from v to a point p of c inside the solid is outside near v, so that it
- * meets the boundary between v and p: p does not see v.
+ * link; if all of them are sound (box_sound.c) the curve is simple, and directions on one side of
+ * it lead into the solid, on the other side out of it, and along it on the boundary. The directions
+ * D to the points of c are connected. If D does not meet the link, all of D is on one side. If that
+ * is the outer one, every segment from v to a point p of c inside the solid is outside near v, so
+ * that it meets the boundary between v and p: p does not see v.
  *
  * D and an arc (the directions of a triangle v a b) are front-facing apart by a plane through v
  * that has c strictly on one side, and a and b on the other or in it, one of the shaft's sides with
@@ -105,7 +105,7 @@ bool box_starts_outside(const box_worker *w, const box_shaft *shaft) {
 bool box_start_hides(box_worker *w, const box_shaft *shaft) {
     const box_scene *scene = w->scene;
     uint32_t first = scene->outgoing[w->vertex], corner = first;
-    if (!scene->embedded || first == BOX_NONE)
+    if (first == BOX_NONE || !scene->sound_about[w->vertex])
         return false;
     do {
         if (box_arc_may_meet(scene, shaft, corner))

@@ -248,15 +248,21 @@ static void test_curved(void **state) {
     }
 }
 
-/* The start of a segment or the entry into a surface proves nothing. */
+/* Near the intersections, and where one shell lies within the other, the start of a segment or the
+ * entry into a surface proves nothing. */
 static void test_not_embedded(void **state) {
     (void)state;
-    shape both = shape_room(), other = shape_cube(2);
-    shape_append(&both, &other, (const double[3]){0.5, 0.25, -0.5}, 0);
-    shape_free(&other);
-    setting s = setting_of_shape(both);
-    assert_false(s.scene->embedded);
-    check_setting(&s, "intersecting shells", test_rounds(200, 3000), false);
+    static const double places[4][3] = {
+        {0.5, 0.25, -0.5}, {0.3, 0.2, 0.1}, {1.5, -1.25, 0.25}, {-1.5, 0.4, 0.35}};
+    for (int i = 0; i < 8; i++) {
+        shape both = i < 4 ? shape_room() : shape_blob(2, 5);
+        shape other = i < 4 ? shape_cube(2) : shape_blob(2, 9);
+        shape_append(&both, &other, places[i % 4], 0);
+        shape_free(&other);
+        setting s = setting_of_shape(both);
+        assert_false(s.scene->embedded);
+        check_setting(&s, "intersecting shells", test_rounds(100, 2000), false);
+    }
 }
 
 /* The same solid, very large, very small, and far from the origin. */

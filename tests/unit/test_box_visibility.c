@@ -9,6 +9,7 @@
 #include "core/bits.h"
 #include "models.h"
 #include "visibility/box.h"
+#include "visibility/box_parts.h"
 #include "visibility/box_shaft.h"
 #include "visibility_oracle.h"
 
@@ -404,15 +405,62 @@ static void test_small_solids(void **state) {
     check_solid(&gallery, "gallery", boxes / 8);
 }
 
-/* Two overlapping cubes: the start of a segment or the entry into a surface proves nothing. */
+/* How often each reason is given in random boxes. */
+static void count_kinds(const setting *s, size_t boxes, size_t kinds[BOX_KINDS]) {
+    for (size_t i = 0; i < boxes; i++) {
+        starg_rng rng = starg_rng_make(17, 6, i);
+        box_question q = question(s, STARG_TARGET_FACES, box_about(s->solid, &rng, i));
+        answer a = ask(s, &q);
+        for (int kind = 0; kind < BOX_KINDS; kind++)
+            kinds[kind] += count_kind(&a, (box_reason_kind)kind);
+        answer_free(&a);
+    }
+}
+
+/* Overlapping shells, of which parts lie within the other one: only away from these and from the
+ * intersections the start of a segment or the entry into a surface proves something. */
 static void test_intersecting_shells(void **state) {
     (void)state;
-    shape both = shape_room(), other = shape_cube(2);
-    shape_append(&both, &other, (const double[3]){0.5, 0.25, -0.5}, 0);
+    static const double places[4][3] = {
+        {0.5, 0.25, -0.5}, {0.3, 0.2, 0.1}, {1.5, -1.25, 0.25}, {-1.5, 0.4, 0.35}};
+    size_t kinds[BOX_KINDS] = {0}, boxes = test_rounds(40, 2000);
+    for (int i = 0; i < 8; i++) {
+        shape both = i < 4 ? shape_room() : shape_blob(2, 5);
+        shape other = i < 4 ? shape_cube(2) : shape_blob(2, 9);
+        shape_append(&both, &other, places[i % 4], 0);
+        shape_free(&other);
+        setting s = setting_of_shape(both);
+        assert_false(starg_solid_check(s.solid)->embedded);
+        count_kinds(&s, boxes, kinds);
+        check_solid(&s, "intersecting shells", boxes);
+    }
+    assert_true(kinds[BOX_START] > 0 && kinds[BOX_FOLD] > 0 && kinds[BOX_ENTRY] > 0);
+}
+
+/* A handle of one shell that runs through itself, and what stands inside of another shell. */
+static void test_sound_faces(void **state) {
+    (void)state;
+    shape both = shape_cube(2), other = shape_cube(2);
+    shape_append(&both, &other, (const double[3]){1, 1, 1}, 0);
     shape_free(&other);
     setting s = setting_of_shape(both);
-    assert_false(starg_solid_check(s.solid)->embedded);
-    check_solid(&s, "intersecting shells", test_rounds(50, 3000));
+    const double *v = starg_mesh_vertices(s.mesh);
+    /* only faces of the three sides at the far corners, away from the other cube, are sound */
+    size_t sound = 0;
+    for (size_t rank = 0; rank < s.scene->face_count; rank++) {
+        const box_triangle *t = &s.scene->triangles[rank];
+        double least = INFINITY, most = 0;
+        for (int i = 0; i < 3; i++)
+            for (size_t k = 0; k < 3; k++) {
+                least = fmin(least, v[3 * (size_t)t->corner[i] + k]);
+                most = fmax(most, v[3 * (size_t)t->corner[i] + k]);
+            }
+        if (s.scene->sound[rank])
+            assert_true(least == 0 || most == 3); /* not inside the other cube */
+        sound += s.scene->sound[rank] != 0;
+    }
+    assert_true(sound > 10 && sound < s.scene->face_count);
+    setting_free(&s);
 }
 
 /* The same solid, very large, very small, and far from the origin. */
@@ -496,6 +544,7 @@ int main(void) {
         cmocka_unit_test(test_lattices),
         cmocka_unit_test(test_small_solids),
         cmocka_unit_test(test_intersecting_shells),
+        cmocka_unit_test(test_sound_faces),
         cmocka_unit_test(test_scales),
         cmocka_unit_test(test_trim),
         cmocka_unit_test(test_trim_slice),
