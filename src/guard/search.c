@@ -349,16 +349,17 @@ done:
     return status;
 }
 
-/* Rounds of local search, closed by integer programs. With many guards, these find in the points of
- * a few rounds what local search would need many for, so it begins anew from their guards. */
-static starg_status improve(search *s) {
+/* Rounds, closed by integer programs. With many guards, these find in the points of a few rounds
+ * what local search would need many for, so it begins anew from their guards. */
+static starg_status run_and_close(search *s, round_run *round, uint64_t work) {
     starg_status status = STARG_OK;
-    uint64_t begun = s->scene.work, work = search_improve_work(s);
-    bool more = true;
+    uint64_t begun = s->scene.work;
+    bool more = s->bound < s->count;
     for (int k = s->count < MANY_GUARDS ? CLOSINGS - 1 : 0; k < CLOSINGS && more; k++) {
-        STARG_TRY(run_rounds(s, search_improve, begun, work, SHARES[k]));
+        STARG_TRY(run_rounds(s, round, begun, work, SHARES[k]));
         size_t before = s->count;
-        STARG_TRY(search_close(s));
+        if (s->bound < before)
+            STARG_TRY(search_close(s));
         if (s->count < before) {
             s->idle = 0;
             s->ended = false;
@@ -366,7 +367,6 @@ static starg_status improve(search *s) {
         s->budget = begun + work;
         more = goes_on(s);
     }
-    s->improve_work = s->scene.work;
 done:
     return status;
 }
@@ -376,11 +376,12 @@ static starg_status run(search *s, bool improves) {
     const starg_guard_options *o = s->problem->options;
     s->nodes = FEW_NODES;
     if (improves)
-        STARG_TRY(improve(s));
+        STARG_TRY(run_and_close(s, search_improve, search_improve_work(s)));
+    s->improve_work = s->scene.work;
     s->nodes = MANY_NODES;
     if (o->prove) {
         s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
-        STARG_TRY(run_rounds(s, prove_round, s->scene.work, o->prove_work, 1));
+        STARG_TRY(run_and_close(s, prove_round, o->prove_work));
         STARG_TRY(search_bound_points(s));
         STARG_TRY(prove_by_leaves(s));
     }
