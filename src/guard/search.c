@@ -49,6 +49,8 @@ enum {
     FEW_NODES = 10,
     MANY_NODES = 300,
     CLOSINGS = 3,
+    FIRST_CLOSING = 5000000,
+    CLOSING_FACTOR = 3,
     MANY_GUARDS = 12
 };
 
@@ -57,6 +59,9 @@ static const double ROUNDING = 1e-6;
 /* The more guards, the smaller are the parts of the space that tell them apart: leaves of a
  * sixteenth of the extent, shared among the guards, are small at first. */
 static const double FIRST_FINEST = 1.0 / 16;
+
+/* Most work of cells for better guards, and the number of columns above which it is less. */
+static const double MOST_CELL_WORK = 1e6, CELL_WORK_COLUMNS = 1e4;
 
 /* Of the budget for better guards, what is used before each closing. */
 static const double SHARES[CLOSINGS] = {0.3, 0.6, 1};
@@ -349,24 +354,68 @@ done:
     return status;
 }
 
-/* Rounds, closed by integer programs. With many guards, these find in the points of a few rounds
- * what local search would need many for, so it begins anew from their guards. */
-static starg_status run_and_close(search *s, round_run *round, uint64_t work) {
+/* Integer programs over the points look for fewer guards. */
+static starg_status close_rounds(search *s) {
+    starg_status status = STARG_OK;
+    size_t before = s->count;
+    if (s->bound < before)
+        STARG_TRY(search_close(s));
+    if (s->count < before) {
+        s->idle = 0;
+        s->ended = false;
+    }
+done:
+    return status;
+}
+
+/* Rounds of local search, closed by integer programs. With many guards, these find in the points of
+ * a few rounds what local search would need many for, so it begins anew from their guards. */
+static starg_status run_improvement(search *s, uint64_t work) {
     starg_status status = STARG_OK;
     uint64_t begun = s->scene.work;
-    bool more = s->bound < s->count;
+    bool more = true;
     for (int k = s->count < MANY_GUARDS ? CLOSINGS - 1 : 0; k < CLOSINGS && more; k++) {
-        STARG_TRY(run_rounds(s, round, begun, work, SHARES[k]));
-        size_t before = s->count;
-        if (s->bound < before)
-            STARG_TRY(search_close(s));
-        if (s->count < before) {
-            s->idle = 0;
-            s->ended = false;
-        }
+        STARG_TRY(run_rounds(s, search_improve, begun, work, SHARES[k]));
+        STARG_TRY(close_rounds(s));
         s->budget = begun + work;
         more = goes_on(s);
     }
+done:
+    return status;
+}
+
+/* Rounds of a proof, with many guards closed several times too: after work that does not depend on
+ * how much there is, so that more work begins alike and never proves less. */
+static starg_status run_proof(search *s, uint64_t work) {
+    starg_status status = STARG_OK;
+    uint64_t begun = s->scene.work, next = s->count < MANY_GUARDS ? work : FIRST_CLOSING;
+    bool more = s->bound < s->count;
+    s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
+    s->ended = false;
+    for (; more; next *= CLOSING_FACTOR) {
+        double share = next < work ? (double)next / (double)work : 1;
+        STARG_TRY(run_rounds(s, prove_round, begun, work, share));
+        STARG_TRY(close_rounds(s));
+        s->budget = begun + work;
+        more = share < 1 && goes_on(s);
+    }
+done:
+    return status;
+}
+
+/* Looks for better guards. Where local search gives up early, cells show where else guards may
+ * stand: a proof begins, and takes half of the budget that is left. Tests of boxes take longer in
+ * larger models, so that there are fewer. */
+static starg_status improve(search *s) {
+    starg_status status = STARG_OK;
+    uint64_t begun = s->scene.work, work = search_improve_work(s);
+    double part = fmin(1, CELL_WORK_COLUMNS / (double)s->pool->columns);
+    double most = MOST_CELL_WORK * part * part * part;
+    STARG_TRY(run_improvement(s, work));
+    double left = (double)work - (double)(s->scene.work - begun);
+    if (s->problem->options->prove || s->bound == s->count || !(left > 0))
+        return STARG_OK;
+    STARG_TRY(run_proof(s, (uint64_t)fmin(left / 2, most)));
 done:
     return status;
 }
@@ -376,12 +425,11 @@ static starg_status run(search *s, bool improves) {
     const starg_guard_options *o = s->problem->options;
     s->nodes = FEW_NODES;
     if (improves)
-        STARG_TRY(run_and_close(s, search_improve, search_improve_work(s)));
+        STARG_TRY(improve(s));
     s->improve_work = s->scene.work;
     s->nodes = MANY_NODES;
     if (o->prove) {
-        s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
-        STARG_TRY(run_and_close(s, prove_round, o->prove_work));
+        STARG_TRY(run_proof(s, o->prove_work));
         STARG_TRY(search_bound_points(s));
         STARG_TRY(prove_by_leaves(s));
     }
