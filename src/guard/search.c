@@ -354,12 +354,15 @@ done:
     return status;
 }
 
-/* Integer programs over the points look for fewer guards. */
+/* Integer programs over the points look for fewer guards. If there are none, what is known of the
+ * points is renewed all the same. */
 static starg_status close_rounds(search *s) {
     starg_status status = STARG_OK;
     size_t before = s->count;
     if (s->bound < before)
         STARG_TRY(search_close(s));
+    else
+        STARG_TRY(search_bound_points(s));
     if (s->count < before) {
         s->idle = 0;
         s->ended = false;
@@ -430,7 +433,6 @@ static starg_status run(search *s, bool improves) {
     s->nodes = MANY_NODES;
     if (o->prove) {
         STARG_TRY(run_proof(s, o->prove_work));
-        STARG_TRY(search_bound_points(s));
         STARG_TRY(prove_by_leaves(s));
     }
     if (s->bound < s->count)

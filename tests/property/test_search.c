@@ -193,6 +193,32 @@ static void test_random_solids(void **state) {
     test_context_free(context);
 }
 
+/* By default too, with the few cells that refinement cuts, bounds are no more than the guards, and
+ * the one for any places no more than that for the candidates. */
+static void check_default(starg_context *context, const starg_solid *solid, size_t *bounded) {
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    starg_guards *first = test_guard(context, solid, &options);
+    assert_true(first->lower_bound_everywhere <= first->lower_bound);
+    assert_true(first->lower_bound <= first->count);
+    assert_true(first->optimal == (first->lower_bound == first->count));
+    *bounded += first->lower_bound_everywhere > 1;
+    starg_guards_free(context, first);
+}
+
+static void test_default_bounds(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t bounded = 0;
+    for (size_t vertices = 500; vertices <= 800; vertices += 100) {
+        starg_solid *solid = test_sample(context, "torus", vertices);
+        check_default(context, solid, &bounded);
+        starg_solid_free(solid);
+    }
+    assert_true(bounded > 0);
+    test_context_free(context);
+}
+
 /* Vertices, a range, whole faces, and a distance from the walls. */
 static void test_questions(void **state) {
     (void)state;
@@ -702,6 +728,7 @@ static void test_cone(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_solids),
+        cmocka_unit_test(test_default_bounds),
         cmocka_unit_test(test_questions),
         cmocka_unit_test(test_cells_hold_their_points),
         cmocka_unit_test(test_same_bytes),
