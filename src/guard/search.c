@@ -8,7 +8,8 @@
  * Witnesses are a subset of the faces: guards that see everything see these, so a bound for them is
  * a bound for all. Cells (guard/cells.h) cover the whole space, and each stores the witnesses that
  * it may see. Points are candidates, moved points, and points of cells. A first loop only looks for
- * guards (guard/search_improve.c). A second one improves both ends:
+ * guards (guard/search_improve.c). A second one, short unless a proof is asked for, improves both
+ * ends:
  *   1. find prices of the witnesses from the known points (guard/prices.c): no point exceeds 1;
  *   2. if the prices leave room for fewer guards, an integer program over the points looks for
  *      them. Its solution is tested against all faces: it gives better guards, or the faces that
