@@ -252,14 +252,8 @@ static void test_curved(void **state) {
  * entry into a surface proves nothing. */
 static void test_not_embedded(void **state) {
     (void)state;
-    static const double places[4][3] = {
-        {0.5, 0.25, -0.5}, {0.3, 0.2, 0.1}, {1.5, -1.25, 0.25}, {-1.5, 0.4, 0.35}};
-    for (int i = 0; i < 8; i++) {
-        shape both = i < 4 ? shape_room() : shape_blob(2, 5);
-        shape other = i < 4 ? shape_cube(2) : shape_blob(2, 9);
-        shape_append(&both, &other, places[i % 4], 0);
-        shape_free(&other);
-        setting s = setting_of_shape(both);
+    for (int i = 0; i < OVERLAPS; i++) {
+        setting s = setting_of_shape(shape_overlap(i));
         assert_false(s.scene->embedded);
         check_setting(&s, "intersecting shells", test_rounds(100, 2000), false);
     }

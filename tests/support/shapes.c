@@ -188,6 +188,17 @@ void shape_append(shape *out, const shape *other, const double offset[3], int tu
     }
 }
 
+shape shape_overlap(int number) {
+    static const double places[OVERLAPS / 2][3] = {
+        {0.5, 0.25, -0.5}, {0.3, 0.2, 0.1}, {1.5, -1.25, 0.25}, {-1.5, 0.4, 0.35}};
+    bool flat = number < OVERLAPS / 2;
+    shape both = flat ? shape_room() : shape_blob(2, 5);
+    shape other = flat ? shape_cube(2) : shape_blob(2, 9);
+    shape_append(&both, &other, places[number % (OVERLAPS / 2)], 0);
+    shape_free(&other);
+    return both;
+}
+
 void shape_place(shape *out, double scale, double offset) {
     for (size_t i = 0; i < 3 * out->vertex_count; i++)
         out->vertices[i] = scale * out->vertices[i] + offset;

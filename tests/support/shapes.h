@@ -30,6 +30,10 @@ shape shape_blob(int levels,
 /* Adds a translated copy of `other`; `turned` swaps its inside and outside. */
 void shape_append(shape *out, const shape *other, const double offset[3], int turned);
 
+/* Two shells that intersect and lie within one another in part: a room and a cube, or two blobs. */
+enum { OVERLAPS = 8 };
+shape shape_overlap(int number);
+
 /* Multiplies by a scale, then adds the offset to every coordinate. */
 void shape_place(shape *out, double scale, double offset);
 

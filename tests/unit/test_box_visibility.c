@@ -421,15 +421,9 @@ static void count_kinds(const setting *s, size_t boxes, size_t kinds[BOX_KINDS])
  * intersections the start of a segment or the entry into a surface proves something. */
 static void test_intersecting_shells(void **state) {
     (void)state;
-    static const double places[4][3] = {
-        {0.5, 0.25, -0.5}, {0.3, 0.2, 0.1}, {1.5, -1.25, 0.25}, {-1.5, 0.4, 0.35}};
     size_t kinds[BOX_KINDS] = {0}, boxes = test_rounds(40, 2000);
-    for (int i = 0; i < 8; i++) {
-        shape both = i < 4 ? shape_room() : shape_blob(2, 5);
-        shape other = i < 4 ? shape_cube(2) : shape_blob(2, 9);
-        shape_append(&both, &other, places[i % 4], 0);
-        shape_free(&other);
-        setting s = setting_of_shape(both);
+    for (int i = 0; i < OVERLAPS; i++) {
+        setting s = setting_of_shape(shape_overlap(i));
         assert_false(starg_solid_check(s.solid)->embedded);
         count_kinds(&s, boxes, kinds);
         check_solid(&s, "intersecting shells", boxes);
@@ -437,7 +431,7 @@ static void test_intersecting_shells(void **state) {
     assert_true(kinds[BOX_START] > 0 && kinds[BOX_FOLD] > 0 && kinds[BOX_ENTRY] > 0);
 }
 
-/* A handle of one shell that runs through itself, and what stands inside of another shell. */
+/* Of two cubes that overlap at a corner. */
 static void test_sound_faces(void **state) {
     (void)state;
     shape both = shape_cube(2), other = shape_cube(2);
