@@ -49,10 +49,11 @@ enum {
     TRIES = 1,
     FEW_NODES = 10,
     MANY_NODES = 300,
-    CLOSINGS = 3,
+    CLOSINGS = 4,
     FIRST_CLOSING = 5000000,
     CLOSING_FACTOR = 3,
-    MANY_GUARDS = 12
+    MANY_GUARDS = 20,
+    CLOSED_PROOF = 12 /* guards from which on proofs are closed repeatedly */
 };
 
 static const double ROUNDING = 1e-6;
@@ -65,7 +66,7 @@ static const double FIRST_FINEST = 1.0 / 16;
 static const double MOST_CELL_WORK = 1e6, CELL_WORK_COLUMNS = 1e4;
 
 /* Of the budget for better guards, what is used before each closing. */
-static const double SHARES[CLOSINGS] = {0.3, 0.6, 1};
+static const double SHARES[CLOSINGS] = {0.2, 0.4, 0.6, 0.8};
 
 /* ---- points ---- */
 
@@ -372,18 +373,20 @@ done:
     return status;
 }
 
-/* Rounds of local search, closed by integer programs. With many guards, these find in the points of
- * a few rounds what local search would need many for, so it begins anew from their guards. */
+/* Rounds of local search. With many guards, integer programs find in the points of a few rounds
+ * what local search would need many for, so it begins anew from their guards. */
 static starg_status run_improvement(search *s, uint64_t work) {
     starg_status status = STARG_OK;
     uint64_t begun = s->scene.work;
     bool more = true;
-    for (int k = s->count < MANY_GUARDS ? CLOSINGS - 1 : 0; k < CLOSINGS && more; k++) {
+    for (int k = 0; k < CLOSINGS && s->count >= MANY_GUARDS && more; k++) {
         STARG_TRY(run_rounds(s, search_improve, begun, work, SHARES[k]));
         STARG_TRY(close_rounds(s));
         s->budget = begun + work;
         more = goes_on(s);
     }
+    if (more)
+        STARG_TRY(run_rounds(s, search_improve, begun, work, 1));
 done:
     return status;
 }
@@ -392,7 +395,7 @@ done:
  * how much there is, so that more work begins alike and never proves less. */
 static starg_status run_proof(search *s, uint64_t work) {
     starg_status status = STARG_OK;
-    uint64_t begun = s->scene.work, next = s->count < MANY_GUARDS ? work : FIRST_CLOSING;
+    uint64_t begun = s->scene.work, next = s->count < CLOSED_PROOF ? work : FIRST_CLOSING;
     bool more = s->bound < s->count;
     s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
     s->ended = false;
@@ -408,18 +411,20 @@ done:
 }
 
 /* Looks for better guards. Where local search gives up early, cells show where else guards may
- * stand: a proof begins, and takes half of the budget that is left. Tests of boxes take longer in
- * larger models, so that there are fewer. */
+ * stand: a proof begins, with what is left of the budget. Tests of boxes take longer in larger
+ * models, so that there are fewer; where guards are few, one fewer is worth more. */
 static starg_status improve(search *s) {
     starg_status status = STARG_OK;
     uint64_t begun = s->scene.work, work = search_improve_work(s);
     double part = fmin(1, CELL_WORK_COLUMNS / (double)s->pool->columns);
     double most = MOST_CELL_WORK * part * part * part;
+    most *= fmax(1, MANY_GUARDS / (double)s->count);
     STARG_TRY(run_improvement(s, work));
     double left = (double)work - (double)(s->scene.work - begun);
     if (s->problem->options->prove || s->bound == s->count || !(left > 0))
-        return STARG_OK;
-    STARG_TRY(run_proof(s, (uint64_t)fmin(left / 2, most)));
+        STARG_TRY(close_rounds(s));
+    else
+        STARG_TRY(run_proof(s, (uint64_t)fmin(left, most)));
 done:
     return status;
 }

@@ -7,9 +7,9 @@
  * 2015), as in cover/local.c, but the set of points is not fixed:
  *   1. remove the guard whose loss leaves the least weight of witnesses short of guards;
  *   2. draw a witness that lacks guards. Of all known points that see it, add the one with the
- *      largest gain. Before that the point climbs: points around it, in front of the witness, and
- *      towards the other guards replace it if they gain as much or more. If the climb ends higher,
- *      its point joins the known ones;
+ *      largest gain. Before that the point climbs: points around it, in front of the witness, at
+ *      the wall, and towards the other guards replace it if they gain as much or more. If the climb
+ * ends higher, its point joins the known ones;
  *   3. add one to the weight of each witness that still lacks guards.
  * When no witness lacks guards, the points are tested against all faces: they are better guards, or
  * the faces that they miss become witnesses, of weight 1, and the search continues with these and
@@ -198,14 +198,14 @@ static starg_status climb(local_search *l, uint32_t *point, size_t witness, doub
     starg_status status = STARG_OK;
     search *s = l->s;
     search_point best = s->points.data[*point];
-    double centre[3], most = gain, step = FIRST_STEP;
-    search_scene_centre(&s->scene, witness, centre);
+    double most = gain, step = FIRST_STEP;
     for (int k = 0; k < CLIMB; k++, step *= STEP_FACTOR) {
         const double *other = NULL;
         search_point next;
-        if (k % 3 == 1 && l->count > 0)
+        search_stand stand = (search_stand)(k % STANDS);
+        if (stand == STAND_BETWEEN && l->count > 0)
             other = s->points.data[l->chosen[starg_rng_below(&l->rng, l->count)]].place;
-        search_propose(&best, centre, other, k % 3, step, &l->rng, &next);
+        search_propose(&s->scene, &best, witness, other, stand, step, &l->rng, &next);
         double found = look_from(l, &next, witness, most);
         if (found >= most) {
             most = found;

@@ -115,7 +115,9 @@ starg_status search_close(search *s) {
     if (!open || starg_time_is_over(context_of(s)))
         goto done;
     STARG_TRY(hold_best(s));
-    STARG_TRY(search_ask_candidates(s));
+    if (pool_count(s->pool) > s->asked_pool)
+        STARG_TRY(search_ask_candidates(s));
+    s->known = s->asked_bound > s->known ? s->asked_bound : s->known;
 done:
     return status;
 }

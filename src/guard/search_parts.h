@@ -28,6 +28,8 @@ typedef struct search {
     uint64_t *viewers;            /* by column: an identifier of the set of them */
     size_t count, bound;          /* number of guards, and its lower bound */
     size_t asked_at, asked_of;    /* numbers of cells and witnesses at the last integer program */
+    size_t asked_pool;            /* number of candidates at the last one over all faces, */
+    size_t asked_bound;           /* and the bound that it gave for them */
     uint64_t ask_after;           /* work at which the next one is due */
     uint64_t budget;              /* of the work that the scene counts */
     double finest;                /* leaves no longer than this count as points in the prices */
@@ -155,11 +157,21 @@ starg_status search_hold(search *s, const uint32_t *points, size_t count);
  * the best, 0 if there is none. Errors: MEMORY, CANCELLED. */
 starg_status search_move(search *s, double *most);
 
-/* Proposes a point near `best`, which sees a face with this centre: around it (0), towards `other`
- * (1; NULL: none), or in front of the face (2). If views are cones, the direction is turned as
- * well. */
-void search_propose(const search_point *best, const double centre[3], const double *other, int kind,
-                    double step, starg_rng *rng, search_point *out);
+/* Where a proposed point stands: around the point that it is to replace, between that and another
+ * one, in front of the witness, or just inside the wall that the point looks at. */
+typedef enum search_stand {
+    STAND_AROUND = 0,
+    STAND_BETWEEN = 1,
+    STAND_BEFORE = 2,
+    STAND_AT_WALL = 3,
+    STANDS = 4
+} search_stand;
+
+/* Proposes a point in place of `best`, which sees witness j. `other` is the place of another point
+ * (NULL: none). If views are cones, the direction is turned as well. */
+void search_propose(const search_scene *scene, const search_point *best, size_t j,
+                    const double *other, search_stand stand, double step, starg_rng *rng,
+                    search_point *out);
 
 /* Local search for one guard fewer (guard/search_fewer.c). *changed: there are better guards, or
  * more witnesses. Errors: MEMORY, CANCELLED. */

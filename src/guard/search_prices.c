@@ -19,7 +19,7 @@
 static const char STAGE[] = "search";
 
 /* Comparisons and values of rows that take as long as a test of a witness. */
-enum { PROGRAMS = 6, COMPARISONS = 150, VALUES = 5, ODD_ROUNDS = 5 };
+enum { PROGRAMS = 30, COMPARISONS = 150, VALUES = 5, ODD_ROUNDS = 5 };
 
 /* The least share of a fractional cover that counts. */
 static const double LEAST_SHARE = 1e-6;

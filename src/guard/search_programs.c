@@ -144,7 +144,8 @@ starg_status search_ask_candidates(search *s) {
         cover->rows[k] = list[cover->rows[k]];
     if (cover->count < s->count)
         STARG_TRY(search_try_guards(s, cover->rows, cover->count, &changed));
-    s->known = bound > s->known ? bound : s->known;
+    s->asked_pool = pool_count(s->pool);
+    s->asked_bound = bound;
 done:
     starg_release(context, list);
     starg_bits_free(rows);

@@ -83,6 +83,15 @@ void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) 
                     scene_corner(points, place, 2)[k] / 3;
 }
 
+/* Slots are numbered in the order in which the faces use them. */
+size_t search_scene_rank(const search_scene *scene, size_t j) {
+    const visibility_scene *points = scene->points;
+    size_t place = scene->places[scene->witnesses.data[j]];
+    return scene->view->target == STARG_TARGET_FACES
+               ? place
+               : place * points->face_count / points->vertex_count;
+}
+
 /* Is p strictly on the inner side of the face of a corner? */
 static bool is_before(const search_scene *scene, uint32_t corner, const double p[3]) {
     const starg_mesh *mesh = scene->solid->mesh;

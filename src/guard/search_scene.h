@@ -40,6 +40,9 @@ typedef struct search_point {
 /* The centroid of the face of witness j, or the vertex. */
 void search_scene_centre(const search_scene *scene, size_t j, double centre[3]);
 
+/* A rank of the faces of `points` at witness j. */
+size_t search_scene_rank(const search_scene *scene, size_t j);
+
 /* Does the point see witness j? The point lies in the free space. */
 bool search_scene_sees(const search_scene *scene, const search_point *point, size_t j,
                        uint64_t *work);
