@@ -9,22 +9,8 @@
  * a bound for all. Cells (guard/cells.h) cover the whole space, and each stores the witnesses that
  * it may see. Points are candidates, moved points, and points of cells. A first loop only looks for
  * guards (guard/search_improve.c). A second one, short unless a proof is asked for, improves both
- * ends:
- *   1. find prices of the witnesses from the known points (guard/prices.c): no point exceeds 1;
- *   2. if the prices leave room for fewer guards, an integer program over the points looks for
- *      them. Its solution is tested against all faces: it gives better guards, or the faces that
- *      they miss become witnesses;
- *   3. split the cells whose total price may be too high for the target bound, starting with those
- *      of high price and large size, for as long as the prices took; add their points and return to
- *      1. Small cells are not split, but count as points in the prices (guard/search_prices.c);
- *   4. if there are no such cells, the prices prove the bound (guard/bound.c). If the bound is
- *      below the number of guards, odd sets of witnesses get prices (guard/odd_sets.h), and smaller
- *      cells are split as well; by turns faces that the fractional cover does not see enough become
- *      witnesses;
- *   5. if there are no such faces either, solve an integer program over cells and points: cells
- *      that would allow fewer guards are split, with more points; if no cells would, branching
- *      proves it, with separate prices in each branch.
- * In the end all cells count as points, which gives the best bound of these cells.
+ * ends (guard/search_proof.c). Both are closed by integer programs over all faces. In the end all
+ * cells count as points, which gives the best bound of these cells.
  *
  * If several guards must see each face, the witnesses are faces that enough guards see, and k
  * guards cover at most k times what one of them covers. If views are directed, points have a
@@ -46,7 +32,6 @@ enum {
     COMPARED = 300, /* comparisons of points that take as long as a test */
     LEAST_BATCH = 32,
     MOST_BATCH = 2048,
-    TRIES = 1,
     FEW_NODES = 10,
     MANY_NODES = 300,
     CLOSINGS = 4,
@@ -55,8 +40,6 @@ enum {
     MANY_GUARDS = 20,
     CLOSED_PROOF = 12 /* guards from which on proofs are closed repeatedly */
 };
-
-static const double ROUNDING = 1e-6;
 
 /* The more guards, the smaller are the parts of the space that tell them apart: leaves of a
  * sixteenth of the extent, shared among the guards, are small at first. */
@@ -151,14 +134,6 @@ done:
     return status;
 }
 
-static void drop_split(const search *s, leaf_list *list) {
-    size_t kept = 0;
-    for (size_t i = 0; i < list->count; i++)
-        if (s->cells.data[list->data[i].cell].children == 0)
-            list->data[kept++] = list->data[i];
-    list->count = kept;
-}
-
 starg_status search_split(search *s, scored_leaf *list, size_t count, int tries) {
     starg_status status = STARG_OK;
     uint32_t *leaves = NULL;
@@ -191,123 +166,7 @@ done:
     return status;
 }
 
-/* The bound that the prices prove. */
-static starg_status prove(search *s) {
-    starg_status status = STARG_OK;
-    const witness_row **rows = NULL;
-    whole_prices whole;
-    size_t count = 0;
-    STARG_NEW(context_of(s), STAGE, rows, s->cells.count);
-    for (size_t i = 0; i < s->cells.count; i++)
-        if (s->cells.data[i].children == 0)
-            rows[count++] = &s->cells.data[i].open;
-    bound_round(&s->prices, &s->odd, &whole);
-    size_t bound = bound_of_prices(rows, count, &whole, s->redundancy);
-    if (bound > s->bound)
-        certificate_note_prices(s->problem->certificate, bound, &whole);
-    s->bound = bound > s->bound ? bound : s->bound;
-done:
-    starg_release(context_of(s), rows);
-    return status;
-}
-
 /* ---- the loop ---- */
-
-bool search_has_room(const search *s) {
-    return search_value(s) <= (double)s->count - 1 + SEARCH_GAP;
-}
-
-/* If the prices leave room for fewer guards: finds better guards or more witnesses. */
-static starg_status look_for_guards(search *s, bool last, bool *changed) {
-    *changed = false;
-    bool grown =
-        last ? s->cells.count > s->asked_at + s->asked_at / 10 ||
-                   s->scene.witnesses.count > s->asked_of
-             : s->cells.count > s->asked_at + s->asked_at / 3 && s->scene.work >= s->ask_after;
-    if (!search_has_room(s) || !grown)
-        return STARG_OK;
-    return search_ask_points(s, changed);
-}
-
-/* The next bound to prove: a third of the way to what the prices allow. Cells that block a lower
- * bound also block a higher one, so no work is lost; and if the budget ends before the highest
- * bound is proven, a lower one is. */
-static size_t next_aim(const search *s) {
-    double allowed = fmin((double)s->count, ceil(search_value(s) - ROUNDING));
-    size_t most = allowed > 1 ? (size_t)allowed : 1;
-    return s->bound < most ? s->bound + (most - s->bound + 2) / 3 : most;
-}
-
-/* Splits leaves that block the next bound, until none does or as much work went into this as into
- * the prices. *changed: there are some. */
-static starg_status split_costly(search *s, bool *changed) {
-    starg_status status = STARG_OK;
-    leaf_list leaves = {0};
-    size_t aim = next_aim(s);
-    double most = aim > 1 ? search_value(s) / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
-    uint64_t enough = s->scene.work + s->prices.work;
-    STARG_TRY(search_list_leaves(s, most, 0, &leaves));
-    *changed = leaves.count > 0;
-    for (bool more = *changed; more;
-         more = leaves.count > 0 && !s->ended && s->scene.work < enough) {
-        size_t first = s->cells.count;
-        STARG_TRY(search_split(s, leaves.data, leaves.count, TRIES));
-        drop_split(s, &leaves);
-        STARG_TRY(search_list_leaves(s, most, first, &leaves));
-    }
-done:
-    STARG_ARRAY_FREE(context_of(s), &leaves);
-    return status;
-}
-
-/* No leaf blocks the bound of the prices: looks for better guards, more witnesses, or cells chosen
- * by an integer program. */
-static starg_status ask_further(search *s, const row_list *list, bool *changed) {
-    starg_status status = STARG_OK;
-    STARG_TRY(look_for_guards(s, true, changed));
-    if (!*changed)
-        STARG_TRY(search_add_short(s, list, changed));
-    if (!*changed)
-        STARG_TRY(search_ask_cells(s, changed));
-done:
-    return status;
-}
-
-/* No leaf that is not small blocks the bound of the prices. If small ones hold them down, half as
- * small ones do from now on; every third time, or if nothing else helps, looks further. */
-static starg_status go_on(search *s, const row_list *list, bool *changed) {
-    starg_status status = STARG_OK;
-    bool bind = search_fine_bind(s, list), turn = bind && ++s->refinements % 3 != 0;
-    STARG_TRY(search_find_odd(s, list, changed));
-    if (!*changed && !turn)
-        STARG_TRY(ask_further(s, list, changed));
-    if (!*changed && bind) {
-        s->finest /= 2;
-        *changed = true;
-    }
-    s->ended = !*changed;
-done:
-    return status;
-}
-
-/* Every round ends with the bound that its prices prove for the current cells, so that more work
- * never proves less. */
-static starg_status prove_round(search *s, row_list *list) {
-    starg_status status = STARG_OK;
-    size_t before = s->bound;
-    bool changed;
-    STARG_TRY(search_find_prices(s, list));
-    STARG_TRY(look_for_guards(s, false, &changed));
-    if (!changed)
-        STARG_TRY(split_costly(s, &changed));
-    STARG_TRY(prove(s));
-    if (!changed && s->bound < s->count && s->bound == before) {
-        STARG_TRY(go_on(s, list, &changed));
-        STARG_TRY(prove(s));
-    }
-done:
-    return status;
-}
 
 typedef starg_status round_run(search *s, row_list *list);
 
@@ -337,28 +196,9 @@ done:
     return status;
 }
 
-/* The best bound of the leaves that there are: all of them count as points in the prices. */
-static starg_status prove_by_leaves(search *s) {
-    starg_status status = STARG_OK;
-    row_list list = {0};
-    if (s->bound == s->count || starg_time_is_over(context_of(s)))
-        return STARG_OK;
-    s->finest = INFINITY;
-    STARG_TRY(row_list_make(context_of(s), 2 * s->points.count + s->cells.count, &list));
-    s->odd_rounds = 0;
-    for (bool changed = true; changed;) {
-        STARG_TRY(search_find_prices(s, &list));
-        STARG_TRY(prove(s));
-        STARG_TRY(search_find_odd(s, &list, &changed));
-    }
-done:
-    row_list_free(context_of(s), &list);
-    return status;
-}
-
 /* Integer programs over the points look for fewer guards. If there are none, what is known of the
  * points is renewed all the same. */
-static starg_status close_rounds(search *s) {
+static starg_status close_and_resume(search *s) {
     starg_status status = STARG_OK;
     size_t before = s->count;
     if (s->bound < before)
@@ -381,7 +221,7 @@ static starg_status run_improvement(search *s, uint64_t work) {
     bool more = true;
     for (int k = 0; k < CLOSINGS && s->count >= MANY_GUARDS && more; k++) {
         STARG_TRY(run_rounds(s, search_improve, begun, work, SHARES[k]));
-        STARG_TRY(close_rounds(s));
+        STARG_TRY(close_and_resume(s));
         s->budget = begun + work;
         more = goes_on(s);
     }
@@ -401,8 +241,8 @@ static starg_status run_proof(search *s, uint64_t work) {
     s->ended = false;
     for (; more; next *= CLOSING_FACTOR) {
         double share = next < work ? (double)next / (double)work : 1;
-        STARG_TRY(run_rounds(s, prove_round, begun, work, share));
-        STARG_TRY(close_rounds(s));
+        STARG_TRY(run_rounds(s, search_prove_round, begun, work, share));
+        STARG_TRY(close_and_resume(s));
         s->budget = begun + work;
         more = share < 1 && goes_on(s);
     }
@@ -422,7 +262,7 @@ static starg_status improve(search *s) {
     STARG_TRY(run_improvement(s, work));
     double left = (double)work - (double)(s->scene.work - begun);
     if (s->problem->options->prove || s->bound == s->count || !(left > 0))
-        STARG_TRY(close_rounds(s));
+        STARG_TRY(close_and_resume(s));
     else
         STARG_TRY(run_proof(s, (uint64_t)fmin(left, most)));
 done:
@@ -439,10 +279,10 @@ static starg_status run(search *s, bool improves) {
     s->nodes = MANY_NODES;
     if (o->prove) {
         STARG_TRY(run_proof(s, o->prove_work));
-        STARG_TRY(prove_by_leaves(s));
+        STARG_TRY(search_prove_by_leaves(s));
     }
     if (s->bound < s->count)
-        STARG_TRY(prove(s));
+        STARG_TRY(search_prove(s));
 done:
     return status;
 }

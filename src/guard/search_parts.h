@@ -100,6 +100,16 @@ static inline witness_row all_witnesses(const search *s) {
     return row;
 }
 
+/* A round of a proof (guard/search_proof.c). Errors: MEMORY, CANCELLED. */
+starg_status search_prove_round(search *s, row_list *list);
+
+/* Raises the bound to what the prices prove for the current cells. Errors: MEMORY. */
+starg_status search_prove(search *s);
+
+/* Raises it to the best that the current cells have: all of them count as points in the prices.
+ * Errors: MEMORY. */
+starg_status search_prove_by_leaves(search *s);
+
 /* Do the prices leave room for fewer guards than there are? */
 bool search_has_room(const search *s);
 
