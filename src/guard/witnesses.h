@@ -5,7 +5,7 @@
 
 #include "core/bits.h"
 
-enum { MOST_WITNESSES = 1024, WITNESS_WORDS = MOST_WITNESSES / 64 };
+enum { MOST_WITNESSES = 2048, WITNESS_WORDS = MOST_WITNESSES / 64 };
 
 typedef struct witness_row {
     uint64_t bits[WITNESS_WORDS];
