@@ -9,7 +9,7 @@
  *   2. draw a witness that lacks guards. Of all known points that see it, add the one with the
  *      largest gain. Before that the point climbs: points around it, in front of the witness, at
  *      the wall, and towards the other guards replace it if they gain as much or more. If the climb
- * ends higher, its point joins the known ones;
+ *      ends higher, its point joins the known ones;
  *   3. add one to the weight of each witness that still lacks guards.
  * When no witness lacks guards, the points are tested against all faces: they are better guards, or
  * the faces that they miss become witnesses, of weight 1, and the search continues with these and

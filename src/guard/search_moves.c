@@ -45,8 +45,7 @@ enum {
 static const double LEAST_PRICE = 1e-3, WORTH = 1 - 2e-3, FIRST_STEP = 0.6, TIE = 1e-6,
                     STEP_FACTOR = 0.6;
 
-/* Above the wall: the largest height in diagonals, and how many times that of the smallest it is.
- */
+/* The largest height above the wall, in diagonals, and its ratio to the smallest. */
 static const double HIGHEST = 2e-3, HEIGHTS = 1000;
 
 typedef struct source {

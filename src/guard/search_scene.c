@@ -23,6 +23,8 @@ static void fill_places(search_scene *scene) {
     else
         for (size_t rank = 0; rank < points->face_count; rank++)
             scene->places[points->face_of[rank]] = (uint32_t)rank;
+    for (size_t i = 3 * points->face_count; i-- > 0;)
+        scene->ranks[points->corners[i]] = (uint32_t)(i / 3);
 }
 
 starg_status search_scene_open(starg_context *context, const starg_solid *solid,
@@ -37,6 +39,7 @@ starg_status search_scene_open(starg_context *context, const starg_solid *solid,
     STARG_TRY(scene_create(context, solid, &out->points));
     STARG_TRY(box_scene_create(context, solid, &out->boxes));
     STARG_NEW(context, STAGE, out->places, target_columns(solid->mesh, view->target));
+    STARG_NEW(context, STAGE, out->ranks, solid->mesh->vertex_count);
     fill_places(out);
 done:
     if (status != STARG_OK)
@@ -50,6 +53,7 @@ void search_scene_close(search_scene *scene) {
     scene_free(scene->points);
     box_scene_free(scene->boxes);
     starg_release(scene->context, scene->places);
+    starg_release(scene->context, scene->ranks);
     STARG_ARRAY_FREE(scene->context, &scene->witnesses);
     *scene = (search_scene){0};
 }
@@ -83,13 +87,9 @@ void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) 
                     scene_corner(points, place, 2)[k] / 3;
 }
 
-/* Slots are numbered in the order in which the faces use them. */
 size_t search_scene_rank(const search_scene *scene, size_t j) {
-    const visibility_scene *points = scene->points;
-    size_t place = scene->places[scene->witnesses.data[j]];
-    return scene->view->target == STARG_TARGET_FACES
-               ? place
-               : place * points->face_count / points->vertex_count;
+    uint32_t place = scene->places[scene->witnesses.data[j]];
+    return scene->view->target == STARG_TARGET_FACES ? place : scene->ranks[place];
 }
 
 /* Is p strictly on the inner side of the face of a corner? */

@@ -19,6 +19,7 @@ typedef struct search_scene {
     box_scene *boxes;         /* what a box may see */
     uint32_t
         *places; /* by column, its position in `points`: rank of the face, or slot of the vertex */
+    uint32_t *ranks;                 /* by slot, a rank of a face at the vertex */
     STARG_ARRAY(uint32_t) witnesses; /* columns: the faces or vertices that stand for all */
     uint64_t number;                 /* of the context's scenes */
     uint64_t work; /* tests of a vertex against a box or a point, each about a microsecond */
@@ -40,7 +41,7 @@ typedef struct search_point {
 /* The centroid of the face of witness j, or the vertex. */
 void search_scene_centre(const search_scene *scene, size_t j, double centre[3]);
 
-/* A rank of the faces of `points` at witness j. */
+/* A rank of a face of `points` that is witness j or has its vertex. */
 size_t search_scene_rank(const search_scene *scene, size_t j);
 
 /* Does the point see witness j? The point lies in the free space. */

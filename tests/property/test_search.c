@@ -12,6 +12,7 @@
 #include "geometry/vec3.h"
 #include "guard/cells.h"
 #include "guard/choose.h"
+#include "guard/search_parts.h"
 #include "guard/stages.h"
 #include "models.h"
 #include "shapes.h"
@@ -318,6 +319,50 @@ static void test_cells_hold_their_points(void **state) {
     STARG_ARRAY_FREE(context, &points);
     STARG_ARRAY_FREE(context, &cells);
     search_scene_close(&scene);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* Points proposed at the wall are inside but for few (where other walls are nearer than they are
+ * high), no higher than 0.002 diagonals, at heights of all three orders of magnitude below that,
+ * and rather near the witness than anywhere, of faces as of vertices. */
+static void test_places_at_walls(void **state) {
+    (void)state;
+    enum { PROPOSALS = 2000 };
+    static const starg_target TARGETS[] = {STARG_TARGET_FACES, STARG_TARGET_VERTICES};
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "horse", 1000);
+    for (size_t t = 0; t < 2; t++) {
+        starg_visibility_options view;
+        search_scene scene = {0};
+        search_point best = {.place = {0}}, point;
+        starg_rng rng = starg_rng_make(5, 6, t);
+        size_t inside = 0, near = 0, decade[3] = {0};
+        double centre[3];
+        starg_visibility_options_default(&view);
+        view.target = TARGETS[t];
+        test_ok(context, search_scene_open(context, solid, &view, 0, &scene));
+        starg_status status = STARG_OK;
+        STARG_PUSH(context, "test", &scene.witnesses, 321);
+        search_scene_centre(&scene, 0, centre);
+        const bvh_box *all = &scene.points->all;
+        double diagonal = vec3_distance(all->lower, all->upper);
+        for (size_t k = 0; k < PROPOSALS; k++) {
+            search_propose(&scene, &best, 0, NULL, STAND_AT_WALL, 1, &rng, &point);
+            double height = starg_solid_distance(solid, point.place) / diagonal;
+            assert_true(height < 2.001e-3);
+            inside += starg_solid_contains(solid, point.place);
+            near += vec3_distance(point.place, centre) < diagonal / 8;
+            decade[height > 2e-4 ? 0 : height > 2e-5 ? 1 : 2]++;
+        }
+        assert_true(inside > PROPOSALS * 9 / 10);
+        assert_true(near > PROPOSALS / 3 && near < PROPOSALS);
+        for (int k = 0; k < 3; k++)
+            assert_true(decade[k] > PROPOSALS / 5);
+    done:
+        test_ok(context, status);
+        search_scene_close(&scene);
+    }
     starg_solid_free(solid);
     test_context_free(context);
 }
@@ -731,6 +776,7 @@ int main(void) {
         cmocka_unit_test(test_default_bounds),
         cmocka_unit_test(test_questions),
         cmocka_unit_test(test_cells_hold_their_points),
+        cmocka_unit_test(test_places_at_walls),
         cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_more_work),
         cmocka_unit_test(test_limits_of_sight),
