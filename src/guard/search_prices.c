@@ -18,7 +18,8 @@
 
 static const char STAGE[] = "search";
 
-/* Comparisons and values of rows that take as long as a test of a witness. */
+/* PROGRAMS is a safeguard: prices that are not found to the end are scaled down, and of little use.
+ * COMPARISONS and VALUES of rows take as long as a test of a witness. */
 enum { PROGRAMS = 30, COMPARISONS = 150, VALUES = 5, ODD_ROUNDS = 5 };
 
 /* The least share of a fractional cover that counts. */

@@ -217,6 +217,10 @@ static void test_default_bounds(void **state) {
         starg_solid_free(solid);
     }
     assert_true(bounded > 0);
+    /* closed by a program over all faces, whose bound is remembered */
+    starg_solid *solid = test_sample(context, "octopus", 1000);
+    check_default(context, solid, &bounded);
+    starg_solid_free(solid);
     test_context_free(context);
 }
 
