@@ -69,7 +69,7 @@ endfunction()
 starguard_add_pkgconfig(starguard "Fewest guards inside a solid, and star-shaped pieces" ""
     "JANSSON;CBC" -lz -lpthread -lstdc++ -lm)
 starguard_add_pkgconfig(starguard-shapes "Compares and morphs shapes by guards and star-shaped pieces"
-    "starguard = ${PROJECT_VERSION}" "SQLITE;ARPACK" -lldl -lamd -lm)
+    "starguard = ${PROJECT_VERSION}" "SQLITE" -lldl -lamd -lstdc++ -lm)
 
 # ---- documentation ----
 

@@ -29,7 +29,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libstarguard ${same}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libstarguard-shapes ${same}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "coinor-libcbc-dev, libjansson-dev, libsqlite3-dev, \
-libarpack2-dev, libsuitesparse-dev, zlib1g-dev")
+libsuitesparse-dev, zlib1g-dev")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "fewest guards inside a 3D solid, and star-shaped pieces
 Places the fewest guards inside a closed triangle mesh that together see its
 whole boundary, with exact visibility and a proven bound; cuts solids into few

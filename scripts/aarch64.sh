@@ -43,7 +43,7 @@ CONF
     APT_CONFIG=$state/apt.conf apt-get -qq update
     APT_CONFIG=$state/apt.conf apt-get -qq -y --no-install-recommends --download-only install \
         libc6-dev libstdc++-12-dev coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev \
-        libarpack2-dev libsuitesparse-dev libcmocka-dev libgmp-dev >/dev/null
+        libspectra-dev libeigen3-dev libsuitesparse-dev libcmocka-dev libgmp-dev >/dev/null
     for package in "$state"/archives/*.deb; do
         dpkg-deb --extract "$package" "$root"
     done

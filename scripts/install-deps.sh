@@ -14,7 +14,7 @@ viewer_packages() {
 packages=""
 for purpose in "$@"; do
     case $purpose in
-    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libarpack2-dev libsuitesparse-dev python3 python3-numpy $(viewer_packages)" ;;
+    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libspectra-dev libeigen3-dev libsuitesparse-dev python3 python3-numpy $(viewer_packages)" ;;
     check) packages="$packages libcmocka-dev libgmp-dev cppcheck clang clang-format clang-tidy libclang-rt-14-dev llvm python3-jsonschema jq man-db tetgen chromium python3-pip python3-cffi mypy python3-vtk9 python3-meshio assimp-utils" ;;
     coverage) packages="$packages gcovr" ;;
     memory) packages="$packages valgrind" ;;

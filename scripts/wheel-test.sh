@@ -27,7 +27,7 @@ use_in_clean_root() {
         tail -n 20 "$scratch/log" >&2
         exit 1
     }
-    for thing in "$root"/usr/bin/gcc "$root"/usr/bin/cc "$root"/usr/lib/*/libCbc* "$root"/usr/lib/*/libarpack* \
+    for thing in "$root"/usr/bin/gcc "$root"/usr/bin/cc "$root"/usr/lib/*/libCbc* \
         "$root"/usr/lib/*/libjansson* "$root"/usr/lib/python3/dist-packages/*cffi*; do
         [ ! -e "$thing" ] || { echo "not a clean root: it has $thing" >&2; exit 1; }
     done

@@ -48,7 +48,7 @@ def main(readme):
     guards.write("guards.json", "model.off")
     starguard.decompose(room, effort=50).write("pieces.vtk")
     shapes = [starguard.sample(name, vertices=500) for name in ("dog", "cat")]
-    for kind in ("star", "shape-dna", "d2"):  # ARPACK, LDL
+    for kind in ("star", "shape-dna", "d2"):  # Spectra, LDL
         print(kind, starguard.match(*shapes, kind))
     for name, shape in zip(("dog", "cat"), shapes):
         shape.write(f"{name}.off")

@@ -43,10 +43,12 @@ Generator: starguard
 Root-Is-Purelib: false
 Tag: {tag}
 """
-#: What the build uses: the name of a program or of a pkg-config file, and Debian's package.
+#: What the build uses: the name of a program, a pkg-config file or a header, and Debian's package.
 PROGRAMS = [("cmake", "cmake"), ("cc", "gcc"), ("c++", "g++"), ("pkg-config", "pkg-config")]
 LIBRARIES = [("cbc", "coinor-libcbc-dev"), ("jansson", "libjansson-dev"), ("sqlite3", "libsqlite3-dev"),
-             ("arpack", "libarpack2-dev"), ("zlib", "zlib1g-dev")]
+             ("zlib", "zlib1g-dev")]
+HEADERS = [("ldl.h", "libsuitesparse-dev"), ("Spectra/SymEigsSolver.h", "libspectra-dev"),
+           ("Eigen/Core", "libeigen3-dev")]
 
 
 def version():
@@ -60,10 +62,10 @@ def missing_packages():
     if "pkg-config" not in missing:
         missing += [package for name, package in LIBRARIES
                     if subprocess.run(["pkg-config", "--exists", name], check=False).returncode != 0]
-    if not any(os.path.exists(os.path.join(folder, "ldl.h"))
-               for folder in ("/usr/include/suitesparse", "/usr/local/include/suitesparse", "/usr/include")):
-        missing.append("libsuitesparse-dev")
-    return missing
+    return missing + [package for header, package in HEADERS
+                      if not any(os.path.exists(os.path.join(folder, below, header))
+                                 for folder in ("/usr/include", "/usr/local/include")
+                                 for below in ("", "suitesparse", "eigen3"))]
 
 
 def built_package(scratch):

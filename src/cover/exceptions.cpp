@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The only C++ file: C cannot catch exceptions.
+/* In C++, because C cannot catch exceptions.
  *
  * When memory is out, operator new calls a handler repeatedly until it finds some. The first call
  * releases a reserve and asks the solver to stop. If the reserve runs out before it does, the

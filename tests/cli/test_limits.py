@@ -18,7 +18,7 @@ from writing import LONG, Writing, limit
 @unittest.skipIf(support.SANITIZE, "sanitizers need all the addresses there are")
 class Memory(Writing):
     """RLIMIT_AS: done, or status 3 with a message about memory; never a signal, never half a file.
-    What CBC, SQLite, ARPACK, jansson and the C library allocate on their own counts here."""
+    What CBC, SQLite, Eigen, jansson and the C library allocate on their own counts here."""
 
     def least(self):
         """Addresses that are needed to start at all."""

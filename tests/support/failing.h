@@ -3,7 +3,7 @@
  * no longer gets that far. Each attempt has its own context, which must end without blocks, and an
  * output folder, which a failing call must leave empty.
  *
- * Not covered: allocations by libraries (CBC, SQLite, jansson, ARPACK, AMD, zlib) and by the C
+ * Not covered: allocations by libraries (CBC, SQLite, jansson, Eigen, AMD, zlib) and by the C
  * library (streams, threads), which bypass the context. For those, tests/cli/test_limits.py limits
  * the memory of whole processes. */
 #ifndef TESTS_FAILING_H
