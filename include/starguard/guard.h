@@ -28,8 +28,8 @@ typedef enum starg_guard_method {
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
-/* For refine_lines: what suits the model, which is 3,000,000, 30,000 for each guard of the
- * candidates, and 8 for each of them and face. */
+/* For refine_lines: what suits the model, which is 4,000,000 and, for each guard of the
+ * candidates, 10 for each face, but at least 200,000. */
 #define STARG_DEFAULT_LINES UINT64_MAX
 
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000

@@ -163,7 +163,7 @@ static const starg_field OPTIONS[] = {
      .value = "N",
      .help = "pilp: budget of refinement, counted in sight lines (about a microsecond each) and "
              "what takes as long.",
-     .default_text = "3,000,000, 30,000 for each guard, and 8 for each face and guard"},
+     .default_text = "4,000,000, and for each guard 10 for each face, at least 200,000"},
     {.key = "prove",
      .option = "prove",
      .kind = STARG_FIELD_FLAG,

@@ -46,7 +46,7 @@ enum {
 static const double FIRST_FINEST = 1.0 / 16;
 
 /* Most work of cells for better guards, and the number of columns above which it is less. */
-static const double MOST_CELL_WORK = 1e6, CELL_WORK_COLUMNS = 1e4;
+static const double MOST_CELL_WORK = 5e6, EASY_COLUMNS = 1e4;
 
 /* Of the budget for better guards, what is used before each closing. */
 static const double SHARES[CLOSINGS] = {0.2, 0.4, 0.6, 0.8};
@@ -256,8 +256,7 @@ done:
 static starg_status improve(search *s) {
     starg_status status = STARG_OK;
     uint64_t begun = s->scene.work, work = search_improve_work(s);
-    double part = fmin(1, CELL_WORK_COLUMNS / (double)s->pool->columns);
-    double most = MOST_CELL_WORK * part * part * part;
+    double most = MOST_CELL_WORK * pow(fmin(1, EASY_COLUMNS / (double)s->pool->columns), 5);
     most *= fmax(1, MANY_GUARDS / (double)s->count);
     STARG_TRY(run_improvement(s, work));
     double left = (double)work - (double)(s->scene.work - begun);

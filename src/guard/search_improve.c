@@ -17,13 +17,23 @@
 
 #include "guard/search_parts.h"
 
-enum { TRIES = 2, PATIENCE = 9, HOPELESS = 3, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
+enum {
+    LEAST_WORK = 4000000,
+    WORK_PER_GUARD = 200000,
+    TRIES = 2,
+    PATIENCE = 9,
+    HOPELESS = 3,
+    MOST_HELD = 250,
+    ASKED = 4,
+    MOST_ASKED_OF = 300
+};
 
 static const char STAGE[] = "search";
 
 /* Programs grow with the guards, and their rows with the faces. */
 static uint64_t default_work(const search *s) {
-    return 3000000 + 30000 * s->count + 8 * s->count * s->pool->columns;
+    uint64_t rows = 10 * s->pool->columns;
+    return LEAST_WORK + s->count * (rows > WORK_PER_GUARD ? rows : WORK_PER_GUARD);
 }
 
 uint64_t search_improve_work(const search *s) {
