@@ -37,8 +37,7 @@ enum {
     CLOSINGS = 4,
     FIRST_CLOSING = 5000000,
     CLOSING_FACTOR = 3,
-    MANY_GUARDS = 20,
-    CLOSED_PROOF = 12 /* guards from which on proofs are closed repeatedly */
+    MANY_GUARDS = 20
 };
 
 /* The more guards, the smaller are the parts of the space that tell them apart: leaves of a
@@ -231,11 +230,11 @@ done:
     return status;
 }
 
-/* Rounds of a proof, with many guards closed several times too: after work that does not depend on
- * how much there is, so that more work begins alike and never proves less. */
+/* Rounds of a proof, closed several times too: after work that does not depend on how much there
+ * is, so that more work begins alike and never proves less. */
 static starg_status run_proof(search *s, uint64_t work) {
     starg_status status = STARG_OK;
-    uint64_t begun = s->scene.work, next = s->count < CLOSED_PROOF ? work : FIRST_CLOSING;
+    uint64_t begun = s->scene.work, next = FIRST_CLOSING;
     bool more = s->bound < s->count;
     s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
     s->ended = false;
