@@ -3,11 +3,16 @@
 """Measures maps between solids: a row for each pair of poses that have the same faces.
 
 usage: solid_maps.py STARGUARD [--shared FOLDER] [--samples-only] [--vertices N] [--only WORD]
+       solid_maps.py STARGUARD --animals
 
 Pairs: the first pose of each sample to each of its others, and poses/ of the shared data. Columns:
 tetrahedra; pieces, and pieces of A and of B alone; mean and worst ratio of singular values; whether
 `verify` accepts the map; processor seconds. A map that `verify` refuses, as faces of the poses differ, is made again with
 --overlay. A pair that is refused has the reason instead.
+
+With --animals: different animals, without landmarks. B is then met in A's faces: `verify` is asked with
+A's faces at the images of its vertices, and two columns tell how many of these are off B in A's faces, and
+by how many per cent of the diagonal.
 """
 import argparse
 import functools
@@ -42,6 +47,50 @@ def measure(program, folder, files):
             f"{distortion['worst']:.1f}", " ".join(["yes", *overlay]) if verified else "no", f"{seconds:.1f}"]
 
 
+def image_of(model, map_file, out):
+    """Writes A's faces at the images of its vertices, which come first in a map."""
+    with open(map_file, encoding="ascii") as file:
+        text = file.read()
+    images = text.split('Name="image"', 1)[1].split(">", 1)[1].split("<", 1)[0].split()
+    with open(model, encoding="ascii") as file:
+        lines = file.read().split("\n")
+    count = int(lines[1].split()[0])
+    lines[2:2 + count] = [" ".join(images[3 * v:3 * v + 3]) for v in range(count)]
+    with open(out, "w", encoding="ascii") as file:
+        file.write("\n".join(lines))
+
+
+def measure_animals(program, folder, files):
+    out, image = (os.path.join(folder, name) for name in ("map.vtu", "image.off"))
+    try:
+        report, seconds = morph.seconds(program, "map", "--solid", *files, "-o", out)
+    except SystemExit as error:
+        return [str(error).split(": ", 1)[1]]
+    image_of(files[0], out, image)
+    verified = subprocess.run([program, "verify", files[0], image, out, "--quiet"], check=False,
+                              capture_output=True).returncode == 0
+    distortion, surface = report["distortion"], report["surface"]
+    return [report["tetrahedra"], report["pieces"],
+            *(pieces_alone(program, folder, file) for file in files), f"{distortion['mean']:.2f}",
+            f"{distortion['worst']:.0f}", surface["strayed"], f"{100 * surface['farthest']:.2g}",
+            "yes" if verified else "no", f"{seconds:.1f}"]
+
+
+# Names and numbers of vertices.
+ANIMALS = [(("dog", 2000), ("cat", 2000)), (("cat", 2000), ("dog", 2000)),
+           (("horse", 2000), ("cat", 2000)), (("cat", 4000), ("horse", 2000)),
+           (("dog", 4000), ("cat", 2000))]
+
+
+def animals(program, folder):
+    for pair in ANIMALS:
+        files = []
+        for name, vertices in pair:
+            files.append(os.path.join(folder, f"{name}_{vertices}.off"))
+            morph.run(program, "sample", name, "--vertices", str(vertices), "-o", files[-1])
+        yield " to ".join(f"{name} {vertices:,}" for name, vertices in pair), files
+
+
 def pairs(arguments, folder):
     for name, poses in [(name, 5) for name in morph.SAMPLES] + [("torus", 3), ("eight", 3)]:
         files = [os.path.join(folder, f"{name}_{pose}.off") for pose in range(poses)]
@@ -63,14 +112,18 @@ def main():
     parser.add_argument("--shared", default="../shared")
     parser.add_argument("--samples-only", action="store_true")
     parser.add_argument("--vertices", type=int, default=2000)
+    parser.add_argument("--animals", action="store_true", help="pairs of different animals")
     parser.add_argument("--only", default="", help="pairs whose names hold this word")
     arguments = parser.parse_args()
-    print("| pair | tetrahedra | pieces | A | B | mean | worst | verified | s |")
-    print("|---|--:|--:|--:|--:|--:|--:|---|--:|")
+    program = arguments.starguard
+    off = " off B | per cent |" if arguments.animals else ""
+    print(f"| pair | tetrahedra | pieces | A | B | mean | worst |{off} verified | s |")
+    print("|---" + "|--:" * (off.count("|") + 6) + "|---|--:|")
     with tempfile.TemporaryDirectory() as folder:
-        for name, files in pairs(arguments, folder):
+        listed = animals(program, folder) if arguments.animals else pairs(arguments, folder)
+        for name, files in listed:
             if arguments.only in name:
-                row = measure(arguments.starguard, folder, files)
+                row = (measure_animals if arguments.animals else measure)(program, folder, files)
                 print(f"| {name} | " + " | ".join(str(value) for value in row) + " |", flush=True)
 
 

@@ -178,6 +178,11 @@ static void say(cli_session *session, const starg_solid_map *map, const cli_soli
     cli_say(session, "pieces        %zu, star-shaped in both\n", map->piece_count);
     cli_say(session, "distortion    %.4g on average, %.4g at worst, above 10 in %.3g %% of A\n",
             map->mean, map->worst, 100 * map->above_10);
+    if (map->strayed > 0)
+        cli_say(session,
+                "surface       %zu vertices off B in A's faces, by up to %.2g %% of its diagonal: "
+                "A's surface folds there\n",
+                map->strayed, 100 * map->farthest);
     if (v->carried != NULL)
         cli_say(session, "carried       %zu points\n", carried);
 }
@@ -197,6 +202,9 @@ static void report(cli_session *session, const starg_solid_map *map, const cli_s
     cli_put(session, object, "distortion",
             json_pack("{s:f, s:f, s:f}", "mean", map->mean, "worst", map->worst, "above_10",
                       map->above_10));
+    cli_put(
+        session, object, "surface",
+        json_pack("{s:I, s:f}", "strayed", (json_int_t)map->strayed, "farthest", map->farthest));
     if (v->carried != NULL)
         cli_put(session, object, "carried", json_integer((json_int_t)carried));
 }

@@ -32,9 +32,12 @@ STARG_API const starg_fields *starg_solid_map_options_fields(void);
 /* Maps the solid A to the solid whose surface has A's faces and its vertices at `images`
  * (vertex_count x 3), of any genus. TetGen fills A and keeps its surface; inner vertices then take
  * places in both solids such that every tetrahedron is positive in both, exactly. Since its
- * boundary is the surface of either, the map is a homeomorphism. `options` may be NULL. Errors:
- * ARGUMENT, RANGE, MESH (an end is no solid or meets itself; tetrahedra cannot be kept positive:
- * how many), SOLVER (no TetGen), MEMORY, CANCELLED, TIME. */
+ * boundary is the surface of either, the map is a homeomorphism. Where the images meet themselves
+ * or fold too much for that, as between different animals, vertices of the surface stand elsewhere
+ * on it, or, as few as possible, near it (`strayed`, `farthest`): by 2 % of the diagonal at most.
+ * `options` may be NULL. Errors: ARGUMENT, RANGE, MESH (an end is no solid, A meets itself;
+ * tetrahedra cannot be made positive: how many; the image is farther off, or meets itself), SOLVER
+ * (no TetGen), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
                                               const double *images,
                                               const starg_solid_map_options *options,

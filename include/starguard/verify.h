@@ -222,6 +222,11 @@ typedef struct starg_solid_map {
     /* Largest over smallest singular value of a tetrahedron's map: the largest of all, the mean
      * weighted by volume in A, and the share of that volume where it is above 10. */
     double worst, mean, above_10;
+    /* Where A's surface folds in B, its image is only near to B in A's faces: how many vertices of
+     * the surface are off that, and how far the farthest is, in diagonals. 0 if read from a file:
+     * the check tells. */
+    size_t strayed;
+    double farthest;
     /* Of a morph: where the vertices are at times between 0 and 1, key_count x vertex_count x 3.
      * They move straight from A's places through these to B's, and every tetrahedron is positive at
      * every time. */

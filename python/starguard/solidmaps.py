@@ -45,6 +45,10 @@ class SolidMap:
     worst: float
     mean: float
     above_10: float
+    #: Where A's surface folds in B: vertices of the surface that are only near to B in A's faces, and
+    #: the distance of the farthest, in diagonals.
+    strayed: int
+    farthest: float
     #: Of a morph: times between 0 and 1, and where the corners are then, (k, n, 3).
     times: Array
     keys: Array

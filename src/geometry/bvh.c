@@ -349,26 +349,25 @@ bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bv
     return true;
 }
 
-/* Squared distance from p to the segment a b. */
-static double segment_distance_squared(const double p[3], const double a[3], const double b[3]) {
-    double ab[3], ap[3], foot[3];
+/* The point of the segment a b nearest to p; returns its squared distance. */
+static double segment_nearest(const double p[3], const double a[3], const double b[3],
+                              double out[3]) {
+    double ab[3], ap[3];
     vec3_subtract(b, a, ab);
     vec3_subtract(p, a, ap);
     double length = vec3_dot(ab, ab);
     double t = length > 0 ? vec3_dot(ap, ab) / length : 0;
     t = t < 0 ? 0 : t > 1 ? 1 : t;
-    vec3_along(a, t, ab, foot);
-    return vec3_distance_squared(p, foot);
+    vec3_along(a, t, ab, out);
+    return vec3_distance_squared(p, out);
 }
 
-/* Uses the foot of the perpendicular if it lies in the triangle, else the nearest edge. */
-static double triangle_distance_squared(const double p[3], const double a[3], const double b[3],
-                                        const double c[3]) {
+/* The same for a triangle: the foot of the perpendicular if it lies inside, else on an edge. */
+static double triangle_nearest(const double p[3], const double *const corners[4], double out[3]) {
     double n[3], ap[3], s[3];
-    vec3_triangle_normal(a, b, c, n);
-    vec3_subtract(p, a, ap);
+    vec3_triangle_normal(corners[0], corners[1], corners[2], n);
+    vec3_subtract(p, corners[0], ap);
     double square = vec3_dot(n, n);
-    const double *corners[4] = {a, b, c, a};
     bool inside = square > 0;
     for (int k = 0; k < 3 && inside; k++) {
         double edge[3], to_p[3];
@@ -379,11 +378,18 @@ static double triangle_distance_squared(const double p[3], const double a[3], co
     }
     if (inside) {
         double height = vec3_dot(ap, n);
+        vec3_along(p, -height / square, n, out);
         return height * height / square;
     }
-    double best = segment_distance_squared(p, a, b);
-    best = fmin(best, segment_distance_squared(p, b, c));
-    return fmin(best, segment_distance_squared(p, c, a));
+    double best = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        double foot[3] = {0}, d = segment_nearest(p, corners[k], corners[k + 1], foot);
+        if (d < best) {
+            best = d;
+            vec3_copy(foot, out);
+        }
+    }
+    return best;
 }
 
 static double box_distance_squared(const double p[3], const bvh_box *box) {
@@ -395,7 +401,8 @@ static double box_distance_squared(const double p[3], const bvh_box *box) {
     return sum;
 }
 
-double bvh_distance(const bvh *tree, const double p[3]) {
+/* Sets the nearest point, if there are triangles; returns its squared distance. */
+static double nearest_squared(const bvh *tree, const double p[3], double out[3]) {
     uint32_t stack[STACK_SIZE];
     int depth = 0;
     double best = INFINITY;
@@ -413,11 +420,24 @@ double bvh_distance(const bvh *tree, const double p[3]) {
         }
         for (uint32_t i = node->first; i < node->first + node->count; i++) {
             uint32_t triangle = tree->order[i];
-            double d = triangle_distance_squared(
-                p, corner(tree, triangle, 0), corner(tree, triangle, 1), corner(tree, triangle, 2));
-            if (d < best)
+            const double *const corners[4] = {corner(tree, triangle, 0), corner(tree, triangle, 1),
+                                              corner(tree, triangle, 2), corner(tree, triangle, 0)};
+            double foot[3] = {0}, d = triangle_nearest(p, corners, foot);
+            if (d < best) {
                 best = d;
+                vec3_copy(foot, out);
+            }
         }
     }
-    return sqrt(best);
+    return best;
+}
+
+double bvh_distance(const bvh *tree, const double p[3]) {
+    double foot[3];
+    return sqrt(nearest_squared(tree, p, foot));
+}
+
+void bvh_nearest(const bvh *tree, const double p[3], double out[3]) {
+    vec3_copy(p, out);
+    nearest_squared(tree, p, out);
 }

@@ -6,7 +6,9 @@
  * a homeomorphism of the solids.
  *
  * Stages: fill A (solids.c); let the tetrahedra follow an as-rigid-as-possible morph to B
- * (deform.c), and where that ends too soon, put the surface into place and unfold (unfold.c); lower
+ * (deform.c), and where that ends too soon, put the surface into place and unfold (unfold.c); where
+ * B in A's faces meets itself or tetrahedra stay inverted, come as near as they allow (approach.c);
+ * lower
  * the distortion by moving inner vertices in B, then in A; find pieces that are star-shaped in both
  * (star/compatible/compatible.c); measure. With an overlay of the surfaces: as before to B in A's
  * connectivity, which may meet itself; then divide the tetrahedra along the overlay
@@ -24,6 +26,7 @@
 #include "core/memory.h"
 #include "geometry/singular_values.h"
 #include "geometry/vec3.h"
+#include "morph/approach.h"
 #include "morph/morph.h"
 #include "morph/solid_map.h"
 #include "morph/solids.h"
@@ -35,6 +38,9 @@ static const char STAGE[] = "solid map";
 enum { UNFOLD_STEPS = 2000, ROUNDS = 8, FEW = 40 };
 /* Ratios of singular values: from where they count as high, and what stands for more. */
 static const double HIGH = 10, HIGHEST = 1e300;
+/* In diagonals of B: how far the image of A's surface may be from it. */
+static const double MOST_OFF = 0.02;
+static const double STRENGTHS[] = {1000, 100, 10, 1}; /* of springs on the surface, in turn */
 
 /* ---- tetrahedra in both places ---- */
 
@@ -69,39 +75,118 @@ done:
 
 /* Puts the surface into place at once, and all vertices inside along with it; then moves these
  * until nothing is inverted. Where that does not do, there are more of them. */
-static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, double reached) {
+static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, size_t *inverted) {
     starg_status status = STARG_OK;
-    size_t inverted = 0;
     STARG_TRY(deform_harmonic(m, c));
     for (int round = 0; round < ROUNDS; round++) {
         const unfold_problem p = problem_of(c, 1);
-        STARG_TRY(unfold(&p, UNFOLD_STEPS, &inverted));
-        if (inverted == 0)
-            goto done;
-        if (inverted > p.count / FEW) /* not a matter of single vertices */
+        STARG_TRY(unfold(&p, UNFOLD_STEPS, inverted));
+        if (*inverted == 0 || *inverted > p.count / FEW) /* not a matter of single vertices */
             break;
         STARG_TRY(split_inverted(c));
     }
-    status = starg_fail(c->context, STARG_ERROR_MESH, STAGE,
-                        "%zu of %zu tetrahedra stay inverted in B (the way there ended at t = "
-                        "%.3g): A's surface folds too much in B; a finer A (--density, or more "
-                        "vertices), another map of the surfaces or landmarks may do",
-                        inverted, c->tetrahedra.count / 4, reached);
 done:
     return status;
 }
 
-/* Along a morph, or at once. */
-static starg_status spread(const starg_morph *m, deform_mesh *c) {
+static starg_status fail_inverted(const deform_mesh *c, size_t inverted) {
+    return starg_fail(c->context, STARG_ERROR_MESH, STAGE,
+                      "%zu of %zu tetrahedra stay inverted in B: A's surface folds too much in B; "
+                      "a finer A (--density, or more vertices), another map of the surfaces or "
+                      "landmarks may do",
+                      inverted, c->tetrahedra.count / 4);
+}
+
+/* Along a morph, or at once, to B itself. */
+static starg_status spread(const starg_morph *m, deform_mesh *c, size_t *inverted) {
     starg_status status = STARG_OK;
-    size_t inverted;
     double reached = 0;
+    *inverted = 0;
     if (m->method == STARG_MORPH_ARAP)
-        STARG_TRY(deform(m, c, NULL, &inverted, &reached));
+        STARG_TRY(deform(m, c, NULL, inverted, &reached));
     else
         memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
     if (reached < 1)
-        STARG_TRY(unfold_at_end(m, c, reached));
+        STARG_TRY(unfold_at_end(m, c, inverted));
+done:
+    return status;
+}
+
+static starg_status spread_exactly(const starg_morph *m, deform_mesh *c) {
+    size_t inverted;
+    starg_status status = spread(m, c, &inverted);
+    return status == STARG_OK && inverted > 0 ? fail_inverted(c, inverted) : status;
+}
+
+static starg_status make_morph(starg_context *context, const starg_mesh *a, const double *images,
+                               starg_morph_method method, starg_morph **out) {
+    starg_morph_options options;
+    starg_morph_options_default(&options);
+    options.method = method;
+    return starg_morph_create(context, a, images, &options, out);
+}
+
+/* Does the surface of the tetrahedra in B meet itself? */
+static starg_status image_meets_itself(const starg_mesh *a, const deform_mesh *c, bool *out) {
+    starg_status status = STARG_OK;
+    starg_morph *last = NULL;
+    double *images = NULL;
+    STARG_NEW(c->context, STAGE, images, 3 * a->vertex_count);
+    memcpy(images, a->vertices, 3 * a->vertex_count * sizeof *images);
+    for (size_t v = 0; v < c->fixed; v++)
+        vec3_copy(c->now.data + 3 * v, images + 3 * (size_t)c->surface[v]);
+    STARG_TRY(make_morph(c->context, a, images, STARG_MORPH_LINEAR, &last));
+    STARG_TRY(solids_last_meets_itself(last, out));
+done:
+    starg_morph_free(last);
+    starg_release(c->context, images);
+    return status;
+}
+
+static starg_status fail_nearly(const deform_mesh *c, const approach_result *off) {
+    if (off->inverted > 0)
+        return fail_inverted(c, off->inverted);
+    if (off->farthest > MOST_OFF)
+        return starg_fail(
+            c->context, STARG_ERROR_MESH, STAGE,
+            "A's surface folds in B, and unfolded it is up to %.2g %% of the diagonal "
+            "off B, more than the %g %% allowed; a finer A, another map of the "
+            "surfaces or landmarks may do",
+            100 * off->farthest, 100 * MOST_OFF);
+    return starg_fail(c->context, STARG_ERROR_MESH, STAGE,
+                      "A's surface folds in B, and meets itself when it is unfolded; a finer A, "
+                      "another map of the surfaces or landmarks may do");
+}
+
+/* As near to B as possible: B meets itself, or tetrahedra stay inverted there. The strongest
+ * springs that let the tetrahedra unfold, without the surface meeting itself, keep it nearest. */
+static starg_status spread_nearly(const starg_morph *m, deform_mesh *c, approach_result *off) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < sizeof STRENGTHS / sizeof *STRENGTHS; i++) {
+        bool meets_itself = true;
+        memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
+        STARG_TRY(deform_harmonic(m, c));
+        STARG_TRY(approach(c, m->mesh, STRENGTHS[i], off));
+        if (off->inverted > 0 || off->farthest > MOST_OFF)
+            continue;
+        STARG_TRY(image_meets_itself(m->mesh, c, &meets_itself));
+        if (!meets_itself)
+            goto done;
+    }
+    status = fail_nearly(c, off);
+done:
+    return status;
+}
+
+static starg_status spread_somehow(const starg_morph *m, deform_mesh *c, approach_result *off) {
+    starg_status status = STARG_OK;
+    size_t inverted = 0;
+    bool meets_itself;
+    STARG_TRY(solids_last_meets_itself(m, &meets_itself));
+    if (!meets_itself)
+        STARG_TRY(spread(m, c, &inverted));
+    if (meets_itself || inverted > 0)
+        STARG_TRY(spread_nearly(m, c, off));
 done:
     return status;
 }
@@ -230,14 +315,6 @@ static starg_status check_options(starg_context *context, const starg_solid_map_
     return fields_check(context, STAGE, starg_solid_map_options_fields(), *options);
 }
 
-static starg_status make_morph(starg_context *context, const starg_mesh *a, const double *images,
-                               starg_morph_method method, starg_morph **out) {
-    starg_morph_options options;
-    starg_morph_options_default(&options);
-    options.method = method;
-    return starg_morph_create(context, a, images, &options, out);
-}
-
 static starg_status make_map(starg_context *context, const starg_mesh *a, const double *images,
                              starg_morph_method method, const starg_solid_map_options *options,
                              starg_solid_map **out) {
@@ -246,13 +323,21 @@ static starg_status make_map(starg_context *context, const starg_mesh *a, const 
     starg_morph *m = NULL;
     starg_solid *solid = NULL;
     uint32_t *surface = NULL;
+    approach_result off = {0};
     deform_mesh c = {.context = context};
     STARG_TRY(check_options(context, &options, &defaults));
     STARG_TRY(make_morph(context, a, images, method, &m));
-    STARG_TRY(solids_fill(m, options->density, &c, &solid, &surface));
-    STARG_TRY(spread(m, &c));
+    STARG_TRY(solids_fill_first(m, options->density, &c, &solid, &surface));
+    if (method == STARG_MORPH_ARAP) {
+        STARG_TRY(spread_somehow(m, &c, &off));
+    } else { /* a ball or a cube, exactly */
+        STARG_TRY(solids_check_last(m));
+        STARG_TRY(spread_exactly(m, &c));
+    }
     STARG_TRY(relax(&c, options->steps));
     STARG_TRY(solid_map_finish(context, &c, true, out));
+    (*out)->strayed = off.strayed;
+    (*out)->farthest = off.farthest;
 done:
     deform_free(&c);
     starg_solid_free(solid);
@@ -282,11 +367,12 @@ static starg_status spread_overlay(starg_context *context, const starg_mesh *a, 
     starg_solid *solid = NULL;
     double *images = NULL;
     uint32_t *surface = NULL;
+    size_t inverted;
     STARG_NEW(context, STAGE, images, 3 * a->vertex_count + 3 * overlay->vertex_count);
     starg_map_positions(map, b, images);
     STARG_TRY(make_morph(context, a, images, STARG_MORPH_ARAP, &first));
     STARG_TRY(solids_fill_first(first, density, c, &solid, &surface));
-    STARG_TRY(spread(first, c));
+    STARG_TRY(spread_exactly(first, c));
     STARG_TRY(solids_divide(c, a, overlay));
     STARG_TRY(starg_mesh_create(context, c->now.data, overlay->vertex_count, overlay->faces,
                                 overlay->face_count, &divided));
@@ -298,7 +384,9 @@ static starg_status spread_overlay(starg_context *context, const starg_mesh *a, 
     c->surface = surface;
     STARG_TRY(make_morph(context, divided, images, STARG_MORPH_LINEAR, &last));
     STARG_TRY(solids_check_last(last));
-    STARG_TRY(unfold_at_end(last, c, 0));
+    STARG_TRY(unfold_at_end(last, c, &inverted));
+    if (inverted > 0)
+        status = fail_inverted(c, inverted);
 done:
     starg_morph_free(first);
     starg_morph_free(last);

@@ -51,6 +51,20 @@ starg_status solids_check_last(const starg_morph *m) {
     return status;
 }
 
+starg_status solids_last_meets_itself(const starg_morph *m, bool *out) {
+    starg_solid *solid = NULL;
+    starg_status status = morph_solid(m, 1, &solid);
+    if (status == STARG_OK) {
+        const starg_finding *found = solid->check->findings;
+        *out = found[STARG_FINDING_SELF_INTERSECTION].count +
+                   found[STARG_FINDING_SELF_CONTACT].count +
+                   found[STARG_FINDING_DEGENERATE_FACE].count >
+               0;
+    }
+    starg_solid_free(solid);
+    return status;
+}
+
 /* ---- tetrahedra ---- */
 
 /* The vertices of A in use, in order: the tetrahedra's first vertices. */

@@ -19,6 +19,9 @@ starg_status solids_fill(const starg_morph *m, double density, deform_mesh *c, s
 starg_status solids_fill_first(const starg_morph *m, double density, deform_mesh *c,
                                starg_solid **solid, uint32_t **surface);
 
+/* Is the last end no solid without self-intersections? Errors: MEMORY. */
+starg_status solids_last_meets_itself(const starg_morph *m, bool *out);
+
 /* Checks that the last end bounds a solid without self-intersections. Errors: MESH, MEMORY. */
 starg_status solids_check_last(const starg_morph *m);
 

@@ -15,6 +15,9 @@
  * inversions becomes zero in finitely many rounds if descent makes progress. Rest places are scaled
  * by how much the surface grows nearby, so that tetrahedra are small where there is little room.
  *
+ * Vertices of the boundary may be drawn by springs instead, whose energy is added: then the
+ * boundary gives way where tetrahedra are inverted.
+ *
  * Stages: unfold: rounds of descent with falling e, until no tetrahedron is inverted.
  * unfold_relax: descent with e = 0, in which steps to places with an inverted tetrahedron are
  * halved.
@@ -37,9 +40,13 @@ enum {
     MEMORY = 8, /* pairs of the approximation to the Hessian */
     ROUND = 40, /* steps with one e */
     GROWTH_SWEEPS = 200,
-    HALVINGS = 30,   /* of a step, at most */
-    ROUNDS_IDLE = 12 /* with no fewer inversions, until it is given up */
+    HALVINGS = 30,           /* of a step, at most */
+    ROUNDS_IDLE = 12,        /* with no fewer inversions, until it is given up, */
+    ROUNDS_IDLE_SPRINGS = 40 /* and where the surface gives way */
 };
+/* By how much the regularized determinant falls from round to round, at least. A surface that gives
+ * way is not stuck, so that it may fall faster. */
+static const double LEAST_SHARE = 0.1, LEAST_SHARE_SPRINGS = 0.3;
 static const double THETA = 1.0 / 128;
 static const double ARMIJO = 1e-4;
 static const double LEAST_GAIN = 1e-7; /* of a round of relaxation, relative to its energy */
@@ -128,10 +135,17 @@ static double extent_of(const unfold_problem *p) {
     return extent;
 }
 
+/* Vertices of the surface, which come first: fixed, or drawn by springs. */
+static size_t surface_of(const unfold_problem *p) {
+    return p->springs.count > 0 ? p->springs.count : p->fixed;
+}
+
 /* The logarithm of how much the surface grows about each of its vertices, in length. */
 static starg_status find_growth_outside(const unfold_problem *p, double *growth) {
     starg_status status = STARG_OK;
     double *areas[2] = {NULL, NULL};
+    size_t surface = surface_of(p);
+    const double *places[2] = {p->rest, p->springs.count > 0 ? p->springs.targets : p->now};
     for (int end = 0; end < 2; end++)
         STARG_NEW_ZERO(p->context, STAGE, areas[end], p->vertex_count);
     for (size_t i = 0; i < 4 * p->count; i++) {
@@ -139,17 +153,17 @@ static starg_status find_growth_outside(const unfold_problem *p, double *growth)
         uint32_t v[3];
         for (size_t k = 0; k < 3; k++)
             v[k] = corners[(i + k + 1) % 4];
-        if (v[0] >= p->fixed || v[1] >= p->fixed || v[2] >= p->fixed)
+        if (v[0] >= surface || v[1] >= surface || v[2] >= surface)
             continue;
         for (int end = 0; end < 2; end++) {
-            const double *at = end == 0 ? p->rest : p->now;
+            const double *at = places[end];
             double area = vec3_triangle_area(at + 3 * (size_t)v[0], at + 3 * (size_t)v[1],
                                              at + 3 * (size_t)v[2]);
             for (int k = 0; k < 3; k++)
                 areas[end][v[k]] += area;
         }
     }
-    for (size_t v = 0; v < p->fixed; v++)
+    for (size_t v = 0; v < surface; v++)
         if (areas[0][v] > 0 && areas[1][v] > 0)
             growth[v] = log(areas[1][v] / areas[0][v]) / 2;
 done:
@@ -177,7 +191,7 @@ static starg_status find_growth(const unfold_problem *p, double **out) {
                 sums[corners[i % 4]] += growth[corners[k]];
             counts[corners[i % 4]] += 4;
         }
-        for (size_t v = p->fixed; v < p->vertex_count; v++)
+        for (size_t v = surface_of(p); v < p->vertex_count; v++)
             if (counts[v] > 0)
                 growth[v] = sums[v] / counts[v];
     }
@@ -290,6 +304,19 @@ static double energy_of(const descent *d, const double *places, size_t t, double
     return d->weights[t] * (shape + THETA * size);
 }
 
+/* The energy of the springs; adds its derivatives to `slope`, if that is not NULL. */
+static double energy_of_springs(const unfold_problem *p, const double *places, double *slope) {
+    const unfold_springs *s = &p->springs;
+    double sum = 0, unit = s->strength / ((double)s->count * s->length * s->length);
+    for (size_t i = 0; i < 3 * s->count; i++) {
+        double off = places[i] - s->targets[i];
+        sum += unit * off * off;
+        if (slope != NULL)
+            slope[i] += 2 * unit * off;
+    }
+    return sum;
+}
+
 /* The energy of all, and its slope if that is not NULL. */
 static double evaluate(descent *d, const double *places, double *slope) {
     double sum = 0;
@@ -301,6 +328,8 @@ static double evaluate(descent *d, const double *places, double *slope) {
         sum += energy_of(d, places, t, &determinant, slope);
         d->lowest = fmin(d->lowest, determinant);
     }
+    if (d->p->springs.count > 0)
+        sum += energy_of_springs(d->p, places, slope);
     return sum;
 }
 
@@ -422,7 +451,8 @@ static double regular(double epsilon, double D) {
 /* The next epsilon, from the energies before and after a round (equation 5 of the paper). */
 static double lowered(descent *d, double before) {
     double after = evaluate(d, d->p->now, NULL);
-    double share = fmax(0.1, 1 - after / before), lowest = d->lowest;
+    double least = d->p->springs.count > 0 ? LEAST_SHARE_SPRINGS : LEAST_SHARE;
+    double share = fmax(least, 1 - after / before), lowest = d->lowest;
     double wanted = (1 - share) * regular(d->epsilon, lowest);
     return wanted > lowest ? 2 * sqrt(wanted * (wanted - lowest)) : 1e-10;
 }
@@ -431,19 +461,21 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
     starg_status status = STARG_OK;
     descent d = {.p = p};
     size_t least = SIZE_MAX;
-    int idle = 0;
+    int idle = 0, most_idle = p->springs.count > 0 ? ROUNDS_IDLE_SPRINGS : ROUNDS_IDLE;
     *inverted = unfold_count(p);
     if (*inverted == 0 || p->fixed >= p->vertex_count)
         return STARG_OK;
     STARG_TRY(prepare(&d));
     evaluate(&d, p->now, NULL);
     d.epsilon = fmax(1e-3, sqrt(1e-6 + 0.04 * d.lowest * d.lowest));
-    for (size_t done_steps = 0; done_steps<steps && * inverted> 0 && idle < ROUNDS_IDLE;
+    for (size_t done_steps = 0; done_steps<steps && * inverted> 0 && idle < most_idle;
          done_steps += ROUND) {
         double before = evaluate(&d, p->now, NULL), after;
         STARG_TRY(go_down(&d, ROUND, &after));
         *inverted = unfold_count(p);
         d.epsilon = lowered(&d, before);
+        if (p->springs.move != NULL)
+            p->springs.move(p->springs.user);
         idle = *inverted < least ? 0 : idle + 1;
         least = *inverted < least ? *inverted : least;
     }

@@ -5,6 +5,16 @@
 
 #include "core/context.h"
 
+/* Springs that draw the first vertices instead of fixing them. */
+typedef struct unfold_springs {
+    size_t count;          /* of vertices; 0: none */
+    const double *targets; /* count x 3 */
+    double strength; /* energy if all are off by `length`; that of all tetrahedra is about 3 */
+    double length;
+    void (*move)(void *user); /* may change the targets, between rounds */
+    void *user;
+} unfold_springs;
+
 /* Tetrahedra in two places. All arrays are the caller's. */
 typedef struct unfold_problem {
     starg_context *context;
@@ -13,6 +23,7 @@ typedef struct unfold_problem {
     const uint32_t *tetrahedra; /* count x 4 */
     const double *rest;         /* vertex_count x 3: all tetrahedra are positive there */
     double *now;                /* vertex_count x 3: to be moved */
+    unfold_springs springs;     /* none, or fixed = 0 and one for each vertex of the surface */
 } unfold_problem;
 
 /* Is a tetrahedron positive where it is now, exactly? */

@@ -390,6 +390,13 @@ static void check_distance(const scene *world) {
         if (!(fabs(found - expected) <= 1e-13 * (1 + expected)))
             fail_msg("at (%a, %a, %a): expected %.17g, found %.17g", p[0], p[1], p[2], expected,
                      found);
+        double foot[3], off = 0, on = INFINITY;
+        bvh_nearest(world->tree, p, foot);
+        for (int k = 0; k < 3; k++)
+            off += (foot[k] - p[k]) * (foot[k] - p[k]);
+        for (size_t f = 0; f < world->s.face_count; f++)
+            on = fmin(on, distance_by_definition(&world->s, f, foot));
+        assert_true(fabs(sqrt(off) - expected) <= 1e-12 * (1 + expected) && on <= 1e-12);
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include "exact_oracle.h"
 #include "models.h"
+#include "starguard/check.h"
 #include "starguard/solidmap.h"
 #include "starguard/tetra.h"
 #include "tetrahedra.h"
@@ -430,6 +431,82 @@ static void test_overlay_of_balls(void **state) {
     test_context_free(context);
 }
 
+/* ---- surfaces that fold ---- */
+
+/* The vertex farthest along x, moved over a neighbour and beyond. */
+static void fold(const starg_mesh *a, double *images) {
+    const uint32_t *faces = starg_mesh_faces(a);
+    const double *v = starg_mesh_vertices(a);
+    size_t count = starg_mesh_vertex_count(a), most = 0, other = 0;
+    memcpy(images, v, 3 * count * sizeof *images);
+    for (size_t i = 1; i < count; i++)
+        if (v[3 * i] > v[3 * most])
+            most = i;
+    for (size_t i = 0; i < 3 * starg_mesh_face_count(a); i++)
+        if (faces[i] == most)
+            other = faces[i / 3 * 3 + (i + 1) % 3];
+    for (size_t k = 0; k < 3; k++)
+        images[3 * most + k] = v[3 * most + k] + 1.7 * (v[3 * other + k] - v[3 * most + k]);
+}
+
+/* How far p is from the surface, by triangles divided into small ones. */
+static double distance_from(const starg_mesh *b, const double p[3]) {
+    enum { PARTS = 12 };
+    double least = INFINITY;
+    for (size_t f = 0; f < starg_mesh_face_count(b); f++)
+        for (int i = 0; i <= PARTS; i++)
+            for (int j = 0; i + j <= PARTS; j++) {
+                double sum = 0;
+                for (size_t k = 0; k < 3; k++) {
+                    const double *c[3];
+                    for (size_t n = 0; n < 3; n++)
+                        c[n] = starg_mesh_vertices(b) + 3 * (size_t)starg_mesh_faces(b)[3 * f + n];
+                    double at = (i * c[0][k] + j * c[1][k] + (PARTS - i - j) * c[2][k]) / PARTS;
+                    sum += (at - p[k]) * (at - p[k]);
+                }
+                least = fmin(least, sqrt(sum));
+            }
+    return least;
+}
+
+/* Surfaces that cannot be met as they are: they are met elsewhere, or nearly. */
+static void test_folded(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_sample_mesh(context, "sphere", VERTICES), *b, *image;
+    size_t count = starg_mesh_vertex_count(a);
+    double *images = malloc(3 * count * sizeof *images), farthest = 0;
+    starg_solid_map *map;
+    starg_check *report;
+    assert_non_null(images);
+    fold(a, images);
+    b = moved(context, a, images);
+    test_ok(context, starg_mesh_check(context, b, &report));
+    assert_false(report->embedded);
+    starg_check_free(context, report);
+    test_ok(context, starg_solid_map_create(context, a, images, &QUICK, &map));
+    check_positive(map, map->vertices);
+    check_positive(map, map->images);
+    check_boundary(context, map, map->vertices, a, starg_mesh_vertices(a));
+    assert_true(is_verified(context, a, NULL, map, true));
+    assert_false(is_verified(context, a, b, map, false));
+    image = moved(context, a, map->images);
+    test_ok(context, starg_mesh_check(context, image, &report));
+    assert_true(report->embedded);
+    for (size_t v = 0; v < count; v++)
+        farthest = fmax(farthest, distance_from(b, map->images + 3 * v));
+    assert_true(map->farthest <= 0.02 && farthest <= 2 * (map->farthest + 0.01));
+    starg_check_free(context, report);
+    starg_solid_map_free(context, map);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    starg_mesh_free(image);
+    free(images);
+    test_context_free(context);
+}
+
 /* ---- morphs ---- */
 
 /* The tetrahedra move straight between keys: positive by Sturm's theorem. */
@@ -703,6 +780,7 @@ int main(void) {
         cmocka_unit_test(test_few_pieces),
         cmocka_unit_test(test_overlay),
         cmocka_unit_test(test_overlay_of_balls),
+        cmocka_unit_test(test_folded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
