@@ -7,16 +7,15 @@
  *
  * Stages: fill A (solids.c); let the tetrahedra follow an as-rigid-as-possible morph to B
  * (deform.c), and where that ends too soon, put the surface into place and unfold (unfold.c); where
- * B in A's faces meets itself or tetrahedra stay inverted, come as near as they allow (approach.c);
- * lower
- * the distortion by moving inner vertices in B, then in A; find pieces that are star-shaped in both
- * (star/compatible/compatible.c); measure. With an overlay of the surfaces: as before to B in A's
- * connectivity, which may meet itself; then divide the tetrahedra along the overlay
- * (solid_overlay.c), and put its corners into place on B.
+ * B in A's faces meets itself or tetrahedra stay inverted, come as near to it as they allow
+ * (approach.c); lower the distortion by moving inner vertices in B, then in A; find pieces that are
+ * star-shaped in both (star/compatible/compatible.c); measure. With an overlay of the surfaces: as
+ * before to B in A's connectivity, which may meet itself; then divide the tetrahedra along the
+ * overlay (solid_overlay.c), and put its corners into place on B.
  *
- * Invariant: at the end all tetrahedra are positive in both, by exact signs. Both boundaries are
- * embedded, which the first stage has checked; so the tetrahedra fill both. Cost: that of its
- * stages. */
+ * Invariant: at the end all tetrahedra are positive in both, by exact signs. Their boundary in A,
+ * and in B where the surface has its final place, is checked to be embedded; so the tetrahedra fill
+ * both. Cost: that of its stages. */
 #include "starguard/solidmap.h"
 
 #include <math.h>
