@@ -172,12 +172,13 @@ static starg_status spread_nearly(const starg_morph *m, deform_mesh *c, approach
         if (!meets_itself)
             goto done;
     }
-    status = fail_nearly(c, off);
+    status = fail_nearly(c, off); /* with the weakest springs */
 done:
     return status;
 }
 
-static starg_status spread_somehow(const starg_morph *m, deform_mesh *c, approach_result *off) {
+/* To B itself if that is possible, else near it. */
+static starg_status spread_or_approach(const starg_morph *m, deform_mesh *c, approach_result *off) {
     starg_status status = STARG_OK;
     size_t inverted = 0;
     bool meets_itself;
@@ -328,7 +329,7 @@ static starg_status make_map(starg_context *context, const starg_mesh *a, const 
     STARG_TRY(make_morph(context, a, images, method, &m));
     STARG_TRY(solids_fill_first(m, options->density, &c, &solid, &surface));
     if (method == STARG_MORPH_ARAP) {
-        STARG_TRY(spread_somehow(m, &c, &off));
+        STARG_TRY(spread_or_approach(m, &c, &off));
     } else { /* a ball or a cube, exactly */
         STARG_TRY(solids_check_last(m));
         STARG_TRY(spread_exactly(m, &c));
