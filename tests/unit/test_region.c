@@ -306,17 +306,20 @@ static void find_nearest(const region *r, const double center[3], double *neares
         }
 }
 
-/* All rows closer than the distance found contain the guard, and with the next rows there would be
- * no room. */
-static void check_reach_about(const region *r, const double center[3], double margin,
-                              const region_reach *reach) {
+/* All rows closer than the distance found contain the guard, and those that `other`, unless NULL,
+ * is not inside of; with the next rows there would be no room. */
+static void check_reach_about(const region *r, const double center[3], const double *other,
+                              double margin, const region_reach *reach) {
     size_t count = r->rows.count / 4;
     double *nearest = malloc((count + 1) * sizeof *nearest), next = INFINITY;
     double *scaled = malloc((count + 1) * sizeof *scaled);
     assert_non_null(nearest);
     assert_non_null(scaled);
     find_nearest(r, center, nearest);
-    assert_true(reach->height > -INFINITY);
+    for (size_t i = 0; i < count && other != NULL; i++)
+        if (r->rows.data[4 * i + 3] - dot(r->rows.data + 4 * i, other) < margin)
+            nearest[i] = -INFINITY;
+    assert_true(other != NULL || reach->height > -INFINITY);
     for (size_t i = 0; i < count; i++) {
         const double *row = r->rows.data + 4 * i;
         if (nearest[i] < reach->height - 1e-12)
@@ -324,6 +327,7 @@ static void check_reach_about(const region *r, const double center[3], double ma
         else if (nearest[i] < INFINITY)
             next = fmin(next, nearest[i]);
     }
+    assert_true(reach->height > -INFINITY || next == -INFINITY);
     for (size_t i = 0; i < count; i++)
         scaled[i] = nearest[i] <= next + 1e-12 ? 0 : 2;
     static const double away[3] = {1, 0, 0};
@@ -337,7 +341,7 @@ static void check_reach_about(const region *r, const double center[3], double ma
 static void test_reach_about(void **state) {
     (void)state;
     static const double margins[] = {1e-5, 1e-3, 2e-2};
-    size_t whole = 0, part = 0;
+    size_t whole = 0, part = 0, none = 0, some = 0;
     for (uint64_t seed = 0; seed < 8; seed++) {
         setting s = make(seed);
         starg_rng rng = starg_rng_make(seed, 84, 0);
@@ -350,13 +354,22 @@ static void test_reach_about(void **state) {
             for (int k = 0; k < 3; k++)
                 center[k] = vertex_of(&s.r, t, 0)[k] + 0.1 * (starg_rng_unit(&rng) - 0.5);
             test_ok(s.context, region_find_reach_about(&s.r, center, margin, &s.scratch, &reach));
-            check_reach_about(&s.r, center, margin, &reach);
+            check_reach_about(&s.r, center, NULL, margin, &reach);
             whole += reach.height == INFINITY;
             part += reach.height < INFINITY;
+            double other[3];
+            for (int k = 0; k < 3; k++)
+                other[k] = reach.guard[k] + starg_rng_unit(&rng) - 0.5;
+            test_ok(s.context,
+                    region_find_reach_for(&s.r, center, other, margin, &s.scratch, &reach));
+            check_reach_about(&s.r, center, other, margin, &reach);
+            none += reach.height == -INFINITY;
+            some += fabs(reach.height) < INFINITY;
         }
         release(&s);
     }
-    assert_true(whole > 20 && part > 10);
+    print_message("for another: %zu none, %zu some\n", none, some);
+    assert_true(whole > 20 && part > 10 && none > 0 && some > 5);
 }
 
 /* ---- centres ---- */

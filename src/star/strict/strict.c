@@ -182,8 +182,8 @@ typedef struct searches {
     size_t idle;     /* of them, since the last that saved a piece */
     record changes, renewals;
     bool time_limited;
-    double began; /* clock */
-    improve_tallies tallies;
+    double began;                             /* clock */
+    improve_tallies tallies, renewal_tallies; /* what helps differs */
 } searches;
 
 static uint64_t least(uint64_t a, uint64_t b) {
@@ -222,8 +222,10 @@ done:
 static starg_status renew_some(searches *s, partition *p) {
     starg_status status = STARG_OK;
     renew_report report;
-    const renew_options wanted = {
-        .trials = s->trials_left, .work = s->work_left, .round = s->rounds, .tallies = &s->tallies};
+    const renew_options wanted = {.trials = s->trials_left,
+                                  .work = s->work_left,
+                                  .round = s->rounds,
+                                  .tallies = &s->renewal_tallies};
     size_t before = p->pieces.count;
     STARG_TRY(renew(p, &wanted, &report));
     spend(s, &s->renewals, report.trials, report.work, before - p->pieces.count);

@@ -67,6 +67,54 @@ done:
     return status;
 }
 
+/* Cuts off what is above a plane, if anything is, and adds it to piece `away`. */
+static starg_status cut_away(partition *p, uint32_t from, uint32_t empty, uint32_t away,
+                             const partition_plane *plane, bool *done) {
+    starg_status status = STARG_OK;
+    const uint32_t all[2] = {away, from}, part[2] = {away, empty};
+    int sides = partition_sides(p, from, plane);
+    if (sides == PARTITION_ABOVE)
+        partition_join(p, all, 2);
+    if (sides == (PARTITION_ABOVE | PARTITION_BELOW)) {
+        STARG_TRY(partition_slice(p, from, empty, plane, done));
+        partition_join(p, part, 2);
+    }
+done:
+    return status;
+}
+
+/* Cuts the union of the first pieces of the extract into the parts of the plan, in their order. */
+static starg_status cut_along_borders(change *c, size_t count, const border_plan *plan,
+                                      bool *done) {
+    static const uint32_t numbers[APPLY_MOST] = {0, 1, 2, 3, 4};
+    starg_status status = STARG_OK;
+    partition *p = &c->extract.part;
+    const size_t pieces = p->pieces.count;
+    /* what is below the planes of a term so far, above some of them, and a place for a slice */
+    const uint32_t below = (uint32_t)pieces, away = below + 1, empty = below + 2;
+    uint32_t part = 0;
+    for (int i = 0; i < 3; i++)
+        STARG_PUSH(p->context, PARTITION_STAGE, &p->pieces, (piece){.radius = 0});
+    partition_join(p, numbers, count);
+    partition_join(p, (const uint32_t[2]){below, 0}, 2);
+    *done = true;
+    for (int i = 0; i < plan->count && *done; i++) {
+        STARG_TRY(cut_away(p, below, empty, away, &plan->planes[i], done));
+        if (plan->ends[i] == BORDER_GOES_ON)
+            continue;
+        partition_join(p, (const uint32_t[2]){part, below}, 2);
+        partition_join(p, (const uint32_t[2]){below, away}, 2);
+        part += plan->ends[i] == BORDER_ENDS_PART;
+    }
+    partition_join(p, (const uint32_t[2]){part, below}, 2);
+    p->pieces.count = pieces;
+    c->part_count = (size_t)part + 1;
+    for (size_t i = 0; i < c->part_count; i++)
+        c->parts[i] = numbers[i];
+done:
+    return status;
+}
+
 /* ---- proofs ---- */
 
 double sum_of_squares(const partition *p, const uint32_t *pieces, size_t count) {
@@ -138,15 +186,24 @@ done:
     return status;
 }
 
-starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
-                        const repartition_plan *plan, double margin, double least,
-                        region_scratch *scratch, apply_effect *effect) {
+/* How to cut: one of the two is not NULL. */
+typedef struct cuts {
+    const repartition_plan *planes;
+    const border_plan *borders;
+} cuts;
+
+static starg_status apply_cuts(partition *p, const uint32_t *pieces, size_t count, cuts how,
+                               double margin, double least, region_scratch *scratch,
+                               apply_effect *effect) {
     starg_status status = STARG_OK;
     change c = {.margin = margin, .scratch = scratch};
     bool done = false;
     *effect = (apply_effect){.done = false};
     STARG_TRY(extract_make(p, pieces, count, scratch, &c.extract));
-    STARG_TRY(cut(&c, count, plan, &done));
+    if (how.planes != NULL)
+        STARG_TRY(cut(&c, count, how.planes, &done));
+    else
+        STARG_TRY(cut_along_borders(&c, count, how.borders, &done));
     if (done)
         STARG_TRY(settle_parts(&c, &done));
     effect->done =
@@ -158,6 +215,18 @@ starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
 done:
     extract_free(&c.extract);
     return status;
+}
+
+starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
+                        const repartition_plan *plan, double margin, double least,
+                        region_scratch *scratch, apply_effect *effect) {
+    return apply_cuts(p, pieces, count, (cuts){.planes = plan}, margin, least, scratch, effect);
+}
+
+starg_status apply_borders(partition *p, const uint32_t *pieces, size_t count,
+                           const border_plan *plan, double margin, double least,
+                           region_scratch *scratch, apply_effect *effect) {
+    return apply_cuts(p, pieces, count, (cuts){.borders = plan}, margin, least, scratch, effect);
 }
 
 /* ---- fans ---- */

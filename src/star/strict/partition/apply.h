@@ -4,6 +4,7 @@
 #define STARG_STAR_STRICT_PARTITION_APPLY_H
 
 #include "star/strict/partition/fan.h"
+#include "star/strict/search/border.h"
 #include "star/strict/search/repartition.h"
 
 enum { APPLY_MOST = REPARTITION_PARTS_MOST };
@@ -27,6 +28,11 @@ typedef struct apply_effect {
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
                         const repartition_plan *plan, double margin, double least,
                         region_scratch *scratch, apply_effect *effect);
+
+/* The same for parts with borders of several planes, at most as many as pieces. Errors: MEMORY. */
+starg_status apply_borders(partition *p, const uint32_t *pieces, size_t count,
+                           const border_plan *plan, double margin, double least,
+                           region_scratch *scratch, apply_effect *effect);
 
 /* Distributes pieces as planned; proofs, `margin` and index as above. Errors: MEMORY. */
 starg_status apply_fan(partition *p, const fan_plan *plan, double margin, region_scratch *scratch,

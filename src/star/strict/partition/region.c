@@ -496,13 +496,19 @@ done:
     return status;
 }
 
+/* By the distances found, with some set to -INFINITY. */
+static void find_reach_near(const region *r, double margin, region_scratch *scratch,
+                            region_reach *out) {
+    ball_search w = {
+        .r = r, .work = &scratch->work, .lowest = scratch->lowest.data, .bound = INFINITY};
+    find_reach(&w, margin, out);
+}
+
 starg_status region_find_reach_about(const region *r, const double center[3], double margin,
                                      region_scratch *scratch, region_reach *out) {
     starg_status status = STARG_OK;
     STARG_TRY(find_distances(r, center, scratch));
-    ball_search w = {
-        .r = r, .work = &scratch->work, .lowest = scratch->lowest.data, .bound = INFINITY};
-    find_reach(&w, margin, out);
+    find_reach_near(r, margin, scratch, out);
 done:
     return status;
 }
@@ -513,9 +519,21 @@ starg_status region_find_reach_beyond(const region *r, const double center[3], d
     STARG_TRY(find_distances(r, center, scratch));
     for (size_t i = 0; i < r->first_rows; i++)
         scratch->lowest.data[i] = -INFINITY;
-    ball_search w = {
-        .r = r, .work = &scratch->work, .lowest = scratch->lowest.data, .bound = INFINITY};
-    find_reach(&w, margin, out);
+    find_reach_near(r, margin, scratch, out);
+done:
+    return status;
+}
+
+starg_status region_find_reach_for(const region *r, const double center[3], const double other[3],
+                                   double margin, region_scratch *scratch, region_reach *out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_distances(r, center, scratch));
+    for (size_t i = 0; i < r->rows.count / ROW; i++) {
+        const double *row = r->rows.data + ROW * i;
+        if (row[3] - vec3_dot(row, other) < margin)
+            scratch->lowest.data[i] = -INFINITY;
+    }
+    find_reach_near(r, margin, scratch, out);
 done:
     return status;
 }

@@ -88,6 +88,11 @@ starg_status region_find_reach_about(const region *r, const double center[3], do
 starg_status region_find_reach_beyond(const region *r, const double center[3], double margin,
                                       region_scratch *scratch, region_reach *out);
 
+/* The same, but always inside all rows that `other` is not inside of by the margin. Errors: MEMORY.
+ */
+starg_status region_find_reach_for(const region *r, const double center[3], const double other[3],
+                                   double margin, region_scratch *scratch, region_reach *out);
+
 /* Centre and radius of the largest ball inside all rows or, if `normal` is not NULL, inside those
  * with a vertex below a plane and the plane itself. The radius is negative if there is none.
  * Errors: MEMORY. */

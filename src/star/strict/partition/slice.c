@@ -355,6 +355,21 @@ done:
     return status;
 }
 
+int partition_sides(const partition *p, uint32_t number, const partition_plane *plane) {
+    double on = find_tolerance(p);
+    int sides = 0;
+    for (size_t i = 0; i < p->facets.count; i++) {
+        const facet *f = &p->facets.data[i];
+        for (int k = 0; k < 3 && (f->side[0] == number || f->side[1] == number); k++) {
+            double height =
+                vec3_dot(plane->normal, partition_unit(p, f->corners[k])) - plane->offset;
+            if (fabs(height) >= on)
+                sides |= height > 0 ? PARTITION_ABOVE : PARTITION_BELOW;
+        }
+    }
+    return sides;
+}
+
 starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
                              const partition_plane *plane, bool *done) {
     starg_status status = STARG_OK;

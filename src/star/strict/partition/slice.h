@@ -17,6 +17,10 @@ void partition_join(partition *p, const uint32_t *pieces, size_t count);
 starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
                              const partition_plane *plane, bool *done);
 
+/* On which sides of a plane a piece has vertices; both bits if the plane cuts it. */
+enum { PARTITION_BELOW = 1, PARTITION_ABOVE = 2 };
+int partition_sides(const partition *p, uint32_t number, const partition_plane *plane);
+
 /* Vertices this close to the plane of a slice count as on it, in unit coordinates (far from the
  * origin, the rounding of coordinates instead). */
 #define SLICE_ON 1e-12

@@ -5,14 +5,15 @@
  *
  * Method: large neighbourhood search. First every two neighbours whose union is star-shaped are
  * joined, small pieces first. Then trials: some neighbouring pieces at random, their union to be
- * cut flat into one piece less (star/strict/search/repartition.c), or shared out among the pieces
- * around (star/strict/search/eliminate.c). Others are moves: as many pieces as before, which are
- * kept when large pieces get larger and small ones smaller, so that the small ones vanish in the
- * end.
+ * cut into one piece less by planes (star/strict/search/repartition.c) or between guards that see
+ * all of it (star/strict/search/covering.c), or shared out among the pieces around
+ * (star/strict/search/eliminate.c). Others are moves: as many pieces as before, which are kept when
+ * large pieces get larger and small ones smaller, so that the small ones vanish in the end.
  *
  * There are several sorts of trials, which differ in cost by a factor of a hundred, and none is the
- * best everywhere. So moves get fixed shares of the work, and the others share the rest by what
- * each has lately saved for its work (adaptive operator selection [Ropke and Pisinger 2006]).
+ * best everywhere. So moves, and what helps where nothing else does any more, get fixed shares of
+ * the work, and the others share the rest by what each has lately saved for its work (adaptive
+ * operator selection [Ropke and Pisinger 2006]).
  *
  * Invariants: trials come in batches that look at the same partition, each with random numbers of
  * its own, and are carried out in their order unless an earlier one of the batch has changed a
@@ -26,6 +27,7 @@
 #include "core/rng.h"
 #include "star/strict/partition/apply.h"
 #include "star/strict/partition/merge_coplanar.h"
+#include "star/strict/search/covering.h"
 #include "star/strict/search/eliminate.h"
 
 enum { BATCH = 16, UNION_MOST = APPLY_MOST };
@@ -43,24 +45,28 @@ static const double USUAL_WORK = 1e5, USUAL_SAVED = 1, USUAL_SPENT = 3e7;
  * than proofs do, for they are rounded. */
 static const double MARGIN = 4e-6, REPARTITION_MARGIN = 1e-5, ELIMINATE_MARGIN = 5e-6;
 
+/* By planes, by guards first, or by sharing out pieces among those around. */
+typedef enum way { BY_PLANES, BY_GUARDS, BY_FANS } way;
+
 /* What a trial looks for. */
 typedef struct sort {
     size_t count, parts; /* pieces before and after */
-    bool eliminates;     /* or cuts flat */
-    double share;        /* of the work, for moves */
+    way how;
+    double share; /* of the work, or 0: by what it saves */
 } sort;
 
 static const sort SORTS[IMPROVE_SORTS] = {
-    {2, 2, false, 0.12}, {1, 1, true, 0.1}, {3, 2, false, 0},
-    {4, 3, false, 0},    {1, 0, true, 0},   {2, 1, true, 0},
+    {2, 2, BY_PLANES, 0.12}, {1, 1, BY_FANS, 0.1}, {3, 2, BY_PLANES, 0},    {4, 3, BY_PLANES, 0},
+    {1, 0, BY_FANS, 0},      {2, 1, BY_FANS, 0},   {3, 2, BY_GUARDS, 0.25}, {4, 3, BY_GUARDS, 0},
 };
 
 typedef struct trial {
     size_t sort;
     uint32_t pieces[UNION_MOST];
     size_t count;
-    repartition_plan plan; /* if it cuts       */
-    fan_plan fan;          /* if it eliminates */
+    repartition_plan plan; /* by planes */
+    border_plan borders;   /* by guards */
+    fan_plan fan;          /* by fans   */
     bool found;
     uint64_t work;
 } trial;
@@ -218,6 +224,24 @@ done:
     return status;
 }
 
+static starg_status try_covering(const improver *m, starg_rng *rng, region_scratch *scratch,
+                                 trial *t) {
+    starg_status status = STARG_OK;
+    region r = {.vertices = {0}};
+    double starts[UNION_MOST][3];
+    for (size_t i = 0; i < t->count; i++)
+        partition_to_unit(m->p, m->p->pieces.data[t->pieces[i]].guard, starts[i]);
+    const covering_options options = {.margin = REPARTITION_MARGIN,
+                                      .starts = (const double(*)[3])starts,
+                                      .start_count = t->count};
+    STARG_TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
+    STARG_TRY(
+        covering_find(&r, SORTS[t->sort].parts, &options, rng, scratch, &t->borders, &t->found));
+done:
+    region_free(m->p->context, &r);
+    return status;
+}
+
 /* What touches the pieces of a trial. */
 static starg_status gather_around(const improver *m, const trial *t, numbers *out) {
     starg_status status = STARG_OK;
@@ -262,8 +286,10 @@ static starg_status run_trial(starg_context *context, void *shared, void *scratc
     choose_union(m, &rng, what->count, t, &t->found);
     if (!t->found)
         return STARG_OK;
-    if (what->eliminates)
+    if (what->how == BY_FANS)
         STARG_TRY(try_eliminate(m, &rng, own, t));
+    else if (what->how == BY_GUARDS)
+        STARG_TRY(try_covering(m, &rng, own, t));
     else
         STARG_TRY(try_repartition(m, &rng, own, t));
 done:
@@ -279,8 +305,11 @@ static starg_status carry_out(improver *m, const trial *t, apply_effect *effect)
     starg_status status = STARG_OK;
     const sort *what = &SORTS[t->sort];
     double least = saves(t) ? -1 : sum_of_squares(m->p, t->pieces, t->count);
-    if (what->eliminates)
+    if (what->how == BY_FANS)
         STARG_TRY(apply_fan(m->p, &t->fan, MARGIN, &m->scratch, effect));
+    else if (what->how == BY_GUARDS)
+        STARG_TRY(apply_borders(m->p, t->pieces, t->count, &t->borders, MARGIN, least, &m->scratch,
+                                effect));
     else
         STARG_TRY(
             apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, least, &m->scratch, effect));
@@ -289,7 +318,7 @@ static starg_status carry_out(improver *m, const trial *t, apply_effect *effect)
         goto done;
     }
     m->report->moves += is_move(what);
-    *(what->eliminates ? &m->report->eliminated : &m->report->repartitions) +=
+    *(what->how == BY_FANS ? &m->report->eliminated : &m->report->repartitions) +=
         what->count - what->parts;
     m->options->tallies->of[t->sort].saved += (double)(what->count - what->parts);
     if (saves(t))
@@ -330,7 +359,7 @@ static starg_status follow(improver *m, size_t count, const trial *done,
     starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++) {
         trial *t = &m->trials[i];
-        bool is_fan = SORTS[t->sort].eliminates;
+        bool is_fan = SORTS[t->sort].how == BY_FANS;
         t->found = t->found && !meet(t, done) && (saves(t) || !is_fan);
         if (!t->found)
             continue;
@@ -357,7 +386,7 @@ static starg_status carry_out_batch(improver *m, size_t count) {
     starg_status status = STARG_OK;
     bool any = false;
     for (size_t i = 0; i < count; i++)
-        if (m->trials[i].found && SORTS[m->trials[i].sort].eliminates)
+        if (m->trials[i].found && SORTS[m->trials[i].sort].how == BY_FANS)
             STARG_TRY(fan_plan_mark(m->p, &m->trials[i].fan));
     for (int fewer = 1; fewer >= 0; fewer--)
         for (size_t i = 0; i < count; i++) {

@@ -5,7 +5,7 @@
 
 #include "star/strict/partition/partition.h"
 
-enum { IMPROVE_SORTS = 6 };
+enum { IMPROVE_SORTS = 8 };
 
 /* What trials of each sort have cost and brought lately. All zero at first. */
 typedef struct improve_tallies {
