@@ -268,6 +268,23 @@ static size_t choose(const partition *p, starg_rng *rng, size_t wanted, uint32_t
     return count == wanted ? count : 0;
 }
 
+/* A first term that holds nothing changes nothing. */
+static void check_empty_term(const partition *before, const uint32_t *pieces, size_t count,
+                             const border_plan *plan, bool done, region_scratch *scratch) {
+    border_plan longer = {
+        .count = plan->count + 1, .planes = {plan->planes[0]}, .ends = {BORDER_ENDS_TERM}};
+    apply_effect effect;
+    if (plan->count == BORDER_PLANES_MOST)
+        return;
+    partition p = partition_oracle_copy(before);
+    longer.planes[0].offset = -8;
+    memcpy(longer.planes + 1, plan->planes, (size_t)plan->count * sizeof *plan->planes);
+    memcpy(longer.ends + 1, plan->ends, (size_t)plan->count * sizeof *plan->ends);
+    test_ok(p.context, apply_borders(&p, pieces, count, &longer, 4e-6, -1, scratch, &effect));
+    assert_int_equal(effect.done, done);
+    partition_free(&p);
+}
+
 static size_t cut_some(partition *p, size_t wanted, uint64_t seed, int *planes) {
     region_scratch scratch = {.context = p->context};
     partition first = partition_oracle_copy(p);
@@ -298,6 +315,7 @@ static size_t cut_some(partition *p, size_t wanted, uint64_t seed, int *planes) 
             assert_int_equal(p->pieces.count + 1, before.pieces.count);
         else
             assert_true(partition_oracle_same(p, &before));
+        check_empty_term(&before, pieces, count, &plan, effect.done, &scratch);
         done += effect.done;
         *planes += effect.done ? plan.count : 0;
         partition_free(&before);
