@@ -9,7 +9,7 @@
 #include "star/strict/search/renew.h"
 
 static renew_options options_of(uint64_t round, improve_tallies *tallies) {
-    return (renew_options){.trials = 400, .work = UINT64_MAX, .round = round, .tallies = tallies};
+    return (renew_options){.trials = 600, .work = UINT64_MAX, .round = round, .tallies = tallies};
 }
 
 /* Guards and surface hold, there are no more pieces, and most are as they were. */
@@ -34,6 +34,7 @@ static void test_renewals(void **state) {
         better += report.better;
         before = p.pieces.count;
     }
+    print_message("%zu renewals of 12 were better, %zu pieces stayed\n", better, kept);
     assert_true(better > 3 && kept > 20);
     partition_free(&first);
     partition_free(&p);
