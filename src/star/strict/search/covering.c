@@ -35,7 +35,7 @@ enum {
     SPARE = POOL, /* a step that is tried */
     OTHERS,       /* what the others see  */
     VIEWS,
-    LOOK_WORK = 100,  /* for a vertex, in what a row costs */
+    LOOK_WORK = 250,  /* for a vertex, in what a row costs */
     MISSED_MOST = 10, /* corners, of the best places; else there is no hope */
     CLIMBS = 100,
     CLIMBS_IDLE = 40,      /* then no more */
