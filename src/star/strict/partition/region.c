@@ -207,6 +207,15 @@ starg_status region_gather(const partition *p, const uint32_t *pieces, size_t co
     return region_gather_some(p, pieces, count, UINT32_MAX, scratch, out);
 }
 
+double region_diagonal(const region *r) {
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < r->vertices.count; i++) {
+        lower[i % 3] = fmin(lower[i % 3], r->vertices.data[i]);
+        upper[i % 3] = fmax(upper[i % 3], r->vertices.data[i]);
+    }
+    return vec3_distance(lower, upper);
+}
+
 /* ---- clipping ---- */
 
 typedef struct clipper {

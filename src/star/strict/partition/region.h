@@ -62,6 +62,9 @@ starg_status region_gather_some(const partition *p, const uint32_t *pieces, size
                                 uint32_t most, region_scratch *scratch, region *out);
 void region_free(starg_context *context, region *r);
 
+/* Of the box around all vertices. */
+double region_diagonal(const region *r);
+
 /* The blocks of the rows, after these were made. Errors: MEMORY. */
 starg_status region_make_blocks(starg_context *context, region *r);
 

@@ -91,7 +91,6 @@ static starg_status begin(searcher *s) {
     starg_status status = STARG_OK;
     starg_context *context = s->scratch->context;
     const region *r = s->r;
-    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
     s->corners = 3 * r->triangles.count;
     s->words = (s->corners + 63) / 64;
     s->stride = find_stride(s->corners);
@@ -102,11 +101,7 @@ static starg_status begin(searcher *s) {
         s->views[i].seen = s->bits + i * s->words;
     for (size_t i = 0; i < s->corners; i++)
         s->faces[i] = r->triangles.data[i / 3].corners[i % 3];
-    for (size_t i = 0; i < r->vertices.count; i++) {
-        lower[i % 3] = fmin(lower[i % 3], r->vertices.data[i]);
-        upper[i % 3] = fmax(upper[i % 3], r->vertices.data[i]);
-    }
-    s->size = vec3_distance(lower, upper);
+    s->size = region_diagonal(r);
     STARG_TRY(bvh_create(context, r->vertices.data, s->faces, r->triangles.count, &s->tree));
 done:
     return status;

@@ -211,21 +211,11 @@ done:
     return status;
 }
 
-/* Diagonal of the box. */
-static double size_of(const region *r) {
-    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < r->vertices.count; i++) {
-        lower[i % 3] = fmin(lower[i % 3], r->vertices.data[i]);
-        upper[i % 3] = fmax(upper[i % 3], r->vertices.data[i]);
-    }
-    return vec3_distance(lower, upper);
-}
-
 static starg_status find_two(const searcher *s, repartition_plan *plan, bool *found) {
     starg_status status = STARG_OK;
     direction best[CLIMBERS];
     int count = 0;
-    double size = size_of(s->r);
+    double size = region_diagonal(s->r);
     for (int i = 0; i < s->options->directions && !*found; i++) {
         direction fresh;
         propose(s, fresh.normal);
