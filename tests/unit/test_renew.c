@@ -19,7 +19,7 @@ static void test_renewals(void **state) {
     partition first = grown_sample(context, "gallery", 4000), p = partition_oracle_copy(&first);
     improve_tallies tallies = {0};
     size_t better = 0, kept = 0, before = first.pieces.count;
-    for (uint64_t round = 1; round <= 12; round++) {
+    for (uint64_t round = 1; round <= 20; round++) {
         renew_report report;
         const renew_options options = options_of(round, &tallies);
         uint64_t stamps = p.stamps;
@@ -34,7 +34,7 @@ static void test_renewals(void **state) {
         better += report.better;
         before = p.pieces.count;
     }
-    print_message("%zu renewals of 12 were better, %zu pieces stayed\n", better, kept);
+    print_message("%zu renewals of 20 were better, %zu pieces stayed\n", better, kept);
     assert_true(better > 3 && kept > 20);
     partition_free(&first);
     partition_free(&p);

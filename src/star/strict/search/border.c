@@ -66,8 +66,8 @@ typedef struct maker {
     border_triangles left;    /* of A, in no term yet                     */
     border_triangles rest;    /* of B, above no fence of the term yet     */
     STARG_ARRAY(ranked) order;
-    points low, high;       /* what a plane must separate               */
-    border_triangles marks; /* by vertex; all zero between calls        */
+    points low, high;            /* what a plane must separate               */
+    STARG_ARRAY(uint32_t) marks; /* by vertex; all zero between calls */
     uint32_t touched[TOUCHED_MOST];
     int touched_count; /* may exceed TOUCHED_MOST, where there is no plane */
 } maker;

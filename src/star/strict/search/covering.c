@@ -262,14 +262,23 @@ done:
     return status;
 }
 
-/* The one of the pool that sees most of what the first `count` of the chosen do not. */
+static bool is_among(view *const *chosen, size_t count, const view *v) {
+    for (size_t i = 0; i < count; i++)
+        if (chosen[i] == v)
+            return true;
+    return false;
+}
+
+/* Another one of the pool, which sees most of what the first `count` of the chosen do not. */
 static size_t complete(searcher *s, size_t pool, view **chosen, size_t count) {
     size_t most = 0;
-    view *best = &s->views[0];
+    view *best = NULL;
     for (size_t i = 0; i < pool; i++) {
+        if (is_among(chosen, count, &s->views[i]))
+            continue;
         chosen[count] = &s->views[i];
         size_t seen = count_all(s, chosen, count + 1);
-        if (seen > most) {
+        if (best == NULL || seen > most) {
             most = seen;
             best = &s->views[i];
         }
@@ -286,7 +295,7 @@ static size_t choose_supposed(searcher *s, size_t pool, view **chosen) {
         size_t seen = 0;
         for (size_t i = 1; i < s->guards; i++)
             seen = complete(s, pool, own, i);
-        if (seen <= most)
+        if (first > 0 && seen <= most)
             continue;
         most = seen;
         memcpy(chosen, own, sizeof own);
