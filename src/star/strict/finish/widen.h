@@ -5,9 +5,9 @@
 
 #include "star/strict/partition/partition.h"
 
-/* Repartitions unions of neighbours, into as many pieces as before, so that the smallest balls in
- * kernels grow; `work` bounds the vertices, facets and rows visited. Stops when time runs out.
- * Errors: MEMORY, CANCELLED. */
+/* Cuts pairs of neighbours anew, so that the smallest balls in
+ * kernels and the smallest angles grow; `work` bounds the vertices, facets and rows visited. Stops
+ * when time runs out. Errors: MEMORY, CANCELLED. */
 starg_status widen(partition *p, uint64_t work);
 
 #endif

@@ -117,13 +117,6 @@ done:
 
 /* ---- proofs ---- */
 
-double sum_of_squares(const partition *p, const uint32_t *pieces, size_t count) {
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += p->pieces.data[pieces[i]].volume * p->pieces.data[pieces[i]].volume;
-    return sum;
-}
-
 static starg_status settle_piece(change *c, uint32_t number, bool *done) {
     starg_status status = STARG_OK;
     partition *p = &c->extract.part;
@@ -193,13 +186,14 @@ typedef struct cuts {
 } cuts;
 
 static starg_status apply_cuts(partition *p, const uint32_t *pieces, size_t count, cuts how,
-                               double margin, double least, region_scratch *scratch,
+                               double margin, apply_worth worth, region_scratch *scratch,
                                apply_effect *effect) {
     starg_status status = STARG_OK;
     change c = {.margin = margin, .scratch = scratch};
     bool done = false;
     *effect = (apply_effect){.done = false};
     STARG_TRY(extract_make(p, pieces, count, scratch, &c.extract));
+    const double before = worth == NULL ? 0 : worth(&c.extract.part, count);
     if (how.planes != NULL)
         STARG_TRY(cut(&c, count, how.planes, &done));
     else
@@ -207,7 +201,7 @@ static starg_status apply_cuts(partition *p, const uint32_t *pieces, size_t coun
     if (done)
         STARG_TRY(settle_parts(&c, &done));
     effect->done =
-        done && sum_of_squares(&c.extract.part, c.parts, c.part_count) > least && check_others(&c);
+        done && check_others(&c) && (worth == NULL || worth(&c.extract.part, count) > before);
     if (!effect->done)
         goto done;
     STARG_TRY(extract_return(&c.extract, p));
@@ -218,15 +212,15 @@ done:
 }
 
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
-                        const repartition_plan *plan, double margin, double least,
+                        const repartition_plan *plan, double margin, apply_worth worth,
                         region_scratch *scratch, apply_effect *effect) {
-    return apply_cuts(p, pieces, count, (cuts){.planes = plan}, margin, least, scratch, effect);
+    return apply_cuts(p, pieces, count, (cuts){.planes = plan}, margin, worth, scratch, effect);
 }
 
 starg_status apply_borders(partition *p, const uint32_t *pieces, size_t count,
-                           const border_plan *plan, double margin, double least,
+                           const border_plan *plan, double margin, apply_worth worth,
                            region_scratch *scratch, apply_effect *effect) {
-    return apply_cuts(p, pieces, count, (cuts){.borders = plan}, margin, least, scratch, effect);
+    return apply_cuts(p, pieces, count, (cuts){.borders = plan}, margin, worth, scratch, effect);
 }
 
 /* ---- fans ---- */

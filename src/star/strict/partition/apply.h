@@ -20,18 +20,21 @@ typedef struct apply_effect {
     apply_move moves[APPLY_MOST]; /* one after the other */
 } apply_effect;
 
+/* What a change is to increase: of an extract with all facets that it may concern, and the first
+ * `count` pieces complete. */
+typedef double (*apply_worth)(const partition *part, size_t count);
+
 /* Joins `count` pieces (at most APPLY_MOST) and cuts their union as planned. Certifies every new
- * piece, and every other piece whose facets were split; if one fails, or if the sum of squares of
- * the new pieces does not exceed `least`, the partition is unchanged. Guards of the new pieces are
- * the centres of their kernels, at least `margin` (unit coordinates) inside. Rebuilds the index.
- * Errors: MEMORY. */
+ * piece, and every other piece whose facets were split; if one fails, or if `worth`, unless NULL,
+ * does not grow, the partition is unchanged. Guards of the new pieces are the centres of their
+ * kernels, at least `margin` (unit coordinates) inside. Rebuilds the index. Errors: MEMORY. */
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
-                        const repartition_plan *plan, double margin, double least,
+                        const repartition_plan *plan, double margin, apply_worth worth,
                         region_scratch *scratch, apply_effect *effect);
 
 /* The same for parts with borders of several planes, at most as many as pieces. Errors: MEMORY. */
 starg_status apply_borders(partition *p, const uint32_t *pieces, size_t count,
-                           const border_plan *plan, double margin, double least,
+                           const border_plan *plan, double margin, apply_worth worth,
                            region_scratch *scratch, apply_effect *effect);
 
 /* Distributes pieces as planned; proofs, `margin` and index as above. Errors: MEMORY. */
@@ -45,8 +48,5 @@ starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
 
 /* Moves each guard to the centre of its kernel if that is certified and better. Errors: MEMORY. */
 starg_status apply_centers(partition *p, region_scratch *scratch);
-
-/* The sum of the squared volumes of pieces (unit coordinates): larger if they are more uneven. */
-double sum_of_squares(const partition *p, const uint32_t *pieces, size_t count);
 
 #endif

@@ -190,15 +190,27 @@ static void choose_union(const improver *m, starg_rng *rng, size_t wanted, trial
     *found = t->count == wanted;
 }
 
+static double square(double x) {
+    return x * x;
+}
+
+/* The sum of the squared volumes: larger if they are more uneven. */
+static double unevenness(const partition *part, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += square(part->pieces.data[i].volume);
+    return sum;
+}
+
 /* Would a move make the pieces more uneven? */
 static starg_status is_uneven(const improver *m, const region *r, const trial *t, bool *better) {
     starg_status status = STARG_OK;
     const partition_plane *plane = &t->plan.planes[0];
     region above = {.vertices = {0}};
-    double whole = m->p->pieces.data[t->pieces[0]].volume + m->p->pieces.data[t->pieces[1]].volume;
+    double a = m->p->pieces.data[t->pieces[0]].volume, b = m->p->pieces.data[t->pieces[1]].volume;
     STARG_TRY(region_clip(m->p->context, r, plane->normal, plane->offset, &above));
-    double high = region_volume_above(&above, plane->normal, plane->offset), low = whole - high;
-    *better = high * high + low * low > sum_of_squares(m->p, t->pieces, t->count);
+    double high = region_volume_above(&above, plane->normal, plane->offset), low = a + b - high;
+    *better = square(high) + square(low) > square(a) + square(b);
 done:
     region_free(m->p->context, &above);
     return status;
@@ -304,15 +316,15 @@ static bool saves(const trial *t) {
 static starg_status carry_out(improver *m, const trial *t, apply_effect *effect) {
     starg_status status = STARG_OK;
     const sort *what = &SORTS[t->sort];
-    double least = saves(t) ? -1 : sum_of_squares(m->p, t->pieces, t->count);
+    const apply_worth worth = saves(t) ? NULL : unevenness;
     if (what->how == BY_FANS)
         STARG_TRY(apply_fan(m->p, &t->fan, MARGIN, &m->scratch, effect));
     else if (what->how == BY_GUARDS)
-        STARG_TRY(apply_borders(m->p, t->pieces, t->count, &t->borders, MARGIN, least, &m->scratch,
+        STARG_TRY(apply_borders(m->p, t->pieces, t->count, &t->borders, MARGIN, worth, &m->scratch,
                                 effect));
     else
         STARG_TRY(
-            apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, least, &m->scratch, effect));
+            apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, worth, &m->scratch, effect));
     if (!effect->done) {
         m->report->refused++;
         goto done;
