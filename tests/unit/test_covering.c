@@ -11,6 +11,7 @@
 #include "partition_oracle.h"
 #include "star/strict/partition/apply.h"
 #include "star/strict/search/covering.h"
+#include "star/strict/search/crossings.h"
 
 enum { TRIANGLES = 12 };
 
@@ -136,9 +137,10 @@ static void test_borders(void **state) {
         border_plan plan = {.count = 0};
         size_t crossings;
         bool found;
+        s.task.r = &s.r;
         s.task.guards = (const double(*)[3])s.guards;
-        test_ok(context, border_count_crossings(&s.r, &s.task, 1000, &scratch, &crossings));
-        test_ok(context, border_find(&s.r, &s.task, &rng, &scratch, &plan, &found));
+        test_ok(context, crossings_count(&s.task, 1000, &scratch, &crossings));
+        test_ok(context, border_find(&s.task, &rng, &scratch, &plan, &found));
         if (found) {
             check_border(&s, &plan);
             assert_int_equal(crossings, 0);
@@ -220,7 +222,8 @@ static void test_crossings(void **state) {
         scene s = random_scene(context, seed, 2, 0.2 * (double)(seed % 5));
         for (uint32_t i = 0; i < TRIANGLES; i += 2)
             for (uint32_t n = 1; n < TRIANGLES; n += 2) {
-                const border_task one = {.guards = (const double(*)[3])s.guards,
+                const border_task one = {.r = &s.r,
+                                         .guards = (const double(*)[3])s.guards,
                                          .guard_count = 2,
                                          .own = {.data = &i, .count = 1},
                                          .others = {.data = &n, .count = 1},
@@ -233,7 +236,7 @@ static void test_crossings(void **state) {
                 }
                 if (share_vertex(&s.r, i, n))
                     continue;
-                test_ok(context, border_count_crossings(&s.r, &one, 10, &scratch, &crossings));
+                test_ok(context, crossings_count(&one, 10, &scratch, &crossings));
                 bool truly = meet(a, b);
                 assert_true(crossings == 1 || !truly);
                 met += truly;

@@ -4,7 +4,7 @@
 #define STARG_STAR_STRICT_SEARCH_BORDER_H
 
 #include "core/rng.h"
-#include "star/strict/partition/region.h"
+#include "star/strict/search/parting.h"
 
 enum { BORDER_PLANES_MOST = 64 };
 
@@ -18,26 +18,28 @@ typedef struct border_plan {
     border_end ends[BORDER_PLANES_MOST]; /* is it the last one of its term, or part? */
 } border_plan;
 
-typedef STARG_ARRAY(uint32_t) border_triangles;
-
-/* Triangles of a region, by number, that must be on the first guard's side of a border, or on that
- * of all other guards. */
+/* Triangles that must be on the first guard's side of a border, or on that of all other guards. */
 typedef struct border_task {
+    const region *r;
     const double (*guards)[3];
     size_t guard_count;
-    border_triangles own, others;
+    parting_triangles own, others;
     double gap; /* that planes keep to guards and triangles, in unit coordinates */
 } border_task;
 
-/* How many pairs of an own triangle and another one have cones from their guards that meet: while
- * there are any, there is no border. Counting ends at `most`. Errors: MEMORY. */
-starg_status border_count_crossings(const region *r, const border_task *task, size_t most,
-                                    region_scratch *scratch, size_t *count);
+/* For planes between triangles of a task. */
+static inline parting border_parting(const border_task *task, region_scratch *scratch) {
+    return (parting){.r = task->r,
+                     .guards = task->guards,
+                     .guard_count = task->guard_count,
+                     .gap = task->gap,
+                     .scratch = scratch};
+}
 
 /* Looks for a border and appends the part to the plan, or leaves that as it was. What is found is
  * rounded: to be proven on the cut mesh. Errors: MEMORY. */
-starg_status border_find(const region *r, const border_task *task, starg_rng *rng,
-                         region_scratch *scratch, border_plan *plan, bool *found);
+starg_status border_find(const border_task *task, starg_rng *rng, region_scratch *scratch,
+                         border_plan *plan, bool *found);
 
 /* Is a triangle wholly in one of the plan's parts, and in a single term? */
 bool border_holds(const region *r, const border_plan *plan, uint32_t triangle);

@@ -7,8 +7,8 @@
  * The corners of the surface's triangles, each seen by a guard strictly inside the triangle along a
  * free segment, are what any such parts need (docs/decomposition.md, "How few pieces"). So guards
  * come first: places that see all corners. Then they move until no segment from a guard to what it
- * alone is inside of meets one of another guard likewise (border.c); where there is none, borders
- * are found as a rule. One part after the other is cut from the rest.
+ * alone is inside of meets one of another guard likewise (crossings.c); where there is none,
+ * borders are found as a rule. One part after the other is cut from the rest.
  *
  * Method: the starts, and places at random, each moved to where it is inside all that is near; for
  * some of them, a place inside all rows that they are not inside of; of all these the few that see
@@ -27,6 +27,7 @@
 
 #include "geometry/bvh.h"
 #include "geometry/vec3.h"
+#include "star/strict/search/crossings.h"
 
 enum {
     PLACES = 12,
@@ -406,6 +407,7 @@ done:
 static starg_status share_out(searcher *s, size_t first, const border_plan *plan, bool *all) {
     starg_status status = STARG_OK;
     border_task *task = &s->task;
+    task->r = s->r;
     task->guards = (const double(*)[3])(s->places + first);
     task->guard_count = s->guards - first;
     task->gap = s->options->margin;
@@ -436,7 +438,7 @@ static starg_status count_crossings(searcher *s, size_t most, size_t *count) {
         bool all;
         STARG_TRY(share_out(s, i, NULL, &all));
         if (all)
-            STARG_TRY(border_count_crossings(s->r, &s->task, most - *count, s->scratch, &more));
+            STARG_TRY(crossings_count(&s->task, most - *count, s->scratch, &more));
         *count += all ? more : most;
     }
 done:
@@ -473,7 +475,7 @@ static starg_status find_borders(searcher *s, border_plan *plan, bool *found) {
     for (size_t i = 0; i + 1 < s->guards && *found; i++) {
         STARG_TRY(share_out(s, i, plan, found));
         if (*found)
-            STARG_TRY(border_find(s->r, &s->task, s->rng, s->scratch, plan, found));
+            STARG_TRY(border_find(&s->task, s->rng, s->scratch, plan, found));
     }
 done:
     return status;
