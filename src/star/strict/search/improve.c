@@ -56,7 +56,7 @@ typedef struct sort {
 } sort;
 
 static const sort SORTS[IMPROVE_SORTS] = {
-    {2, 2, BY_PLANES, 0.12}, {1, 1, BY_FANS, 0.1}, {3, 2, BY_PLANES, 0},    {4, 3, BY_PLANES, 0},
+    {2, 2, BY_PLANES, 0.12}, {1, 1, BY_FANS, 0.1}, {3, 2, BY_PLANES, 0},   {4, 3, BY_PLANES, 0},
     {1, 0, BY_FANS, 0},      {2, 1, BY_FANS, 0},   {3, 2, BY_GUARDS, 0.4}, {4, 3, BY_GUARDS, 0},
 };
 
