@@ -32,7 +32,8 @@ static void add_facet(const partition *p, const facet *f, box *to) {
     }
 }
 
-static double lack_of_margin(double margin) {
+static double lack_of_margin(const partition *p, uint32_t number, double diagonal) {
+    double margin = p->pieces.data[number].radius / diagonal;
     return WEIGHT * fmax(0, 1 - margin / FLATNESS_MARGIN);
 }
 
@@ -59,15 +60,15 @@ static double lack_of_facet(const partition *p, const facet *f, int side) {
     return fmax(0, 1 - flatness_angle(p, f->side[side], corners) / FLATNESS_ANGLE);
 }
 
-double flatness_margin(const partition *p, uint32_t number) {
+double flatness_diagonal(const partition *p, uint32_t number) {
     box all = EMPTY;
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++)
         add_facet(p, &p->facets.data[p->index.data[k] / 2], &all);
-    return p->pieces.data[number].radius / vec3_distance(all.lower, all.upper);
+    return vec3_distance(all.lower, all.upper);
 }
 
 double flatness_of_piece(const partition *p, uint32_t number) {
-    double sum = lack_of_margin(flatness_margin(p, number));
+    double sum = lack_of_margin(p, number, flatness_diagonal(p, number));
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
         uint32_t entry = p->index.data[k];
         sum += lack_of_facet(p, &p->facets.data[entry / 2], (int)(entry % 2));
@@ -82,7 +83,7 @@ double flatness_of_first(const partition *p, size_t count) {
         for (size_t f = 0; f < p->facets.count; f++)
             if (p->facets.data[f].side[0] == i || p->facets.data[f].side[1] == i)
                 add_facet(p, &p->facets.data[f], &all);
-        sum += lack_of_margin(p->pieces.data[i].radius / vec3_distance(all.lower, all.upper));
+        sum += lack_of_margin(p, i, vec3_distance(all.lower, all.upper));
     }
     for (size_t f = 0; f < p->facets.count; f++)
         for (int side = 0; side < 2; side++)

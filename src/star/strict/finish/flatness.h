@@ -15,8 +15,8 @@
  * counter-clockwise from outside; negative if its guard is not strictly inside. Degrees. */
 double flatness_angle(const partition *p, uint32_t number, const uint32_t corners[3]);
 
-/* Of a piece of a partition with an index. */
-double flatness_margin(const partition *p, uint32_t number);
+/* Of the bounding box of a piece, in unit coordinates; the partition has an index. */
+double flatness_diagonal(const partition *p, uint32_t number);
 
 /* What angles and the margin of a piece lack, 0 if nothing; likewise. */
 double flatness_of_piece(const partition *p, uint32_t number);

@@ -125,24 +125,18 @@ done:
     return status;
 }
 
-static double diagonal_of(const partition *p, uint32_t number) {
-    return p->pieces.data[number].radius / flatness_margin(p, number);
-}
-
 /* With the margin that is aimed at, or else with more than the smaller one is now. */
 static starg_status try_pair(widener *w, uint32_t a, uint32_t b, bool *done) {
     starg_status status = STARG_OK;
     const partition *p = w->p;
     region r = {.vertices = {0}};
     pair of = {.pieces = {a, b}, .r = &r};
-    double goal = GOAL * fmax(diagonal_of(p, a), diagonal_of(p, b));
-    double more = GROWTH * fmin(p->pieces.data[a].radius, p->pieces.data[b].radius);
+    const double margins[2] = {GOAL * fmax(flatness_diagonal(p, a), flatness_diagonal(p, b)),
+                               GROWTH * fmin(p->pieces.data[a].radius, p->pieces.data[b].radius)};
     STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
     STARG_TRY(region_gather(p, of.pieces, 2, &w->scratch, &r));
-    for (int i = 0; i < 2 && !*done; i++) {
-        of.margin = i == 0 ? goal : fmin(goal, more);
-        if (i > 0 && more >= goal)
-            break;
+    for (int i = 0; i < 2 && !*done && margins[i] <= margins[0]; i++) {
+        of.margin = margins[i];
         STARG_TRY(cut_by_plane(w, &of, done));
         if (!*done)
             STARG_TRY(cut_from_guards(w, &of, done));
