@@ -5,6 +5,7 @@
 usage: pieces.py STARGUARD DATA [--than OTHER] [--groups cad,solids,table2] [--effort N]
        pieces.py STARGUARD DATA --quality [--prove] [--models solids/spot,...] [--effort N]
        pieces.py STARGUARD DATA --every [--results FILE] [--groups solids,...] [--effort N] [--more WORDS]
+       pieces.py STARGUARD DATA --early SECONDS [--groups solids,...]
 
 A row for each model where the programs differ, the surface is not kept, or `verify` fails; then the
 sums: pieces, surfaces kept, seconds of processor time. OTHER is another build of the program.
@@ -17,7 +18,10 @@ With --every a row for each file of each folder: vertices; whether `check` calls
 and whether it is kept, or why not; pieces, lower bound, smallest angle and margin, seconds of processor
 time and megabytes, and the verdict of `verify`. Rows are stored in FILE and not computed again. The
 status is 1 if an embedded surface is not kept, a result is not verified, or a command ends in a way
-that docs/cli.md does not know. The tables are Markdown.
+that docs/cli.md does not know.
+
+With --early a row for each model: pieces with that time limit, one thread, by the defaults, and their
+ratio; it says something on quiet cores only. The tables are Markdown.
 """
 import argparse
 import glob
@@ -223,6 +227,21 @@ def tell_every(options):
         raise SystemExit("wrong: " + ", ".join(wrong))
 
 
+# ---- early results ----
+
+
+def tell_early(program, models, data, limit):
+    ratios = []
+    print(f"| model | pieces after {limit:g} s | in the end | ratio |\n|---|---|---|---|")
+    for model in models:
+        early, last = (len(report_of(program, model, words)[0]["pieces"])
+                       for words in (["--time-limit", str(limit)], []))
+        ratios.append(early / last)
+        name = os.path.splitext(os.path.relpath(model, data))[0]
+        print(f"| {name} | {early} | {last} | {ratios[-1]:.2f} |", flush=True)
+    print(f"\nAt most 1.5: {sum(ratio <= 1.5 for ratio in ratios)} of {len(ratios)}.")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -234,6 +253,7 @@ def main():
     parser.add_argument("--quality", action="store_true")
     parser.add_argument("--every", action="store_true")
     parser.add_argument("--results", help="of --every: rows so far")
+    parser.add_argument("--early", type=float, metavar="SECONDS")
     parser.add_argument("--prove", action="store_true")
     parser.add_argument("--models", default="")
     parser.add_argument("--more", default="", help="further options of decompose")
@@ -246,6 +266,9 @@ def main():
               for m in sorted(glob.glob(os.path.join(options.data, group, "*.off")))]
     if options.models:
         models = [os.path.join(options.data, name + ".off") for name in options.models.split(",")]
+    if options.early:
+        tell_early(options.starguard, models, options.data, options.early)
+        return
     if options.quality:
         words = ["--prove"] * options.prove + options.more.split()
         if options.effort:

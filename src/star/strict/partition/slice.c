@@ -88,9 +88,11 @@ static double find_tolerance(const partition *p) {
     return fmax(SLICE_ON, 32 * DBL_EPSILON * (largest + 0.5));
 }
 
-static void find_height(slicer *s, uint32_t vertex) {
-    double height = vec3_dot(s->plane.normal, partition_unit(s->p, vertex)) - s->plane.offset;
-    s->height[vertex] = fabs(height) < s->on ? 0 : height;
+/* Above the plane; 0 on it. */
+static double find_height(const partition *p, const partition_plane *plane, double on,
+                          uint32_t vertex) {
+    double height = vec3_dot(plane->normal, partition_unit(p, vertex)) - plane->offset;
+    return fabs(height) < on ? 0 : height;
 }
 
 static double height_of(const slicer *s, uint32_t vertex) {
@@ -117,9 +119,10 @@ static bool find_heights(slicer *s, size_t *nodes) {
             continue;
         bool high = false, low = false;
         for (int k = 0; k < 3; k++) {
-            find_height(s, f->corners[k]);
-            high = high || s->height[f->corners[k]] > 0;
-            low = low || s->height[f->corners[k]] < 0;
+            double height = find_height(s->p, &s->plane, s->on, f->corners[k]);
+            s->height[f->corners[k]] = height;
+            high = high || height > 0;
+            low = low || height < 0;
         }
         above = above || high;
         below = below || low;
@@ -361,10 +364,8 @@ int partition_sides(const partition *p, uint32_t number, const partition_plane *
     for (size_t i = 0; i < p->facets.count; i++) {
         const facet *f = &p->facets.data[i];
         for (int k = 0; k < 3 && (f->side[0] == number || f->side[1] == number); k++) {
-            double height =
-                vec3_dot(plane->normal, partition_unit(p, f->corners[k])) - plane->offset;
-            if (fabs(height) >= on)
-                sides |= height > 0 ? PARTITION_ABOVE : PARTITION_BELOW;
+            double height = find_height(p, plane, on, f->corners[k]);
+            sides |= height > 0 ? PARTITION_ABOVE : height < 0 ? PARTITION_BELOW : 0;
         }
     }
     return sides;
