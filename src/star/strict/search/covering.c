@@ -42,7 +42,8 @@ enum {
     CLIMBS_IDLE = 40,      /* then no more */
     MOVES_WORK = 40000000, /* about a sixth of a second */
     MOVES_IDLE = 250,
-    TANGLED = 100000 /* crossings, where guards do not even see all */
+    TANGLED = 100000,     /* crossings, where guards do not even see all */
+    PAIRS_MOST = 16000000 /* of triangles, to be looked at for crossings: most of a second */
 };
 
 /* Lengths of random steps, by the region's diagonal: ten to a power between. */
@@ -429,7 +430,7 @@ done:
     return status;
 }
 
-/* Of all parts, up to `most`. */
+/* Of all parts, up to `most`; as many where there are too many pairs to look at. */
 static starg_status count_crossings(searcher *s, size_t most, size_t *count) {
     starg_status status = STARG_OK;
     *count = 0;
@@ -437,6 +438,7 @@ static starg_status count_crossings(searcher *s, size_t most, size_t *count) {
         size_t more = 0;
         bool all;
         STARG_TRY(share_out(s, i, NULL, &all));
+        all = all && (uint64_t)s->task.own.count * s->task.others.count <= PAIRS_MOST;
         if (all)
             STARG_TRY(crossings_count(&s->task, most - *count, s->scratch, &more));
         *count += all ? more : most;
