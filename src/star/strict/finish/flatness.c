@@ -2,9 +2,10 @@
 /* How flat the tetrahedra between guards and facets are.
  *
  * A tetrahedron lacks what its smallest angle is short of FLATNESS_ANGLE, as a share of that, and a
- * piece what its margin is short of FLATNESS_MARGIN. The latter weighs as much as several angles,
+ * piece what its margin is short of FLATNESS_MARGIN. The latter weighs as much as a hundred angles,
  * for a piece with a thin kernel has many that are small, and other cuts of its neighbours cannot
- * mend these. Rounded; decides nothing. Cost: linear in the facets. */
+ * mend these. Rounded: it says which cut is better, never whether one is valid. Cost: linear in the
+ * facets. */
 #include "star/strict/finish/flatness.h"
 
 #include <math.h>
