@@ -18,6 +18,7 @@
 
 #include "star/decomposition.h"
 #include "star/strict/finish/refine_caps.h"
+#include "star/strict/finish/reshape.h"
 #include "star/strict/finish/widen.h"
 #include "star/strict/partition/apply.h"
 #include "star/strict/partition/cone.h"
@@ -316,6 +317,7 @@ static starg_status decompose(starg_context *context, model of,
     STARG_TRY(apply_centers(&p, &scratch));
     STARG_TRY(widen(&p, room_for(&s, options)));
     STARG_TRY(refine_caps(&p));
+    STARG_TRY(reshape(&p));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
     (*out)->options.effort = effort_of(&s, options);

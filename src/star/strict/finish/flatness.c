@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* How flat the tetrahedra between guards and facets are.
  *
- * A tetrahedron lacks what its smallest angle is short of FLATNESS_ANGLE, as a share of that, and a
- * piece what its margin is short of FLATNESS_MARGIN. The latter weighs as much as a hundred angles,
- * for a piece with a thin kernel has many that are small, and other cuts of its neighbours cannot
- * mend these. Rounded: it says which cut is better, never whether one is valid. Cost: linear in the
- * facets. */
+ * A tetrahedron lacks what its smallest angle is short of FLATNESS_ANGLE, as a share of that and
+ * squared, so that one that is very flat counts more than two that are a little. A piece lacks what
+ * its margin is short of FLATNESS_MARGIN, which weighs as much as a hundred angles, for a piece
+ * with a thin kernel has many that are small, and other cuts of its neighbours cannot mend these.
+ * Rounded: it says which cut is better, never whether one is valid. Cost: linear in the facets. */
 #include "star/strict/finish/flatness.h"
 
 #include <math.h>
@@ -38,7 +38,9 @@ static double lack_of_margin(const partition *p, uint32_t number, double diagona
     return WEIGHT * fmax(0, 1 - margin / FLATNESS_MARGIN);
 }
 
-double flatness_angle(const partition *p, uint32_t number, const uint32_t corners[3]) {
+/* The smallest dihedral angle of the tetrahedron on a triangle of a piece, whose corners are
+ * counter-clockwise from outside; negative if its guard is not strictly inside. Degrees. */
+static double angle_over(const partition *p, uint32_t number, const uint32_t corners[3]) {
     const double *guard = p->pieces.data[number].guard, *origin = partition_point(p, corners[0]);
     double place[4][3] = {{0}};
     const int exponent = partition_exponent(p);
@@ -53,12 +55,20 @@ double flatness_angle(const partition *p, uint32_t number, const uint32_t corner
     return angles_smallest((const double(*)[3])place);
 }
 
-static double lack_of_facet(const partition *p, const facet *f, int side) {
+double flatness_of_side(const partition *p, const facet *f, int side) {
     uint32_t corners[3];
-    if (f->side[side] == PARTITION_OUTSIDE)
-        return 0;
     facet_outward(f, side, corners);
-    return fmax(0, 1 - flatness_angle(p, f->side[side], corners) / FLATNESS_ANGLE);
+    const double angle = angle_over(p, f->side[side], corners);
+    const double lack = fmax(0, 1 - angle / FLATNESS_ANGLE);
+    return angle < 0 ? INFINITY : lack * lack;
+}
+
+double flatness_of_facet(const partition *p, const facet *f) {
+    double sum = 0;
+    for (int side = 0; side < 2; side++)
+        if (f->side[side] != PARTITION_OUTSIDE)
+            sum += flatness_of_side(p, f, side);
+    return sum;
 }
 
 double flatness_diagonal(const partition *p, uint32_t number) {
@@ -72,7 +82,7 @@ double flatness_of_piece(const partition *p, uint32_t number) {
     double sum = lack_of_margin(p, number, flatness_diagonal(p, number));
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
         uint32_t entry = p->index.data[k];
-        sum += lack_of_facet(p, &p->facets.data[entry / 2], (int)(entry % 2));
+        sum += flatness_of_side(p, &p->facets.data[entry / 2], (int)(entry % 2));
     }
     return sum;
 }
@@ -87,7 +97,6 @@ double flatness_of_first(const partition *p, size_t count) {
         sum += lack_of_margin(p, i, vec3_distance(all.lower, all.upper));
     }
     for (size_t f = 0; f < p->facets.count; f++)
-        for (int side = 0; side < 2; side++)
-            sum += lack_of_facet(p, &p->facets.data[f], side);
+        sum += flatness_of_facet(p, &p->facets.data[f]);
     return sum;
 }

@@ -11,9 +11,12 @@
 #define FLATNESS_ANGLE  0.2
 #define FLATNESS_MARGIN 2e-3
 
-/* The smallest dihedral angle of the tetrahedron on a triangle of a piece, whose corners are
- * counter-clockwise from outside; negative if its guard is not strictly inside. Degrees. */
-double flatness_angle(const partition *p, uint32_t number, const uint32_t corners[3]);
+/* What the smallest dihedral angles of the tetrahedra on a facet lack in all, 0 if nothing;
+ * infinite if the guard of a piece at the facet is not strictly inside. */
+double flatness_of_facet(const partition *p, const facet *f);
+
+/* The same for one side of the facet, which is not the outside. */
+double flatness_of_side(const partition *p, const facet *f, int side);
 
 /* Of the bounding box of a piece, in unit coordinates; the partition has an index. */
 double flatness_diagonal(const partition *p, uint32_t number);

@@ -159,26 +159,13 @@ done:
 
 /* ---- angles ---- */
 
-/* The smallest dihedral angle of the tetrahedra on both sides of a triangle; negative if a guard
- * does not see it. */
-static double angle_at(const refiner *r, const facet *like, const uint32_t corners[3]) {
-    facet f = *like;
-    double least = 180;
-    memcpy(f.corners, corners, sizeof f.corners);
-    for (int side = 0; side < 2; side++) {
-        uint32_t outward[3];
-        facet_outward(&f, side, outward);
-        least = fmin(least, flatness_angle(r->p, f.side[side], outward));
-    }
-    return least;
-}
-
 /* What the angles lack, in all. */
-static double lack_of_all(const refiner *r, const facet *f) {
+static double lack_of_all(const refiner *r, const facet *like) {
+    facet f = *like;
     double sum = 0;
     for (size_t i = 0; i < r->triangles.count; i += 3) {
-        double angle = angle_at(r, f, r->triangles.data + i);
-        sum += angle < 0 ? INFINITY : fmax(0, FLATNESS_ANGLE - angle);
+        memcpy(f.corners, r->triangles.data + i, sizeof f.corners);
+        sum += flatness_of_facet(r->p, &f);
     }
     return sum;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Room for guards: partitions stay partitions with as many pieces (partition_oracle.h, in
- * rationals), and what margins and angles lack in all, by definition, does not grow. Refined caps:
- * likewise, with the same guards and outer facets, and fewer small angles. */
+/* Stages after the search. Room for guards: partitions stay partitions with as many pieces
+ * (partition_oracle.h, in rationals), and what margins and angles lack in all, by definition, does
+ * not grow. Refined caps: likewise, with the same guards and outer facets, and fewer small angles.
+ * Tetrahedra made less flat: likewise, with the surface of the model and room for guards. */
 #include "support.h"
 
 #include <math.h>
@@ -11,6 +12,7 @@
 #include "partition_oracle.h"
 #include "star/strict/finish/flatness.h"
 #include "star/strict/finish/refine_caps.h"
+#include "star/strict/finish/reshape.h"
 #include "star/strict/finish/widen.h"
 #include "star/strict/search/improve.h"
 #include "star/strict/start/bsp_start.h"
@@ -85,14 +87,19 @@ static double angle_of(const partition *p, const facet *f, int side) {
     return smallest_angle_of(corners);
 }
 
-/* What angles and the margin of a piece lack, by definition: ten times ten angles for a margin. */
-static double lack_of(const partition *p, uint32_t number) {
-    double sum = 100 * fmax(0, 1 - margin_of(p, number) / 2e-3);
+/* What the angles of a piece lack, by definition. */
+static double lack_of_angles(const partition *p, uint32_t number) {
+    double sum = 0;
     for (size_t i = 0; i < p->facets.count; i++)
         for (int side = 0; side < 2; side++)
             if (p->facets.data[i].side[side] == number)
-                sum += fmax(0, 1 - angle_of(p, &p->facets.data[i], side) / 0.2);
+                sum += pow(fmax(0, 1 - angle_of(p, &p->facets.data[i], side) / 0.2), 2);
     return sum;
+}
+
+/* The margin likewise: ten times ten angles. */
+static double lack_of(const partition *p, uint32_t number) {
+    return 100 * fmax(0, 1 - margin_of(p, number) / 2e-3) + lack_of_angles(p, number);
 }
 
 static double lack_of_all(const partition *p) {
@@ -228,8 +235,63 @@ static void test_caps(void **state) {
     assert_true(sum[0] >= 4 && 2 * sum[1] <= sum[0]);
 }
 
+/* ---- less flat tetrahedra ---- */
+
+static double lack_of_all_angles(const partition *p) {
+    double sum = 0;
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        sum += lack_of_angles(p, i);
+    return sum;
+}
+
+static double smallest_angle(const partition *p) {
+    double least = 180;
+    for (size_t i = 0; i < p->facets.count; i++)
+        for (int side = 0; side < 2; side++)
+            if (p->facets.data[i].side[side] != PARTITION_OUTSIDE)
+                least = fmin(least, angle_of(p, &p->facets.data[i], side));
+    return least;
+}
+
+static void check_room(const partition *before, const partition *p) {
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        assert_true(margin_of(p, i) > 1e-3 ||
+                    p->pieces.data[i].radius > 0.999 * before->pieces.data[i].radius);
+}
+
+static void test_reshape(void **state) {
+    (void)state;
+    static const char *const names[] = {"horse", "dinosaur", "octopus", "gallery", "labyrinth"};
+    double sum[2] = {0, 0};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_context *context = test_context(1);
+        partition first, p = cut_sample(context, names[i], &first);
+        partition before = partition_oracle_copy(&p);
+        const double had = lack_of_all_angles(&p), angle = smallest_angle(&p);
+        test_ok(context, reshape(&p));
+        const double has = lack_of_all_angles(&p);
+        partition_oracle_check_guards(&p);
+        partition_oracle_check_surface(&first, &p);
+        assert_int_equal(p.pieces.count, before.pieces.count);
+        check_room(&before, &p);
+        print_message("%s: %zu pieces, angles lack %.3g, then %.3g, the smallest %.2g, then %.2g; "
+                      "%zu facets, then %zu\n",
+                      names[i], p.pieces.count, had, has, angle, smallest_angle(&p),
+                      before.facets.count, p.facets.count);
+        assert_true(has <= had);
+        assert_true(smallest_angle(&p) >= angle * 0.999);
+        sum[0] += had;
+        sum[1] += has;
+        partition_free(&first);
+        partition_free(&before);
+        partition_free(&p);
+        test_context_free(context);
+    }
+    assert_true(sum[0] > 10 && 3 * sum[1] < sum[0]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_samples), cmocka_unit_test(test_same),
-                                       cmocka_unit_test(test_caps)};
+                                       cmocka_unit_test(test_caps), cmocka_unit_test(test_reshape)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

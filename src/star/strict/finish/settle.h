@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Guards where tetrahedra are less flat. */
+#ifndef STARG_STAR_STRICT_FINISH_SETTLE_H
+#define STARG_STAR_STRICT_FINISH_SETTLE_H
+
+#include "star/strict/partition/partition.h"
+
+/* The distance of a piece's guard to the nearest plane of its facets, in unit coordinates; the
+ * partition has an index. */
+double settle_margin(const partition *p, uint32_t number);
+
+/* Moves guards within their kernels, so that angles lack less, with at least these margins (one for
+ * each piece, in unit coordinates). The partition has an index. Errors: MEMORY, CANCELLED. */
+starg_status settle_guards(partition *p, const double *margins, bool *any);
+
+#endif
