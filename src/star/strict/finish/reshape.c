@@ -193,8 +193,8 @@ static void try_moves(const reshaper *r, uint32_t vertex, change *best) {
 
 /* ---- edges ---- */
 
-/* The facet beyond edge k of another one, if there is one only, and both are between the same
- * pieces, and in the same face of the model if they are in any. */
+/* The facet beyond edge k of another one, if these two are all at the edge (so that they are
+ * between the same pieces), and in the same face of the model if they are in any. */
 static uint32_t find_beyond(const partition *p, uint32_t number, int k) {
     const facet *f = &p->facets.data[number];
     uint32_t from = f->corners[k], to = f->corners[(k + 1) % 3], found = NONE;
@@ -202,8 +202,7 @@ static uint32_t find_beyond(const partition *p, uint32_t number, int k) {
         const facet *g = &p->facets.data[c / 3];
         if (c / 3 == number || !has_corner(g, to))
             continue;
-        if (found != NONE || g->side[0] != f->side[0] || g->side[1] != f->side[1] ||
-            (is_outer(f) && g->plane != f->plane))
+        if (found != NONE || (is_outer(f) && g->plane != f->plane))
             return NONE;
         found = c / 3;
     }
