@@ -46,7 +46,7 @@ static void normal_of(const double p[4][3], int i, double out[3]) {
 }
 
 double angles_smallest(const double p[4][3]) {
-    double normal[4][3], least = 180;
+    double normal[4][3], least[2] = {0, 0}; /* a sine and a cosine, times some length */
     double determinant = vec3_triple(p[1], p[2], p[3]);
     for (int i = 0; i < 4; i++)
         normal_of(p, i, normal[i]);
@@ -55,9 +55,13 @@ double angles_smallest(const double p[4][3]) {
             /* the edge that the faces opposite of i and k share joins the other two corners */
             int a = i == 0 ? (k == 1 ? 2 : 1) : 0, b = 6 - i - k - a;
             double sine = fabs(determinant) * vec3_distance(p[a], p[b]);
-            least = fmin(least, DEGREES * atan2(sine, -vec3_dot(normal[i], normal[k])));
+            double cosine = -vec3_dot(normal[i], normal[k]);
+            if (k == 1 || sine * least[1] < cosine * least[0]) {
+                least[0] = sine;
+                least[1] = cosine;
+            }
         }
-    return least;
+    return DEGREES * atan2(least[0], least[1]);
 }
 
 static double smallest_dihedral(const starg_tetmesh *mesh, size_t tetrahedron, int exponent) {

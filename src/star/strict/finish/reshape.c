@@ -32,7 +32,7 @@
 #include "star/strict/finish/flatness.h"
 #include "star/strict/finish/settle.h"
 
-enum { ROUNDS_MOST = 32, REPEATS = 3 };
+enum { ROUNDS_MOST = 32, REPEATS = 2 };
 
 static const uint32_t NONE = UINT32_MAX;
 

@@ -21,10 +21,10 @@
 #include "geometry/vec3.h"
 #include "star/strict/finish/flatness.h"
 
-enum { HALVINGS = 12, NEIGHBOURS = 27 /* and the place itself */ };
+enum { HALVINGS = 8, NEIGHBOURS = 27 /* and the place itself */ };
 
 /* What a step must save at least. */
-static const double LEAST = 1e-4;
+static const double LEAST = 1e-2;
 
 typedef struct ranked_entry {
     double lack;
