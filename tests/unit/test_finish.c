@@ -268,7 +268,7 @@ static void test_reshape(void **state) {
         partition first, p = cut_sample(context, names[i], &first);
         partition before = partition_oracle_copy(&p);
         const double had = lack_of_all_angles(&p), angle = smallest_angle(&p);
-        test_ok(context, reshape(&p));
+        test_ok(context, reshape(&p, UINT64_MAX));
         const double has = lack_of_all_angles(&p);
         partition_oracle_check_guards(&p);
         partition_oracle_check_surface(&first, &p);
@@ -301,7 +301,7 @@ static void test_reshape_cells(void **state) {
         p.first_points = 0;
         partition first = partition_oracle_copy(&p);
         sum[0] += lack_of_all_angles(&p);
-        test_ok(context, reshape(&p));
+        test_ok(context, reshape(&p, UINT64_MAX));
         sum[1] += lack_of_all_angles(&p);
         partition_oracle_check_guards(&p);
         partition_oracle_check_surface(&first, &p);

@@ -317,7 +317,7 @@ static starg_status decompose(starg_context *context, model of,
     STARG_TRY(apply_centers(&p, &scratch));
     STARG_TRY(widen(&p, room_for(&s, options)));
     STARG_TRY(refine_caps(&p));
-    STARG_TRY(reshape(&p));
+    STARG_TRY(reshape(&p, room_for(&s, options)));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
     (*out)->options.effort = effort_of(&s, options);

@@ -22,7 +22,8 @@
  * seen from the same side cover it once if they did so before.
  *
  * Invariants: those of the partition. Cost: a round is a pass over the facets, and for each that is
- * flat and each of its corners, some passes over the facets there times neighbours. */
+ * flat and each of its corners, some passes over the facets there times neighbours; `work` in
+ * total. */
 #include "star/strict/finish/reshape.h"
 
 #include <math.h>
@@ -32,7 +33,7 @@
 #include "star/strict/finish/flatness.h"
 #include "star/strict/finish/settle.h"
 
-enum { ROUNDS_MOST = 32, REPEATS = 2 };
+enum { ROUNDS_MOST = 32, REPEATS = 2, LOOK_WORK = 64 };
 
 static const uint32_t NONE = UINT32_MAX;
 
@@ -49,6 +50,7 @@ typedef struct reshaper {
     partition *p;
     double *margins; /* by piece: what the guard's is not to fall below, in unit coordinates */
     bool *touched;   /* by point: some facet at it has changed in this round */
+    uint64_t looks;  /* at facets that are left */
     STARG_ARRAY(ranked_facet) flat;
 } reshaper;
 
@@ -146,7 +148,7 @@ static void put_between(partition *p, uint32_t from, uint32_t to, double share) 
 }
 
 /* Of the facets at a vertex but not at the other one. False if they must not be so. */
-static bool measure(const reshaper *r, uint32_t vertex, uint32_t other, lack *out) {
+static bool measure(reshaper *r, uint32_t vertex, uint32_t other, lack *out) {
     const partition *p = r->p;
     *out = (lack){0, 0};
     for (uint32_t c = p->first_at.data[vertex]; c != PARTITION_NO_CORNER; c = p->next_at.data[c]) {
@@ -154,14 +156,14 @@ static bool measure(const reshaper *r, uint32_t vertex, uint32_t other, lack *ou
         if (other != NONE && has_corner(f, other))
             continue;
         add_lack(p, f, out);
+        r->looks -= r->looks > 0;
         if (out->sum == INFINITY || !keeps_margins(r, f))
             return false;
     }
     return true;
 }
 
-static void try_way(const reshaper *r, uint32_t from, uint32_t to, const lack *before,
-                    change *best) {
+static void try_way(reshaper *r, uint32_t from, uint32_t to, const lack *before, change *best) {
     double at[3];
     vec3_copy(partition_point(r->p, from), at);
     for (double share = 1; share >= SHARE_LEAST; share *= 0.5) {
@@ -176,7 +178,7 @@ static void try_way(const reshaper *r, uint32_t from, uint32_t to, const lack *b
 }
 
 /* All moves of a vertex. */
-static void try_moves(const reshaper *r, uint32_t vertex, change *best) {
+static void try_moves(reshaper *r, uint32_t vertex, change *best) {
     const partition *p = r->p;
     lack before = {0, 0};
     if (vertex < p->first_points || r->touched[vertex])
@@ -356,7 +358,7 @@ static starg_status run_round(reshaper *r, bool *any) {
     STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, r->touched, p->points.count / 3);
     STARG_TRY(rank_flat(r));
-    for (size_t i = 0; i < r->flat.count; i++)
+    for (size_t i = 0; i < r->flat.count && r->looks > 0; i++)
         STARG_TRY(change_at(r, r->flat.data[i].number, any));
     drop_vanished(p);
     STARG_TRY(partition_build_index(p));
@@ -366,10 +368,14 @@ done:
     return status;
 }
 
+static bool may_go_on(const reshaper *r) {
+    return r->looks > 0 && !starg_time_is_over(r->p->context);
+}
+
 static starg_status change_facets(reshaper *r, bool *any) {
     starg_status status = STARG_OK;
     bool go_on = true;
-    for (int i = 0; i < ROUNDS_MOST && go_on && !starg_time_is_over(r->p->context); i++) {
+    for (int i = 0; i < ROUNDS_MOST && go_on && may_go_on(r); i++) {
         STARG_TRY(run_round(r, &go_on));
         *any = *any || go_on;
     }
@@ -394,14 +400,15 @@ done:
     return status;
 }
 
-starg_status reshape(partition *p) {
+starg_status reshape(partition *p, uint64_t work) {
     starg_status status = STARG_OK;
-    reshaper r = {.p = p};
+    reshaper r = {.p = p, .looks = work / LOOK_WORK};
     bool any = true;
     STARG_TRY(find_margins(&r));
-    for (int i = 0; i < REPEATS && any && !starg_time_is_over(p->context); i++) {
+    STARG_TRY(change_facets(&r, &any));
+    for (int i = 0; i < REPEATS && any && may_go_on(&r); i++) {
         any = false;
-        STARG_TRY(settle_guards(p, r.margins, &any));
+        STARG_TRY(settle_guards(p, r.margins, &r.looks, &any));
         STARG_TRY(change_facets(&r, &any));
     }
     STARG_TRY(measure_pieces(p));

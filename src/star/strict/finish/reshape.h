@@ -7,7 +7,8 @@
 
 /* Moves guards and vertices that cuts have made, merges such vertices with others, and swaps edges,
  * where angles lack less then (star/strict/finish/flatness.c). No margin gets smaller unless it
- * stays above half of FLATNESS_MARGIN. Rebuilds the index. Errors: MEMORY, CANCELLED. */
-starg_status reshape(partition *p);
+ * stays above half of FLATNESS_MARGIN. Ends when `work` (64 for each look at a facet) is done or
+ * time is over. Rebuilds the index. Errors: MEMORY, CANCELLED. */
+starg_status reshape(partition *p, uint64_t work);
 
 #endif

@@ -36,6 +36,7 @@ typedef struct settler {
     const double *margins;
     ranked_entry *entries; /* of the piece, the flattest first */
     size_t count;
+    uint64_t looks; /* at facets that are left */
 } settler;
 
 static int by_lack(const void *x, const void *y) {
@@ -59,12 +60,14 @@ double settle_margin(const partition *p, uint32_t number) {
 }
 
 /* What the angles of the piece lack, or more than `enough`. */
-static double lack_of_angles(const settler *s, double enough) {
+static double lack_of_angles(settler *s, double enough) {
     double sum = 0;
-    for (size_t i = 0; i < s->count && sum <= enough; i++) {
+    size_t i = 0;
+    for (; i < s->count && sum <= enough; i++) {
         uint32_t entry = s->entries[i].entry;
         sum += flatness_of_side(s->p, &s->p->facets.data[entry / 2], (int)(entry % 2));
     }
+    s->looks -= i < s->looks ? i : s->looks;
     return sum;
 }
 
@@ -90,7 +93,7 @@ static bool take_step(settler *s, uint32_t number, double step, double *lack) {
     double *guard = p->pieces.data[number].guard, before[3], unit[3];
     vec3_copy(guard, before);
     partition_to_unit(p, before, unit);
-    for (int i = 0; i < NEIGHBOURS; i++) {
+    for (int i = 0; i < NEIGHBOURS && s->looks > 0; i++) {
         const double at[3] = {unit[0] + step * (i % 3 - 1), unit[1] + step * (i / 3 % 3 - 1),
                               unit[2] + step * (i / 9 - 1)};
         partition_from_unit(p, at, guard);
@@ -114,15 +117,16 @@ static bool settle(settler *s, uint32_t number) {
     return any;
 }
 
-starg_status settle_guards(partition *p, const double *margins, bool *any) {
+starg_status settle_guards(partition *p, const double *margins, uint64_t *looks, bool *any) {
     starg_status status = STARG_OK;
-    settler s = {.p = p, .margins = margins};
+    settler s = {.p = p, .margins = margins, .looks = *looks};
     STARG_NEW(p->context, PARTITION_STAGE, s.entries, p->index.count);
-    for (uint32_t i = 0; i < p->pieces.count; i++) {
+    for (uint32_t i = 0; i < p->pieces.count && s.looks > 0; i++) {
         STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
         if (settle(&s, i))
             *any = true;
     }
+    *looks = s.looks;
 done:
     starg_release(p->context, s.entries);
     return status;

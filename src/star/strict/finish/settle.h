@@ -10,7 +10,8 @@
 double settle_margin(const partition *p, uint32_t number);
 
 /* Moves guards within their kernels, so that angles lack less, with at least these margins (one for
- * each piece, in unit coordinates). The partition has an index. Errors: MEMORY, CANCELLED. */
-starg_status settle_guards(partition *p, const double *margins, bool *any);
+ * each piece, in unit coordinates). Looks at about `looks` facets at most, and subtracts how many
+ * it looked at. The partition has an index. Errors: MEMORY, CANCELLED. */
+starg_status settle_guards(partition *p, const double *margins, uint64_t *looks, bool *any);
 
 #endif
