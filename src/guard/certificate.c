@@ -18,10 +18,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "core/checksum.h"
 #include "core/file.h"
 #include "core/parallel.h"
 #include "guard/cell_tests.h"
+#include "guard/certificate_text.h"
 
 static const char STAGE[] = "certificate";
 
@@ -237,24 +237,10 @@ done:
 
 /* ---- the text ---- */
 
-/* A double as an integer and a power of two. */
-static void put_double(FILE *stream, char before, double x) {
-    int exponent;
-    long long whole = (long long)ldexp(frexp(x, &exponent), 53);
-    for (exponent -= 53; whole != 0 && whole % 2 == 0; exponent++)
-        whole /= 2;
-    fprintf(stream, "%c%lld:%d", before, whole, whole == 0 ? 0 : exponent);
-}
-
 static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
                      const bvh_box *root, size_t bound) {
-    const starg_mesh *mesh = solid->mesh;
     const starg_visibility_options *view = &options->visibility;
-    uint64_t sum = STARG_CHECKSUM_BEGIN;
-    for (size_t f = 0; f < mesh->face_count; f++)
-        sum = starg_checksum_face(sum, mesh->vertices, mesh->faces + 3 * f);
-    fprintf(stream, "starguard-certificate 2\nvertices %zu\nfaces %zu\nchecksum %016llx\n",
-            mesh->vertex_count, mesh->face_count, (unsigned long long)sum);
+    certificate_put_model(stream, 2, solid);
     fprintf(stream, "target %s\nrange",
             view->target == STARG_TARGET_VERTICES  ? "vertices"
             : view->target == STARG_TARGET_CORNERS ? "corners"
@@ -262,15 +248,11 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_o
     if (isinf(view->range))
         fprintf(stream, " none");
     else
-        put_double(stream, ' ', view->range);
+        certificate_put_double(stream, ' ', view->range);
     fprintf(stream, "\nclearance");
-    put_double(stream, ' ', options->clearance);
-    fprintf(stream, "\nredundancy %u\nbound %zu\nroot", options->redundancy, bound);
-    for (int k = 0; k < 3; k++)
-        put_double(stream, ' ', root->lower[k]);
-    for (int k = 0; k < 3; k++)
-        put_double(stream, ' ', root->upper[k]);
-    fprintf(stream, "\n");
+    certificate_put_double(stream, ' ', options->clearance);
+    fprintf(stream, "\nredundancy %u\nbound %zu\n", options->redundancy, bound);
+    certificate_put_root(stream, root);
 }
 
 /* A corner by its face and vertex. */
@@ -321,7 +303,7 @@ static void put_cut(FILE *stream, const search_cells *cells, const search_cell *
             axis = k;
     fprintf(stream, "%c", "xyz"[axis]);
     if (cell->trimmed)
-        put_double(stream, '@', lower->upper[axis]);
+        certificate_put_double(stream, '@', lower->upper[axis]);
 }
 
 static void put_cells(FILE *stream, const making *m) {
@@ -378,27 +360,6 @@ static void put_branches(FILE *stream, const making *m) {
     }
 }
 
-typedef void put_text(FILE *stream, const void *what);
-
-static starg_status write_text(starg_context *context, put_text *put, const void *what,
-                               guard_certificate *why) {
-    starg_status status = STARG_OK;
-    char *bytes = NULL;
-    FILE *stream = open_memstream(&bytes, &why->size);
-    if (stream != NULL)
-        put(stream, what);
-    bool whole = stream != NULL && !ferror(stream);
-    if (stream == NULL || fclose(stream) != 0 || !whole) {
-        status = starg_fail_memory(context, STAGE);
-        goto done;
-    }
-    STARG_NEW(context, STAGE, why->text, why->size + 1);
-    memcpy(why->text, bytes, why->size + 1);
-done:
-    free(bytes);
-    return status;
-}
-
 static void put_search(FILE *stream, const void *what) {
     const making *m = what;
     put_head(stream, m->scene->solid, m->options, &m->cells->data[0].box, m->proof->bound);
@@ -418,7 +379,7 @@ starg_status certificate_of_search(const search_scene *scene, const search_cells
     begin(&m);
     STARG_TRY(choose_cells(&m));
     STARG_TRY(find_all_reasons(&m));
-    STARG_TRY(write_text(scene->context, put_search, &m, why));
+    STARG_TRY(certificate_write(scene->context, put_search, &m, &why->text, &why->size));
 done:
     STARG_ARRAY_FREE(scene->context, &m.kept);
     starg_release(scene->context, m.reasons);
@@ -446,7 +407,7 @@ starg_status certificate_of_one(starg_context *context, const starg_solid *solid
                                 const starg_guard_options *options, uint32_t witness,
                                 guard_certificate *why) {
     const single s = {solid, options, witness};
-    return write_text(context, put_single, &s, why);
+    return certificate_write(context, put_single, &s, &why->text, &why->size);
 }
 
 starg_status starg_certificate_write(starg_context *context, const char *text, size_t size,

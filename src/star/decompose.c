@@ -342,12 +342,14 @@ static starg_status decompose_proven(starg_context *context, const starg_solid *
         own.guard_count = bound->count;
     }
     STARG_TRY(decompose_model(context, solid, NULL, &own, out));
+    STARG_TRY(piece_bound_raise(context, solid, options->prove_work, certified, (*out)->piece_count,
+                                bound));
     (*out)->lower_bound = bound->bound;
     (*out)->optimal = bound->bound == (*out)->piece_count;
     (*out)->time_limited = (*out)->time_limited || time_limited;
     remember(context, options, *out);
 done:
-    return status;
+    return drop_failed(context, status, out);
 }
 
 starg_status starg_decompose(starg_context *context, const starg_solid *solid,

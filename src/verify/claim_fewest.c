@@ -75,9 +75,15 @@ static starg_status check_certificate(const verify_context *own) {
     STARG_TRY(claim_question(own, &known, &good));
     if (!good)
         goto done;
-    STARG_TRY(verify_claim_cells(own->verdict, &known, own->certificate));
     snprintf(claim, sizeof claim, "no fewer than %zu star-shaped pieces make up the model", bound);
-    STARG_TRY(verify_claim_follows(own->verdict, own->certificate, claim, bound));
+    if (own->certificate->pairs) {
+        STARG_TRY(verify_claim_pairs(own->verdict, &known, own->certificate));
+        verify_claim(own->verdict, bound <= own->certificate->bound,
+                     "%s: the certificate says that two do not", claim);
+    } else {
+        STARG_TRY(verify_claim_cells(own->verdict, &known, own->certificate));
+        STARG_TRY(verify_claim_follows(own->verdict, own->certificate, claim, bound));
+    }
 done:
     verify_tree_free(tree);
     return status;

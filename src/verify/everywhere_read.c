@@ -3,167 +3,94 @@
  * line stand one blank apart. Declared counts are compared with the bytes that are left before any
  * memory is asked for. */
 #include <math.h>
-#include <stdio.h>
+#include <string.h>
 
-#include "verify/everywhere.h"
+#include "verify/certificate_reader.h"
 
 static const char STAGE[] = "certificate";
 
-enum { CANCEL_STEP = 1 << 16 };
-
-typedef struct reader {
-    starg_context *context;
-    const char *name;
-    const char *at, *end;
-    uint64_t line;
-    starg_certificate *own;
-} reader;
-
-static starg_status reject(const reader *r, const char *what) {
-    uint64_t line = r->line;
-    return starg_fail_at(r->context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
-                         "'%.200s', line %llu: %s", r->name, (unsigned long long)line, what);
-}
-
-/* ---- words ---- */
-
-static bool take(reader *r, char c) {
-    bool taken = r->at < r->end && *r->at == c;
-    r->at += taken;
-    return taken;
-}
-
-static starg_status take_text(reader *r, const char *text) {
-    char message[64];
-    const char *at = r->at;
-    for (const char *c = text; *c != '\0'; c++, at++)
-        if (at == r->end || *at != *c) {
-            snprintf(message, sizeof message, "\"%s\" is expected here", text);
-            return reject(r, message);
-        }
-    r->at = at;
-    return STARG_OK;
-}
-
-static starg_status end_line(reader *r) {
-    if (!take(r, '\n'))
-        return reject(r, r->at == r->end ? "the file ends within the line"
-                                         : "the line goes on where its end is expected");
-    r->line++;
-    if (r->line % CANCEL_STEP == 0)
-        return starg_check_cancel(r->context, STAGE);
-    return STARG_OK;
-}
-
-/* A whole number of at most `most`, without a sign and without needless zeros. */
-static starg_status take_number(reader *r, uint64_t most, uint64_t *value) {
-    const char *begin = r->at;
-    char message[128];
-    *value = 0;
-    while (r->at < r->end && *r->at >= '0' && *r->at <= '9' && r->at - begin < 19)
-        *value = 10 * *value + (uint64_t)(*r->at++ - '0');
-    if (r->at == begin || (*begin == '0' && r->at - begin > 1))
-        return reject(r, "a whole number is expected here");
-    if (*value > most) {
-        snprintf(message, sizeof message,
-                 "%llu is out of range: %llu is the most that may stand here",
-                 (unsigned long long)*value, (unsigned long long)most);
-        return reject(r, message);
-    }
-    return STARG_OK;
-}
-
-/* A number of things of at least `size` bytes each, which are still to come. */
-static starg_status take_count(reader *r, const char *word, size_t size, size_t *count) {
-    starg_status status = STARG_OK;
-    uint64_t value;
-    STARG_TRY(take_text(r, word));
-    STARG_TRY(take_number(r, (uint64_t)(r->end - r->at) / size, &value));
-    *count = (size_t)value;
-    STARG_TRY(end_line(r));
-done:
-    return status;
-}
-
-/* M:K is M times 2 to the power of K. */
-static starg_status take_double(reader *r, double *value) {
-    starg_status status = STARG_OK;
-    uint64_t whole, power;
-    bool negative = take(r, '-');
-    STARG_TRY(take_number(r, UINT64_C(1) << 53, &whole));
-    STARG_TRY(take_text(r, ":"));
-    bool small = take(r, '-');
-    STARG_TRY(take_number(r, 1074, &power));
-    double size = ldexp((double)whole, small ? -(int)power : (int)power);
-    if (!(size < 1e100))
-        return reject(r, "numbers are below 1e100 in magnitude");
-    *value = negative ? -size : size;
-done:
-    return status;
-}
-
 /* ---- the head ---- */
 
-static starg_status read_checksum(reader *r) {
+static starg_status read_checksum(certificate_reader *r) {
     static const char digits[] = "0123456789abcdef";
     starg_status status = STARG_OK;
-    STARG_TRY(take_text(r, "checksum "));
+    STARG_TRY(certificate_take_text(r, "checksum "));
     for (int i = 0; i < 16; i++) {
         const char *digit = r->at < r->end && *r->at != '\0' ? strchr(digits, *r->at) : NULL;
         if (digit == NULL)
-            return reject(r, "16 digits of base 16 are expected here");
+            return certificate_reject(r, "16 digits of base 16 are expected here");
         r->own->checksum = r->own->checksum << 4 | (uint64_t)(digit - digits);
         r->at++;
     }
-    STARG_TRY(end_line(r));
+    STARG_TRY(certificate_end_line(r));
 done:
     return status;
 }
 
-static starg_status read_size(reader *r, const char *word, size_t *size) {
+static starg_status read_size(certificate_reader *r, const char *word, size_t *size) {
     starg_status status = STARG_OK;
     uint64_t value;
-    STARG_TRY(take_text(r, word));
-    STARG_TRY(take_number(r, UINT32_MAX / 4, &value));
+    STARG_TRY(certificate_take_text(r, word));
+    STARG_TRY(certificate_take_number(r, UINT32_MAX / 4, &value));
     *size = (size_t)value;
-    STARG_TRY(end_line(r));
+    STARG_TRY(certificate_end_line(r));
 done:
     return status;
 }
 
-static starg_status read_question(reader *r) {
+/* Of two pieces: what guards of pieces have to see, and how few there are. */
+static starg_status read_pairs_question(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(take_text(r, "target "));
+    own->pairs = true;
+    own->target = STARG_TARGET_CORNERS;
+    own->range = INFINITY;
+    own->redundancy = 1;
+    own->bound = 3;
+    STARG_TRY(certificate_take_text(r, "pairs"));
+    STARG_TRY(certificate_end_line(r));
+done:
+    return status;
+}
+
+static starg_status read_question(certificate_reader *r) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    STARG_TRY(certificate_take_text(r, "target "));
+    if (r->at < r->end && *r->at == 'p')
+        return read_pairs_question(r);
     char first = r->at < r->end ? *r->at : 'f';
     own->target = first == 'v'   ? STARG_TARGET_VERTICES
                   : first == 'c' ? STARG_TARGET_CORNERS
                                  : STARG_TARGET_FACES;
-    STARG_TRY(take_text(r, first == 'v' ? "vertices" : first == 'c' ? "corners" : "faces"));
-    STARG_TRY(end_line(r));
-    STARG_TRY(take_text(r, "range "));
+    STARG_TRY(certificate_take_text(r, first == 'v'   ? "vertices"
+                                       : first == 'c' ? "corners"
+                                                      : "faces"));
+    STARG_TRY(certificate_end_line(r));
+    STARG_TRY(certificate_take_text(r, "range "));
     own->range = INFINITY;
     if (r->at < r->end && *r->at == 'n')
-        STARG_TRY(take_text(r, "none"));
+        STARG_TRY(certificate_take_text(r, "none"));
     else
-        STARG_TRY(take_double(r, &own->range));
-    STARG_TRY(end_line(r));
-    STARG_TRY(take_text(r, "clearance "));
-    STARG_TRY(take_double(r, &own->clearance));
-    STARG_TRY(end_line(r));
+        STARG_TRY(certificate_take_double(r, &own->range));
+    STARG_TRY(certificate_end_line(r));
+    STARG_TRY(certificate_take_text(r, "clearance "));
+    STARG_TRY(certificate_take_double(r, &own->clearance));
+    STARG_TRY(certificate_end_line(r));
     STARG_TRY(read_size(r, "redundancy ", &own->redundancy));
     STARG_TRY(read_size(r, "bound ", &own->bound));
 done:
     return status;
 }
 
-static starg_status read_head(reader *r) {
+static starg_status read_head(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(take_text(r, "starguard-certificate "));
-    if (!take(r, '1')) /* the first version has no cuts at given places and no odd sets */
-        STARG_TRY(take_text(r, "2"));
-    STARG_TRY(end_line(r));
+    STARG_TRY(certificate_take_text(r, "starguard-certificate "));
+    /* the first version has no cuts at given places and no odd sets, the second no pairs */
+    if (!certificate_take(r, '1') && !certificate_take(r, '2'))
+        STARG_TRY(certificate_take_text(r, "3"));
+    STARG_TRY(certificate_end_line(r));
     STARG_TRY(read_size(r, "vertices ", &own->vertex_count));
     STARG_TRY(read_size(r, "faces ", &own->face_count));
     STARG_TRY(read_checksum(r));
@@ -172,65 +99,64 @@ done:
     return status;
 }
 
-static starg_status read_root(reader *r, verify_box *root) {
+static starg_status read_root(certificate_reader *r, verify_box *root) {
     starg_status status = STARG_OK;
-    STARG_TRY(take_text(r, "root"));
-    for (int k = 0; k < 6; k++) {
-        STARG_TRY(take_text(r, " "));
-        STARG_TRY(take_double(r, k < 3 ? &root->lower[k] : &root->upper[k - 3]));
-    }
+    STARG_TRY(certificate_take_text(r, "root"));
+    STARG_TRY(certificate_take_point(r, root->lower));
+    STARG_TRY(certificate_take_point(r, root->upper));
     for (int k = 0; k < 3; k++)
         if (!(root->lower[k] <= root->upper[k]))
-            return reject(r, "the lower corner of the box is not below its upper one");
-    STARG_TRY(end_line(r));
+            return certificate_reject(r, "the lower corner of the box is not below its upper one");
+    STARG_TRY(certificate_end_line(r));
 done:
     return status;
 }
 
-static starg_status read_witnesses(reader *r) {
+static starg_status read_witnesses(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     size_t most = own->target == STARG_TARGET_VERTICES ? own->vertex_count : own->face_count;
-    STARG_TRY(take_count(r, "witnesses ", 2, &own->witness_count));
+    STARG_TRY(certificate_take_count(r, "witnesses ", 2, &own->witness_count));
     if (own->witness_count > EVERYWHERE_WITNESSES || (most == 0 && own->witness_count > 0))
-        return reject(r, "there are too many witnesses");
+        return certificate_reject(r, "there are too many witnesses");
     own->words = starg_bit_words(own->witness_count);
     STARG_NEW(r->context, STAGE, own->witnesses, own->witness_count);
     if (own->target == STARG_TARGET_CORNERS)
         STARG_NEW(r->context, STAGE, own->corners, own->witness_count);
     for (size_t i = 0; i < own->witness_count; i++) {
         uint64_t value;
-        STARG_TRY(take_number(r, most - 1, &value));
+        STARG_TRY(certificate_take_number(r, most - 1, &value));
         own->witnesses[i] = (uint32_t)value;
         if (own->corners != NULL) {
-            STARG_TRY(take_text(r, " "));
-            STARG_TRY(take_number(r, own->vertex_count > 0 ? own->vertex_count - 1 : 0, &value));
+            STARG_TRY(certificate_take_text(r, " "));
+            STARG_TRY(certificate_take_number(r, own->vertex_count > 0 ? own->vertex_count - 1 : 0,
+                                              &value));
             own->corners[i] = (uint32_t)value;
         }
-        STARG_TRY(end_line(r));
+        STARG_TRY(certificate_end_line(r));
     }
 done:
     return status;
 }
 
-static starg_status take_witness(reader *r, uint64_t *witness) {
+static starg_status take_witness(certificate_reader *r, uint64_t *witness) {
     if (r->own->witness_count == 0)
-        return reject(r, "there are no witnesses");
-    return take_number(r, r->own->witness_count - 1, witness);
+        return certificate_reject(r, "there are no witnesses");
+    return certificate_take_number(r, r->own->witness_count - 1, witness);
 }
 
-static starg_status read_rows(reader *r) {
+static starg_status read_rows(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(take_count(r, "rows ", 2, &own->row_count));
+    STARG_TRY(certificate_take_count(r, "rows ", 2, &own->row_count));
     STARG_NEW_ZERO(r->context, STAGE, own->rows, own->row_count * own->words);
     for (size_t i = 0; i < own->row_count; i++) {
         do {
             uint64_t witness;
             STARG_TRY(take_witness(r, &witness));
             starg_bit_set(own->rows + i * own->words, witness);
-        } while (take(r, ' '));
-        STARG_TRY(end_line(r));
+        } while (certificate_take(r, ' '));
+        STARG_TRY(certificate_end_line(r));
     }
 done:
     return status;
@@ -238,7 +164,7 @@ done:
 
 /* ---- cells ---- */
 
-static starg_status read_reason(reader *r) {
+static starg_status read_reason(certificate_reader *r) {
     starg_status status = STARG_OK;
     verify_reason reason = {.vertex = UINT32_MAX, .seed = UINT32_MAX};
     uint64_t value;
@@ -248,18 +174,18 @@ static starg_status read_reason(reader *r) {
     reason.clipped = letter >= 'A' && letter <= 'Z';
     reason.kind = reason.clipped ? (char)(letter - 'A' + 'a') : letter;
     if (reason.kind == '\0' || strchr("nrspfe", reason.kind) == NULL || letter == 'N')
-        return reject(r, "the letter of a reason is expected here: n, r, s, p, f or e");
+        return certificate_reject(r, "the letter of a reason is expected here: n, r, s, p, f or e");
     r->at++;
     if (reason.kind != 'n') {
         if (r->own->vertex_count == 0)
-            return reject(r, "the model has no vertices");
-        STARG_TRY(take_number(r, r->own->vertex_count - 1, &value));
+            return certificate_reject(r, "the model has no vertices");
+        STARG_TRY(certificate_take_number(r, r->own->vertex_count - 1, &value));
         reason.vertex = (uint32_t)value;
     }
-    if ((reason.kind == 'p' || reason.kind == 'f') && take(r, ':')) {
+    if ((reason.kind == 'p' || reason.kind == 'f') && certificate_take(r, ':')) {
         if (r->own->face_count == 0)
-            return reject(r, "the model has no faces");
-        STARG_TRY(take_number(r, r->own->face_count - 1, &value));
+            return certificate_reject(r, "the model has no faces");
+        STARG_TRY(certificate_take_number(r, r->own->face_count - 1, &value));
         reason.seed = (uint32_t)value;
     }
     STARG_PUSH(r->context, STAGE, &r->own->reasons, reason);
@@ -267,57 +193,57 @@ done:
     return status;
 }
 
-static starg_status read_kind(reader *r, everywhere_cell *cell) {
+static starg_status read_kind(certificate_reader *r, everywhere_cell *cell) {
     starg_status status = STARG_OK;
     uint64_t row;
     cell->row = UINT32_MAX;
     cell->kind = EVERYWHERE_LEAF;
-    if (take(r, 'x'))
+    if (certificate_take(r, 'x'))
         cell->kind = 0;
-    else if (take(r, 'y'))
+    else if (certificate_take(r, 'y'))
         cell->kind = 1;
-    else if (take(r, 'z'))
+    else if (certificate_take(r, 'z'))
         cell->kind = 2;
-    else if (take(r, 'o'))
+    else if (certificate_take(r, 'o'))
         cell->kind = EVERYWHERE_OUTSIDE;
-    else if (take(r, 'c'))
+    else if (certificate_take(r, 'c'))
         cell->kind = EVERYWHERE_BARRED;
-    else if (take(r, '=')) {
+    else if (certificate_take(r, '=')) {
         if (r->own->row_count == 0)
-            return reject(r, "there are no rows");
-        STARG_TRY(take_number(r, r->own->row_count - 1, &row));
+            return certificate_reject(r, "there are no rows");
+        STARG_TRY(certificate_take_number(r, r->own->row_count - 1, &row));
         cell->row = (uint32_t)row;
-    } else if (!take(r, '.'))
-        return reject(r, "a cell is expected here: x, y, z, a dot, =, c or o");
+    } else if (!certificate_take(r, '.'))
+        return certificate_reject(r, "a cell is expected here: x, y, z, a dot, =, c or o");
 done:
     return status;
 }
 
 /* Where a cell is cut: in the middle of the axis, unless a place is given. */
-static starg_status read_cut(reader *r, const everywhere_cell *cell, double *at) {
+static starg_status read_cut(certificate_reader *r, const everywhere_cell *cell, double *at) {
     starg_status status = STARG_OK;
     int k = cell->kind;
     double lower = cell->box.lower[k], upper = cell->box.upper[k];
     *at = fmin(fmax(0.5 * lower + 0.5 * upper, lower), upper);
-    if (!take(r, '@'))
+    if (!certificate_take(r, '@'))
         return STARG_OK;
-    STARG_TRY(take_double(r, at));
+    STARG_TRY(certificate_take_double(r, at));
     if (!(*at >= lower && *at <= upper))
-        status = reject(r, "the cell is cut outside of itself");
+        status = certificate_reject(r, "the cell is cut outside of itself");
 done:
     return status;
 }
 
-static starg_status read_cell(reader *r, everywhere_cell *cell, double *at) {
+static starg_status read_cell(certificate_reader *r, everywhere_cell *cell, double *at) {
     starg_status status = STARG_OK;
     STARG_TRY(read_kind(r, cell));
     if (cell->kind < EVERYWHERE_LEAF)
         STARG_TRY(read_cut(r, cell, at));
     cell->first = r->own->reasons.count;
-    while (cell->kind <= EVERYWHERE_LEAF && take(r, ' '))
+    while (cell->kind <= EVERYWHERE_LEAF && certificate_take(r, ' '))
         STARG_TRY(read_reason(r));
     cell->count = r->own->reasons.count - cell->first;
-    STARG_TRY(end_line(r));
+    STARG_TRY(certificate_end_line(r));
 done:
     return status;
 }
@@ -329,7 +255,7 @@ static void cut(const verify_box *box, int axis, double at, verify_box halves[2]
 
 /* A cell is followed by all of its lower half, then the upper one. Boxes that are still to come
  * stand on a stack, the next one on top. */
-static starg_status read_cells(reader *r, const verify_box *root) {
+static starg_status read_cells(certificate_reader *r, const verify_box *root) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     struct {
@@ -337,7 +263,7 @@ static starg_status read_cells(reader *r, const verify_box *root) {
         int depth;
     } *stack = NULL;
     size_t left = 1;
-    STARG_TRY(take_count(r, "cells ", 2, &own->cell_count));
+    STARG_TRY(certificate_take_count(r, "cells ", 2, &own->cell_count));
     own->cell_line = (size_t)r->line;
     STARG_NEW(r->context, STAGE, own->cells, own->cell_count);
     STARG_NEW(r->context, STAGE, stack, EVERYWHERE_DEPTH + 2);
@@ -348,7 +274,8 @@ static starg_status read_cells(reader *r, const verify_box *root) {
         verify_box halves[2];
         double at;
         if (left == 0) {
-            status = reject(r, "the cells before this one fill the root: none may follow");
+            status =
+                certificate_reject(r, "the cells before this one fill the root: none may follow");
             goto done;
         }
         cell->box = stack[--left].box;
@@ -357,7 +284,7 @@ static starg_status read_cells(reader *r, const verify_box *root) {
         if (cell->kind >= EVERYWHERE_LEAF)
             continue;
         if (depth > EVERYWHERE_DEPTH) {
-            status = reject(r, "cells are cut too often");
+            status = certificate_reject(r, "cells are cut too often");
             goto done;
         }
         cut(&cell->box, cell->kind, at, halves);
@@ -367,7 +294,7 @@ static starg_status read_cells(reader *r, const verify_box *root) {
         }
     }
     if (left > 0)
-        status = reject(r, "halves of cells are missing");
+        status = certificate_reject(r, "halves of cells are missing");
 done:
     starg_release(r->context, stack);
     return status;
@@ -376,7 +303,7 @@ done:
 /* ---- branches ---- */
 
 /* One witness, or an odd number of them in ascending order. */
-static starg_status read_priced(reader *r) {
+static starg_status read_priced(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     uint64_t witness, before = 0;
@@ -385,79 +312,83 @@ static starg_status read_priced(reader *r) {
     do {
         STARG_TRY(take_witness(r, &witness));
         if (count++ > 0 && witness <= before)
-            return reject(r, "the witnesses of a set are not in ascending order");
+            return certificate_reject(r, "the witnesses of a set are not in ascending order");
         before = witness;
         STARG_PUSH(r->context, STAGE, &own->numbers, witness);
-    } while (take(r, '+'));
+    } while (certificate_take(r, '+'));
     own->numbers.data[first] = count;
     if (count % 2 == 0)
-        status = reject(r, "a set has an odd number of witnesses");
+        status = certificate_reject(r, "a set has an odd number of witnesses");
 done:
     return status;
 }
 
-static starg_status read_prices(reader *r) {
+static starg_status read_prices(certificate_reader *r) {
     starg_status status = STARG_OK;
     uint64_t price;
-    while (take(r, ' ')) {
+    while (certificate_take(r, ' ')) {
         STARG_TRY(read_priced(r));
-        STARG_TRY(take_text(r, ":"));
-        STARG_TRY(take_number(r, EVERYWHERE_PRICE, &price));
+        STARG_TRY(certificate_take_text(r, ":"));
+        STARG_TRY(certificate_take_number(r, EVERYWHERE_PRICE, &price));
         STARG_PUSH(r->context, STAGE, &r->own->numbers, price);
     }
 done:
     return status;
 }
 
-static starg_status read_branch_rows(reader *r) {
+static starg_status read_branch_rows(certificate_reader *r) {
     starg_status status = STARG_OK;
     uint64_t row;
-    while (take(r, ' ')) {
+    while (certificate_take(r, ' ')) {
         if (r->own->row_count == 0)
-            return reject(r, "there are no rows");
-        STARG_TRY(take_number(r, r->own->row_count - 1, &row));
+            return certificate_reject(r, "there are no rows");
+        STARG_TRY(certificate_take_number(r, r->own->row_count - 1, &row));
         STARG_PUSH(r->context, STAGE, &r->own->numbers, row);
     }
 done:
     return status;
 }
 
-static starg_status read_nodes(reader *r) {
+static starg_status read_nodes(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(take_count(r, "nodes ", 7, &own->node_count));
+    STARG_TRY(certificate_take_count(r, "nodes ", 7, &own->node_count));
     STARG_NEW(r->context, STAGE, own->nodes, own->node_count);
     for (size_t i = 0; i < own->node_count; i++) {
         everywhere_node *node = &own->nodes[i];
         uint64_t witness = UINT32_MAX;
         node->first = own->numbers.count;
         if (r->at < r->end && *r->at == 'w') {
-            STARG_TRY(take_text(r, "witness "));
+            STARG_TRY(certificate_take_text(r, "witness "));
             STARG_TRY(take_witness(r, &witness));
             STARG_TRY(read_branch_rows(r));
         } else {
-            STARG_TRY(take_text(r, "prices"));
+            STARG_TRY(certificate_take_text(r, "prices"));
             STARG_TRY(read_prices(r));
         }
         node->witness = (uint32_t)witness;
         node->count = own->numbers.count - node->first;
-        STARG_TRY(end_line(r));
+        STARG_TRY(certificate_end_line(r));
     }
-    if (r->at < r->end)
-        status = reject(r, "the file goes on where its end is expected");
 done:
     return status;
 }
 
-static starg_status read_all(reader *r) {
+static starg_status read_all(certificate_reader *r) {
     starg_status status = STARG_OK;
     verify_box root;
     STARG_TRY(read_head(r));
     STARG_TRY(read_root(r, &root));
-    STARG_TRY(read_witnesses(r));
-    STARG_TRY(read_rows(r));
-    STARG_TRY(read_cells(r, &root));
-    STARG_TRY(read_nodes(r));
+    if (r->own->pairs) {
+        STARG_TRY(certificate_read_pairs(r, &root));
+    } else {
+        STARG_TRY(read_witnesses(r));
+        STARG_TRY(read_rows(r));
+        STARG_TRY(read_cells(r, &root));
+        STARG_TRY(read_nodes(r));
+    }
+    if (r->at < r->end)
+        status = certificate_reject(r, "the file goes on where its end is expected");
 done:
     return status;
 }
@@ -470,7 +401,7 @@ starg_status starg_certificate_read_memory(starg_context *context, const void *b
     STARG_NEW_ZERO(context, STAGE, own, 1);
     own->context = context;
     const char *text = size > 0 ? bytes : "";
-    reader r = {context, name, text, text + size, 1, own};
+    certificate_reader r = {context, name, text, text + size, 1, own};
     STARG_TRY(read_all(&r));
     *out = own;
 done:
@@ -489,6 +420,8 @@ void starg_certificate_free(starg_certificate *own) {
     starg_release(context, own->cells);
     STARG_ARRAY_FREE(context, &own->reasons);
     starg_release(context, own->nodes);
+    STARG_ARRAY_FREE(context, &own->points);
+    STARG_ARRAY_FREE(context, &own->leaves);
     STARG_ARRAY_FREE(context, &own->numbers);
     starg_release(context, own);
 }

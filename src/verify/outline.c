@@ -51,7 +51,8 @@ starg_status starg_certificate_outline_create(starg_context *context,
     s.out->bound = own->bound;
     s.out->witness_count = own->witness_count;
     STARG_NEW(context, STAGE, s.out->witnesses, own->witness_count);
-    memcpy(s.out->witnesses, own->witnesses, own->witness_count * sizeof *own->witnesses);
+    if (own->witness_count > 0)
+        memcpy(s.out->witnesses, own->witnesses, own->witness_count * sizeof *own->witnesses);
     STARG_NEW(context, STAGE, s.out->cells, 6 * own->cell_count);
     set_prices(&s);
     STARG_TRY(verify_visit_leaves(own, keep_leaf, &s, &all));
