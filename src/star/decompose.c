@@ -84,7 +84,7 @@ static const starg_field OPTIONS[] = {
      .initial = 90000000,
      .value = "N",
      .help = "--prove: budget, counted in tests of a vertex against a box (about a microsecond "
-             "each)."},
+             "each); as much again where two pieces have to be excluded."},
     {.key = "balls",
      .option = "balls",
      .kind = STARG_FIELD_CHOICE,
