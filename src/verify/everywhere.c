@@ -18,26 +18,12 @@ static const char STAGE[] = "verify";
 /* ---- cells ---- */
 
 typedef struct checking {
+    verify_scene scene; /* the first member, for verify_watch_make */
     const starg_certificate *certificate;
     const verify_facts *known;
-    verify_scene scene;
     size_t *wrong; /* by cell: the first reason that does not hold, SIZE_MAX: the cell itself; or
                       the number of all reasons */
 } checking;
-
-static starg_status make_watch(starg_context *context, void *shared, void **scratch) {
-    const checking *own = shared;
-    verify_watch *watch;
-    (void)context;
-    starg_status status = verify_watch_create(&own->scene, &watch);
-    *scratch = watch;
-    return status;
-}
-
-static void free_watch(starg_context *context, void *scratch) {
-    (void)context;
-    verify_watch_free(scratch);
-}
 
 /* Is all of the box closer to the surface than guards may stand? The distance of its middle and
  * half of its diagonal are rounded, by much less than the share of the clearance that is left out.
@@ -107,8 +93,8 @@ starg_status verify_check_cells(const starg_certificate *certificate, const veri
                                       .count = certificate->cell_count,
                                       .shared = &own,
                                       .item = check_cell,
-                                      .make_scratch = make_watch,
-                                      .free_scratch = free_watch};
+                                      .make_scratch = verify_watch_make,
+                                      .free_scratch = verify_watch_drop};
     STARG_TRY(starg_parallel_for(context, &loop));
     for (size_t i = certificate->cell_count; i-- > 0;)
         if (own.wrong[i] != certificate->reasons.count) {
@@ -184,9 +170,9 @@ static void claim_witnesses(starg_verdict *verdict, const verify_facts *known,
                      c->witness_count, name, unseen, first);
 }
 
-static bool holds_all(const everywhere_cell *root, const verify_surface *surface) {
+bool verify_box_holds(const verify_box *box, const verify_surface *surface) {
     for (int k = 0; k < 3; k++)
-        if (!(root->box.lower[k] <= surface->lower[k] && surface->upper[k] <= root->box.upper[k]))
+        if (!(box->lower[k] <= surface->lower[k] && surface->upper[k] <= box->upper[k]))
             return false;
     return true;
 }
@@ -211,7 +197,7 @@ static const char *word_of(char kind) {
 starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *known,
                                 const starg_certificate *c) {
     size_t cell, reason;
-    if (!holds_all(&c->cells[0], known->surface)) {
+    if (!verify_box_holds(&c->cells[0].box, known->surface)) {
         verify_claim(verdict, false, "the cells of the certificate hold all of the model");
         return STARG_OK;
     }

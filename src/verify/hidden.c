@@ -646,6 +646,19 @@ void verify_watch_free(verify_watch *w) {
     starg_release(context, w);
 }
 
+starg_status verify_watch_make(starg_context *context, void *shared, void **scratch) {
+    verify_watch *watch;
+    (void)context;
+    starg_status status = verify_watch_create(shared, &watch);
+    *scratch = watch;
+    return status;
+}
+
+void verify_watch_drop(starg_context *context, void *scratch) {
+    (void)context;
+    verify_watch_free(scratch);
+}
+
 starg_status verify_scene_create(const verify_surface *surface, const verify_tree *tree,
                                  bool embedding, verify_scene *out) {
     starg_status status = STARG_OK;

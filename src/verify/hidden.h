@@ -42,6 +42,10 @@ typedef struct verify_watch verify_watch;
 starg_status verify_watch_create(const verify_scene *scene, verify_watch **out);
 void verify_watch_free(verify_watch *watch);
 
+/* The same for a parallel loop whose shared data begin with a scene. */
+starg_status verify_watch_make(starg_context *context, void *shared, void **scratch);
+void verify_watch_drop(starg_context *context, void *scratch);
+
 /* Starts with another box. */
 void verify_watch_box(verify_watch *watch, const verify_box *box);
 

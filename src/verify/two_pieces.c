@@ -16,24 +16,10 @@
 static const char STAGE[] = "verify";
 
 typedef struct checking {
+    verify_scene scene; /* the first member, for verify_watch_make */
     const starg_certificate *certificate;
-    verify_scene scene;
     bool *right; /* by leaf */
 } checking;
-
-static starg_status make_watch(starg_context *context, void *shared, void **scratch) {
-    const checking *own = shared;
-    verify_watch *watch;
-    (void)context;
-    starg_status status = verify_watch_create(&own->scene, &watch);
-    *scratch = watch;
-    return status;
-}
-
-static void free_watch(starg_context *context, void *scratch) {
-    (void)context;
-    verify_watch_free(scratch);
-}
 
 static bool is_right(const checking *own, verify_watch *watch, const everywhere_pair *leaf) {
     const double *x;
@@ -58,13 +44,6 @@ static starg_status check_leaf(starg_context *context, void *shared, void *scrat
     return verify_watch_failed(scratch) ? STARG_ERROR_MEMORY : STARG_OK;
 }
 
-static bool holds_all(const verify_box *root, const verify_surface *surface) {
-    for (int k = 0; k < 3; k++)
-        if (!(root->lower[k] <= surface->lower[k] && surface->upper[k] <= root->upper[k]))
-            return false;
-    return true;
-}
-
 starg_status verify_claim_pairs(starg_verdict *verdict, const verify_facts *known,
                                 const starg_certificate *c) {
     starg_status status = STARG_OK;
@@ -77,12 +56,12 @@ starg_status verify_claim_pairs(starg_verdict *verdict, const verify_facts *know
                                       .count = c->leaves.count,
                                       .shared = &own,
                                       .item = check_leaf,
-                                      .make_scratch = make_watch,
-                                      .free_scratch = free_watch};
+                                      .make_scratch = verify_watch_make,
+                                      .free_scratch = verify_watch_drop};
     STARG_TRY(starg_parallel_for(context, &loop));
     for (size_t i = c->leaves.count; i-- > 0;)
         wrong = own.right[i] ? wrong : i;
-    if (!holds_all(&c->root, known->surface))
+    if (!verify_box_holds(&c->root, known->surface))
         verify_claim(verdict, false, "the boxes of the certificate hold all of the model");
     else if (wrong < c->leaves.count)
         verify_claim(verdict, false,
