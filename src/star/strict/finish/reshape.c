@@ -343,6 +343,12 @@ done:
     return status;
 }
 
+/* What a round costs that changes nothing, index included: half a look for each facet. */
+static void count_round(reshaper *r) {
+    const uint64_t cost = r->p->facets.count / 2;
+    r->looks -= cost < r->looks ? cost : r->looks;
+}
+
 static void drop_vanished(partition *p) {
     size_t kept = 0;
     for (size_t i = 0; i < p->facets.count; i++)
@@ -358,6 +364,7 @@ static starg_status run_round(reshaper *r, bool *any) {
     STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, r->touched, p->points.count / 3);
     STARG_TRY(rank_flat(r));
+    count_round(r);
     for (size_t i = 0; i < r->flat.count && r->looks > 0; i++)
         STARG_TRY(change_at(r, r->flat.data[i].number, any));
     drop_vanished(p);
