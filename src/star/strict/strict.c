@@ -5,8 +5,8 @@
  * star-shaped (bsp_start.c); neighbours are joined where that can be done; then, in turns, small
  * changes save pieces (improve.c) and some neighbouring pieces are cut anew (renew.c), every step
  * with an exact certificate, until nothing is found any more. At the end guards get room
- * (widen.c), borders between pieces better triangles (refine_caps.c), and each piece is made of
- * tetrahedra about its guard (cone.c).
+ * (widen.c), borders between pieces better triangles (refine_caps.c), vertices of cuts and guards
+ * better places (reshape.c), and each piece is made of tetrahedra about its guard (cone.c).
  *
  * The start runs to its end whatever the time limit says, in a hurry once that has passed: so there
  * is a result. Where it fails, which takes roundings that spoil every cut of some piece, others are
@@ -40,8 +40,8 @@ enum {
  * are counted the same at any number of threads. About 2.5e8 take a second. */
 static const uint64_t WORK_MOST = 4700000000;
 
-/* The same for the room of guards at the end: so much and what the searches have taken, up to the
- * second; the third if more is asked for. */
+/* The same for the room of guards at the end, and for better places after that: so much and what
+ * the searches have taken, up to the second; the third if more is asked for. */
 static const uint64_t ROOM_LEAST = 50000000, ROOM_USUAL = 600000000, ROOM_MOST = 6000000000;
 
 /* Of small changes in a round; about as much as a renewal takes. */
