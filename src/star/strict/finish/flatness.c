@@ -78,6 +78,19 @@ double flatness_diagonal(const partition *p, uint32_t number) {
     return vec3_distance(all.lower, all.upper);
 }
 
+double flatness_room(const partition *p, uint32_t number) {
+    double guard[3], least = INFINITY;
+    partition_to_unit(p, p->pieces.data[number].guard, guard);
+    for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
+        uint32_t corners[3], entry = p->index.data[k];
+        partition_plane plane;
+        facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), corners);
+        partition_plane_of(p, corners, &plane);
+        least = fmin(least, plane.offset - vec3_dot(plane.normal, guard));
+    }
+    return least;
+}
+
 double flatness_of_piece(const partition *p, uint32_t number) {
     double sum = lack_of_margin(p, number, flatness_diagonal(p, number));
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {

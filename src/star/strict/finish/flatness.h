@@ -21,6 +21,9 @@ double flatness_of_side(const partition *p, const facet *f, int side);
 /* Of the bounding box of a piece, in unit coordinates; the partition has an index. */
 double flatness_diagonal(const partition *p, uint32_t number);
 
+/* How far its guard is from the nearest plane of its facets; likewise. */
+double flatness_room(const partition *p, uint32_t number);
+
 /* What angles and the margin of a piece lack, 0 if nothing; likewise. */
 double flatness_of_piece(const partition *p, uint32_t number);
 

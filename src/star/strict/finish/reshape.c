@@ -76,7 +76,7 @@ static starg_status find_margins(reshaper *r) {
     STARG_NEW(p->context, PARTITION_STAGE, r->margins, p->pieces.count);
     for (uint32_t i = 0; i < p->pieces.count; i++)
         r->margins[i] =
-            fmin(settle_margin(p, i), ENOUGH * FLATNESS_MARGIN * flatness_diagonal(p, i));
+            fmin(flatness_room(p, i), ENOUGH * FLATNESS_MARGIN * flatness_diagonal(p, i));
 done:
     return status;
 }
@@ -399,7 +399,7 @@ static starg_status measure_pieces(partition *p) {
         triangles.count = 0;
         STARG_TRY(partition_gather(p, i, &triangles));
         of->volume = partition_volume(p, triangles.data, triangles.count / 3);
-        of->radius = settle_margin(p, i);
+        of->radius = flatness_room(p, i);
         of->stamp = ++p->stamps;
     }
 done:

@@ -46,19 +46,6 @@ static int by_lack(const void *x, const void *y) {
     return (a->entry > b->entry) - (a->entry < b->entry);
 }
 
-double settle_margin(const partition *p, uint32_t number) {
-    double guard[3], least = INFINITY;
-    partition_to_unit(p, p->pieces.data[number].guard, guard);
-    for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
-        uint32_t corners[3], entry = p->index.data[k];
-        partition_plane plane;
-        facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), corners);
-        partition_plane_of(p, corners, &plane);
-        least = fmin(least, plane.offset - vec3_dot(plane.normal, guard));
-    }
-    return least;
-}
-
 /* What the angles of the piece lack, or more than `enough`. */
 static double lack_of_angles(settler *s, double enough) {
     double sum = 0;
@@ -98,7 +85,7 @@ static bool take_step(settler *s, uint32_t number, double step, double *lack) {
                               unit[2] + step * (i / 9 - 1)};
         partition_from_unit(p, at, guard);
         double now = lack_of_angles(s, *lack - LEAST);
-        if (now < *lack - LEAST && settle_margin(p, number) >= s->margins[number]) {
+        if (now < *lack - LEAST && flatness_room(p, number) >= s->margins[number]) {
             *lack = now;
             return true;
         }
@@ -109,7 +96,7 @@ static bool take_step(settler *s, uint32_t number, double step, double *lack) {
 
 /* From twice the margin downwards. */
 static bool settle(settler *s, uint32_t number) {
-    double lack = rank_entries(s, number), step = 2 * settle_margin(s->p, number);
+    double lack = rank_entries(s, number), step = 2 * flatness_room(s->p, number);
     bool any = false;
     for (int i = 0; i < HALVINGS && lack > 0; step *= 0.5, i++)
         while (take_step(s, number, step, &lack))

@@ -5,10 +5,6 @@
 
 #include "star/strict/partition/partition.h"
 
-/* The distance of a piece's guard to the nearest plane of its facets, in unit coordinates; the
- * partition has an index. */
-double settle_margin(const partition *p, uint32_t number);
-
 /* Moves guards within their kernels, so that angles lack less, with at least these margins (one for
  * each piece, in unit coordinates). Looks at about `looks` facets at most, and subtracts how many
  * it looked at. The partition has an index. Errors: MEMORY, CANCELLED. */
