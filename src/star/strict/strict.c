@@ -253,10 +253,19 @@ static uint64_t room_for(const searches *s, const starg_decompose_options *optio
     return options->quality ? ROOM_MOST : least(work, ROOM_USUAL);
 }
 
-/* Two pieces are as few as can be when one was not enough. */
-static bool may_go_on(const searches *s, const partition *p) {
-    return s->idle < idle_most(p) && s->trials_left > 0 && s->work_left > 0 && !s->time_limited &&
-           p->pieces.count > (s->enough > 2 ? s->enough : 2);
+/* Only while some component may have fewer pieces (partition_find_open). */
+static starg_status may_go_on(const searches *s, const partition *p, bool *on) {
+    starg_status status = STARG_OK;
+    partition_numbers open = {0};
+    *on = s->idle < idle_most(p) && s->trials_left > 0 && s->work_left > 0 && !s->time_limited &&
+          p->pieces.count > s->enough;
+    if (!*on)
+        return STARG_OK;
+    STARG_TRY(partition_find_open(p, &open));
+    *on = open.count > 0;
+done:
+    STARG_ARRAY_FREE(p->context, &open);
+    return status;
 }
 
 /* The trials that give the same result without a clock. */
@@ -281,7 +290,7 @@ static starg_status search(searches *s, partition *p) {
     s->began = starg_clock();
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(change_some(s, p));
-    while (may_go_on(s, p)) {
+    for (bool on; (status = may_go_on(s, p, &on)) == STARG_OK && on;) {
         STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
         s->rounds++;
         if (gain_of(&s->changes) >= gain_of(&s->renewals))

@@ -21,6 +21,7 @@
 #include <string.h>
 
 #include "geometry/vec3.h"
+#include "mesh/topology.h"
 
 static const uint32_t NONE = UINT32_MAX;
 
@@ -339,6 +340,28 @@ double partition_volume(const partition *p, const uint32_t *triangles, size_t co
                            partition_unit(p, triangles[3 * i + 1]),
                            partition_unit(p, triangles[3 * i + 2]));
     return sum / 6;
+}
+
+starg_status partition_find_open(const partition *p, partition_numbers *open) {
+    starg_status status = STARG_OK;
+    uint32_t *root = NULL, *size = NULL;
+    STARG_NEW(p->context, PARTITION_STAGE, root, p->pieces.count);
+    STARG_NEW_ZERO(p->context, PARTITION_STAGE, size, p->pieces.count);
+    sets_make(root, p->pieces.count);
+    for (size_t i = 0; i < p->facets.count; i++) {
+        const uint32_t *side = p->facets.data[i].side;
+        if (side[FACET_INNER] != PARTITION_OUTSIDE && side[FACET_OUTER] != PARTITION_OUTSIDE)
+            sets_join(root, side[FACET_INNER], side[FACET_OUTER]);
+    }
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        size[sets_find(root, i)]++;
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        if (size[sets_find(root, i)] > 2)
+            STARG_PUSH(p->context, PARTITION_STAGE, open, i);
+done:
+    starg_release(p->context, root);
+    starg_release(p->context, size);
+    return status;
 }
 
 void partition_renumber(partition *p, uint32_t from, uint32_t to) {

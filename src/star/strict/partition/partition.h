@@ -132,6 +132,12 @@ starg_status partition_gather(const partition *p, uint32_t number, partition_tri
 /* The volume enclosed by closed triangles, in unit coordinates. */
 double partition_volume(const partition *p, const uint32_t *triangles, size_t count);
 
+/* Appends the pieces of which there may be fewer, ascending: those of connected components, over
+ * common facets, of three pieces and more. A component of two is as good as it gets, unless they
+ * can be joined. Errors: MEMORY. */
+typedef STARG_ARRAY(uint32_t) partition_numbers;
+starg_status partition_find_open(const partition *p, partition_numbers *open);
+
 /* Gives the last piece, `from`, the number `to`, whose piece no longer has facets. */
 void partition_renumber(partition *p, uint32_t from, uint32_t to);
 

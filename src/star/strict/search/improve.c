@@ -71,8 +71,6 @@ typedef struct trial {
     uint64_t work;
 } trial;
 
-typedef STARG_ARRAY(uint32_t) numbers;
-
 typedef struct improver {
     partition *p;
     const improve_options *options;
@@ -82,10 +80,10 @@ typedef struct improver {
     trial trials[BATCH];
     region_scratch scratch; /* of the calling thread */
     /* neighbours of piece i: neighbours[first[i]] to neighbours[first[i + 1] - 1] */
-    numbers neighbours;
-    numbers first;
-    numbers met;   /* by piece: 1 + the last piece that met it */
-    numbers seeds; /* pieces that unions grow from */
+    partition_numbers neighbours;
+    partition_numbers first;
+    partition_numbers met;   /* by piece: 1 + the last piece that met it */
+    partition_numbers seeds; /* pieces that unions grow from */
 } improver;
 
 /* ---- neighbours ---- */
@@ -93,12 +91,15 @@ typedef struct improver {
 static starg_status find_contacts(improver *m) {
     starg_status status = STARG_OK;
     const partition *p = m->p;
+    size_t open = 0;
     m->neighbours.count = m->first.count = m->met.count = m->seeds.count = 0;
-    for (uint32_t i = 0; i < p->pieces.count; i++) {
+    for (uint32_t i = 0; i < p->pieces.count; i++)
         STARG_PUSH(p->context, PARTITION_STAGE, &m->met, 0);
-        if (p->pieces.data[i].stamp > m->options->since)
-            STARG_PUSH(p->context, PARTITION_STAGE, &m->seeds, i);
-    }
+    STARG_TRY(partition_find_open(p, &m->seeds));
+    for (size_t i = 0; i < m->seeds.count; i++)
+        if (p->pieces.data[m->seeds.data[i]].stamp > m->options->since)
+            m->seeds.data[open++] = m->seeds.data[i];
+    m->seeds.count = open;
     for (uint32_t a = 0; a < p->pieces.count; a++) {
         STARG_PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
         for (uint32_t k = p->start.data[a]; k < p->start.data[a + 1]; k++) {
@@ -255,7 +256,8 @@ done:
 }
 
 /* What touches the pieces of a trial. */
-static starg_status gather_around(const improver *m, const trial *t, numbers *out) {
+static starg_status gather_around(const improver *m, const trial *t,
+                                  partition_numbers *out) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < t->count; i++)
         for (uint32_t k = m->first.data[t->pieces[i]]; k < m->first.data[t->pieces[i] + 1]; k++) {
@@ -273,7 +275,7 @@ done:
 static starg_status try_eliminate(const improver *m, starg_rng *rng, region_scratch *scratch,
                                   trial *t) {
     starg_status status = STARG_OK;
-    numbers around = {0};
+    partition_numbers around = {0};
     STARG_TRY(gather_around(m, t, &around));
     const eliminate_task task = {.pieces = t->pieces,
                                  .piece_count = t->count,

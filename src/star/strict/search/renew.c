@@ -37,12 +37,18 @@ static bool is_in(const group *g, uint32_t number) {
     return false;
 }
 
-/* What is beyond a random facet of a random piece of the group, until there are enough. */
-static void choose_group(const partition *p, starg_rng *rng, group *g) {
+/* What is beyond a random facet of a random piece of the group, until there are enough. The first
+ * is one of which there may be fewer. */
+static starg_status choose_group(const partition *p, starg_rng *rng, group *g) {
+    starg_status status = STARG_OK;
+    partition_numbers open = {0};
     size_t wanted = PIECES_LEAST + starg_rng_below(rng, PIECES_MOST - PIECES_LEAST + 1);
-    g->pieces[0] = (uint32_t)starg_rng_below(rng, p->pieces.count);
-    g->count = 1;
-    for (size_t attempt = 0; attempt < 40 * wanted && g->count < wanted; attempt++) {
+    g->count = 0;
+    STARG_TRY(partition_find_open(p, &open));
+    if (open.count > 0)
+        g->pieces[g->count++] = open.data[starg_rng_below(rng, open.count)];
+    for (size_t attempt = 0; attempt < 40 * wanted && g->count > 0 && g->count < wanted;
+         attempt++) {
         uint32_t from = g->pieces[starg_rng_below(rng, g->count)], first = p->start.data[from];
         uint32_t facets = p->start.data[from + 1] - first;
         uint32_t entry = p->index.data[first + starg_rng_below(rng, facets)];
@@ -50,6 +56,9 @@ static void choose_group(const partition *p, starg_rng *rng, group *g) {
         if (next != PARTITION_OUTSIDE && !is_in(g, next))
             g->pieces[g->count++] = next;
     }
+done:
+    STARG_ARRAY_FREE(p->context, &open);
+    return status;
 }
 
 /* The number of the piece that all have become; the last numbers take the place of the others. */
@@ -116,7 +125,9 @@ starg_status renew(partition *p, const renew_options *options, renew_report *rep
     bool done;
     *report = (renew_report){.trials = 0};
     starg_progress_begin(p->context, PARTITION_STAGE);
-    choose_group(p, &rng, &g);
+    STARG_TRY(choose_group(p, &rng, &g));
+    if (g.count == 0)
+        goto done;
     STARG_TRY(partition_copy(p, &copy));
     STARG_TRY(cut_anew(&copy, &g, options, report, &done));
     if (!done)
