@@ -2,10 +2,11 @@
 /* Cells: the space in which guards may stand, cut into boxes, each with the witnesses that it may
  * see, by visibility/box.h.
  *
- * The root is the box of the solid, rounded outwards to multiples of a power of two, and a cell is
- * cut in the middle of its longest side, and what is outside is trimmed off at multiples of a
- * fraction of the side, so that corners of cells are short binary fractions. Cells are numbered in
- * the order of creation, and tested by guard/cell_tests.c.
+ * The root is the box of the solid, rounded outwards to multiples of a power of two. It is cut by
+ * parts of the solid first: no point sees witnesses of two parts, so bounds for parts add up. Then
+ * a cell is cut in the middle of its longest side, and what is outside is trimmed off at multiples
+ * of a fraction of the side, so that corners of cells are short binary fractions. Cells are
+ * numbered in the order of creation, and tested by guard/cell_tests.c.
  *
  * Invariant: no point of a cell in the free space sees a witness that is not open in the cell. */
 #include "guard/cells.h"
@@ -23,12 +24,30 @@ static double middle(const bvh_box *box, int k) {
     return 0.5 * box->lower[k] + 0.5 * box->upper[k];
 }
 
+/* Halves the parts of cells until each leaf is for one. */
+static starg_status cut_by_parts(starg_context *context, search_cells *cells) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < cells->count; i++) {
+        search_cell halves[2] = {cells->data[i], cells->data[i]};
+        uint32_t parts = halves[0].end_part - halves[0].first_part;
+        if (parts < 2)
+            continue;
+        halves[0].end_part = halves[1].first_part = halves[0].first_part + parts / 2;
+        cells->data[i].parted = true;
+        cells->data[i].children = (uint32_t)cells->count;
+        STARG_PUSH(context, STAGE, cells, halves[0]);
+        STARG_PUSH(context, STAGE, cells, halves[1]);
+    }
+done:
+    return status;
+}
+
 starg_status cells_begin(const search_scene *scene, search_cells *cells) {
     starg_status status = STARG_OK;
     bvh_box reach;
     solid_reach(scene->solid, &reach);
     const bvh_box *all = &reach;
-    search_cell root = {.box = reach};
+    search_cell root = {.box = reach, .end_part = (uint32_t)scene->parts.count};
     double extent = 0;
     for (int k = 0; k < 3; k++)
         extent = fmax(extent, all->upper[k] - all->lower[k]);
@@ -44,6 +63,7 @@ starg_status cells_begin(const search_scene *scene, search_cells *cells) {
             root.box.upper[k] = upper;
     }
     STARG_PUSH(scene->context, STAGE, cells, root);
+    STARG_TRY(cut_by_parts(scene->context, cells));
 done:
     return status;
 }
@@ -88,6 +108,18 @@ static bool sees_any(const search_cell *cell, const witness_row *among) {
     return any != 0;
 }
 
+/* Leaves of what a cell may see what is of its parts. */
+static void keep_parts(const search_scene *scene, const search_cell *cell, witness_row *row) {
+    if (cell->end_part - cell->first_part == scene->parts.count)
+        return;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w]) {
+            uint32_t part = search_scene_part(scene, scene->witnesses.data[64 * w + bit]);
+            if (part < cell->first_part || part >= cell->end_part)
+                starg_bit_clear(row->bits, 64 * w + bit);
+        }
+}
+
 /* Tests cells of a generation against what their parents may see. */
 static starg_status look_from_cells(search_scene *scene, search_cells *cells, const numbers *list,
                                     const numbers *parents, const witness_row *among) {
@@ -102,7 +134,8 @@ static starg_status look_from_cells(search_scene *scene, search_cells *cells, co
         if (parents->data[i] != UINT32_MAX)
             for (int w = 0; w < WITNESS_WORDS; w++)
                 tests[i].among.bits[w] &= cells->data[parents->data[i]].open.bits[w];
-        if (cells->data[list->data[i]].trimmed) {
+        keep_parts(scene, &cells->data[list->data[i]], &tests[i].among);
+        if (cells->data[list->data[i]].trimmed || cells->data[list->data[i]].parted) {
             const witness_row inherited = tests[i].among;
             tests[i].among = (witness_row){{0}};
             for (int w = 0; w < WITNESS_WORDS; w++)
@@ -194,7 +227,10 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
     STARG_TRY(cell_tests_share(context, &all));
     for (size_t i = 0; i < all.count; i++) {
         const bool trimmed = all.answers[i].cut_count > 0;
+        const search_cell *whole = &cells->data[leaves[i / 2]];
         const search_cell half = {.box = tests[i].box,
+                                  .first_part = whole->first_part,
+                                  .end_part = whole->end_part,
                                   .open = trimmed ? tests[i].among : all.answers[i].open};
         STARG_PUSH(context, STAGE, cells, half);
         if (i % 2 != 0) /* only after the second child: a cell has both children or none */

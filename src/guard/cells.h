@@ -5,17 +5,21 @@
 
 #include "guard/search_scene.h"
 
-/* A box and its children: each point of the free space is in at least one leaf. */
+/* A box, for guards in some parts of the solid, and its children: each point of the free space is
+ * in at least one leaf for its part. */
 typedef struct search_cell {
     bvh_box box;
-    witness_row open;  /* superset of what points of the box in the free space see */
-    uint32_t children; /* the first of two consecutive ones; 0: a leaf */
-    bool trimmed;      /* one child is outside of the free space: only the other one is tested */
+    uint32_t first_part, end_part; /* parts from the first up to the end, without that */
+    witness_row open;              /* superset of what points of the box in the free space see */
+    uint32_t children;             /* the first of two consecutive ones; 0: a leaf */
+    bool trimmed; /* one child is outside of the free space: only the other one is tested */
+    bool parted;  /* the children are for some of the parts each, and have the same box */
 } search_cell;
 
 typedef STARG_ARRAY(search_cell) search_cells;
 
-/* The root: the box of all free space, with every witness open. Errors: MEMORY. */
+/* The root, the box of all free space, and a leaf of it for each part; with no witness yet. Errors:
+ * MEMORY. */
 starg_status cells_begin(const search_scene *scene, search_cells *cells);
 
 /* Tests the cells against the witnesses from `first` on. Errors: MEMORY, CANCELLED, RANK. */

@@ -73,6 +73,9 @@ typedef struct kept_cell {
     size_t first, count; /* of the reasons */
 } kept_cell;
 
+/* The kind of a reason beside those of a box: the witness is of another part of the solid. */
+enum { APART = BOX_KINDS };
+
 typedef struct stored_reason {
     uint32_t vertex, seed;
     uint16_t witness;
@@ -183,31 +186,49 @@ static witness_row hidden_here(const making *m, const kept_cell *kept) {
     return row;
 }
 
+/* Does a cell see nothing of a witness, which is of a part that it is not for? */
+static bool is_apart(const making *m, const search_cell *cell, size_t j) {
+    if (cell->end_part - cell->first_part == m->scene->parts.count)
+        return false;
+    uint32_t part = search_scene_part(m->scene, m->scene->witnesses.data[j]);
+    return part < cell->first_part || part >= cell->end_part;
+}
+
 static starg_status find_reasons(starg_context *context, void *shared, void *scratch, size_t item) {
     making *m = shared;
     kept_cell *kept = &m->kept.data[item];
     const search_scene *scene = m->scene;
-    const witness_row among = hidden_here(m, kept);
+    const search_cell *cell = &m->cells->data[kept->number];
+    const witness_row hidden = hidden_here(m, kept);
+    witness_row among = hidden;
     box_reason found[MOST_WITNESSES];
     witness_row open;
     size_t next = kept->first;
-    const box_question question = {.box = m->cells->data[kept->number].box,
+    const box_question question = {.box = cell->box,
                                    .target = scene->view->target,
                                    .targets = scene->witnesses.data,
                                    .count = scene->witnesses.count,
                                    .range = scene->view->range,
                                    .among = among.bits};
     (void)context;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, hidden.bits[w])
+            if (is_apart(m, cell, 64 * w + bit))
+                starg_bit_clear(among.bits, 64 * w + bit);
     kept->barred = search_scene_bars(scene, &question.box);
     if (kept->barred)
         return STARG_OK;
     box_look(scratch, &question, open.bits, found);
     for (size_t w = 0; w < WITNESS_WORDS; w++)
-        STARG_FOR_BITS (bit, among.bits[w]) {
+        STARG_FOR_BITS (bit, hidden.bits[w]) {
             const box_reason *r = &found[64 * w + bit];
+            stored_reason *reason = &m->reasons[next++];
+            *reason = (stored_reason){BOX_NONE, BOX_NONE, (uint16_t)(64 * w + bit), APART, false};
+            if (!starg_bit_test(among.bits, 64 * w + bit))
+                continue;
             kept->outside = kept->outside || r->kind == BOX_OUTSIDE;
-            m->reasons[next++] = (stored_reason){r->vertex, r->seed, (uint16_t)(64 * w + bit),
-                                                 (uint8_t)r->kind, r->clipped};
+            *reason = (stored_reason){r->vertex, r->seed, (uint16_t)(64 * w + bit),
+                                      (uint8_t)r->kind, r->clipped};
         }
     return STARG_OK;
 }
@@ -238,9 +259,9 @@ done:
 /* ---- the text ---- */
 
 static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
-                     const bvh_box *root, size_t bound) {
+                     const bvh_box *root, bool parted, size_t bound) {
     const starg_visibility_options *view = &options->visibility;
-    certificate_put_model(stream, 2, solid);
+    certificate_put_model(stream, parted ? 4 : 2, solid);
     fprintf(stream, "target %s\nrange",
             view->target == STARG_TARGET_VERTICES  ? "vertices"
             : view->target == STARG_TARGET_CORNERS ? "corners"
@@ -286,7 +307,7 @@ static void put_rows(FILE *stream, const making *m) {
 }
 
 static void put_reason(FILE *stream, const making *m, const stored_reason *r) {
-    static const char letters[2][BOX_KINDS + 1] = {"??rnspfe", "??RNSPFE"};
+    static const char letters[2][BOX_KINDS + 2] = {"??rnspfed", "??RNSPFE"};
     fprintf(stream, " %u%c", m->number[r->witness], letters[r->clipped][r->kind]);
     if (r->vertex != BOX_NONE)
         fprintf(stream, "%u", r->vertex);
@@ -294,9 +315,13 @@ static void put_reason(FILE *stream, const making *m, const stored_reason *r) {
         fprintf(stream, ":%u", r->seed);
 }
 
-/* In the middle of the longest side, or where the children say. */
+/* By parts, in the middle of the longest side, or where the children say. */
 static void put_cut(FILE *stream, const search_cells *cells, const search_cell *cell) {
     const bvh_box *lower = &cells->data[cell->children].box;
+    if (cell->parted) {
+        fprintf(stream, "m%u", cells->data[cell->children].end_part);
+        return;
+    }
     int axis = cell_cut_axis(&cell->box);
     for (int k = 0; k < 3 && cell->trimmed; k++)
         if (lower->upper[k] != cell->box.upper[k])
@@ -362,7 +387,8 @@ static void put_branches(FILE *stream, const making *m) {
 
 static void put_search(FILE *stream, const void *what) {
     const making *m = what;
-    put_head(stream, m->scene->solid, m->options, &m->cells->data[0].box, m->proof->bound);
+    const search_cell *root = &m->cells->data[0];
+    put_head(stream, m->scene->solid, m->options, &root->box, root->parted, m->proof->bound);
     put_witnesses(stream, m);
     put_rows(stream, m);
     put_cells(stream, m);
@@ -396,7 +422,8 @@ typedef struct single {
 
 static void put_single(FILE *stream, const void *what) {
     const single *s = what;
-    put_head(stream, s->solid, s->options, &s->solid->tree->nodes[0].box, s->witness != UINT32_MAX);
+    put_head(stream, s->solid, s->options, &s->solid->tree->nodes[0].box, false,
+             s->witness != UINT32_MAX);
     fprintf(stream, "witnesses %d\n", s->witness != UINT32_MAX);
     if (s->witness != UINT32_MAX)
         put_witness(stream, s->solid, s->options, s->witness);

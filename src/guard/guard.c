@@ -301,6 +301,18 @@ done:
     return status;
 }
 
+/* A certificate says why the bound of the search holds, so it has to come to that by itself. */
+static starg_status begin_bound(const guard_problem *problem, guard_outcome *out) {
+    starg_status status = STARG_OK;
+    size_t bound = 0;
+    if (problem->certificate == NULL && out->selection.chosen.count > 0)
+        STARG_TRY(bound_by_parts(problem, &out->pool, &bound));
+    if (bound > 1 || bound == out->selection.chosen.count)
+        out->search.bound = bound;
+done:
+    return status;
+}
+
 /* Everything from the solid to the choice. */
 static starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
     starg_status status = STARG_OK;
@@ -317,10 +329,11 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
     else
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
-    if (!wants_part(problem->options))
+    if (!wants_part(problem->options)) {
+        STARG_TRY(begin_bound(problem, out));
         STARG_TRY(search_guards(problem, &detail, may_refine(problem->options), &out->pool,
                                 &out->selection, &out->search));
-    else if (problem->options->prove)
+    } else if (problem->options->prove)
         STARG_TRY(search_area(problem, &out->pool, &out->selection, &out->search));
 done:
     starg_solid_free(detail.proxy);

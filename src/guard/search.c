@@ -305,7 +305,7 @@ static starg_status begin(search *s, const guard_detail *detail, const guard_sel
     for (size_t i = 0; i < selection->chosen.count; i++)
         STARG_PUSH(p->context, STAGE, &s->guards, selection->chosen.data[i]);
     s->count = s->guards.count;
-    s->bound = s->count > 0;
+    s->bound = s->bound > 0 ? s->bound : s->count > 0;
     s->redundancy = p->options->redundancy;
     s->first_count = pool_count(s->pool);
     STARG_TRY(search_scene_open(p->context, p->solid, &p->options->visibility,
@@ -422,12 +422,13 @@ done:
 starg_status search_guards(const guard_problem *problem, const guard_detail *detail, bool improves,
                            guard_pool *pool, guard_selection *selection, search_record *out) {
     starg_status status = STARG_OK;
-    search s = {.problem = problem, .pool = pool};
+    search s = {.problem = problem, .pool = pool, .bound = out->bound};
     bool keeps = problem->options->candidates == STARG_CANDIDATES_GIVEN;
     if (!improves && !problem->options->prove)
         return STARG_OK;
     starg_progress_begin(problem->context, STAGE);
-    out->bound = problem->options->prove && selection->chosen.count > 0;
+    if (out->bound == 0)
+        out->bound = problem->options->prove && selection->chosen.count > 0;
     if (starg_time_is_over(problem->context))
         goto done;
     STARG_TRY(begin(&s, detail, selection));

@@ -119,21 +119,28 @@ done:
     return status;
 }
 
+/* A cell for each part. */
 static starg_status begin(area_search *a) {
     starg_status status = STARG_OK;
-    search_cells root = {0};
+    search_cells first = {0};
     area_cell cell = {0};
-    STARG_TRY(cells_begin(a->scene, &root));
-    cell.box = root.data[0].box;
-    STARG_NEW(a->scene->context, STAGE, cell.open, starg_bit_words(a->pool->columns));
-    memset(cell.open, 0xff, starg_bit_words(a->pool->columns) * sizeof *cell.open);
-    for (size_t j = a->pool->columns; j < 64 * starg_bit_words(a->pool->columns); j++)
-        starg_bit_clear(cell.open, j);
-    cell.weight = a->problem->weights.total;
-    STARG_PUSH(a->scene->context, STAGE, &a->cells, cell);
-    cell.open = NULL;
+    STARG_TRY(cells_begin(a->scene, &first));
+    for (size_t i = 0; i < first.count; i++) {
+        const search_cell *leaf = &first.data[i];
+        if (leaf->children != 0)
+            continue;
+        cell = (area_cell){.box = leaf->box};
+        STARG_NEW_ZERO(a->scene->context, STAGE, cell.open, starg_bit_words(a->pool->columns));
+        for (size_t j = 0; j < a->pool->columns; j++)
+            if (search_scene_part(a->scene, (uint32_t)j) == leaf->first_part) {
+                starg_bit_set(cell.open, j);
+                cell.weight += a->problem->weights.weights[j];
+            }
+        STARG_PUSH(a->scene->context, STAGE, &a->cells, cell);
+        cell.open = NULL;
+    }
 done:
-    STARG_ARRAY_FREE(a->scene->context, &root);
+    STARG_ARRAY_FREE(a->scene->context, &first);
     starg_release(a->scene->context, cell.open);
     return status;
 }

@@ -41,6 +41,7 @@ starg_status search_scene_open(starg_context *context, const starg_solid *solid,
     STARG_NEW(context, STAGE, out->places, target_columns(solid->mesh, view->target));
     STARG_NEW(context, STAGE, out->ranks, solid->mesh->vertex_count);
     fill_places(out);
+    STARG_TRY(solid_parts_find(context, solid, &out->parts));
 done:
     if (status != STARG_OK)
         search_scene_close(out);
@@ -54,6 +55,7 @@ void search_scene_close(search_scene *scene) {
     box_scene_free(scene->boxes);
     starg_release(scene->context, scene->places);
     starg_release(scene->context, scene->ranks);
+    solid_parts_free(scene->context, &scene->parts);
     STARG_ARRAY_FREE(scene->context, &scene->witnesses);
     *scene = (search_scene){0};
 }
@@ -90,6 +92,14 @@ void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) 
 size_t search_scene_rank(const search_scene *scene, size_t j) {
     uint32_t place = scene->places[scene->witnesses.data[j]];
     return scene->view->target == STARG_TARGET_FACES ? place : scene->ranks[place];
+}
+
+uint32_t search_scene_part(const search_scene *scene, uint32_t column) {
+    uint32_t place = scene->places[column];
+    if (place == SCENE_NONE) /* a vertex of no face */
+        return 0;
+    uint32_t rank = scene->view->target == STARG_TARGET_FACES ? place : scene->ranks[place];
+    return scene->parts.of[scene->points->face_of[rank]];
 }
 
 /* Is p strictly on the inner side of the face of a corner? */

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "guard/witnesses.h"
 #include "visibility/box.h"
+#include "visibility/parts.h"
 #include "visibility/scene.h"
 
 /* Where guards may stand, what occludes, and what must be seen. */
@@ -20,6 +21,7 @@ typedef struct search_scene {
     uint32_t
         *places; /* by column, its position in `points`: rank of the face, or slot of the vertex */
     uint32_t *ranks;                 /* by slot, a rank of a face at the vertex */
+    solid_parts parts;               /* no point sees witnesses of two of them */
     STARG_ARRAY(uint32_t) witnesses; /* columns: the faces or vertices that stand for all */
     uint64_t number;                 /* of the context's scenes */
     uint64_t work; /* tests of a vertex against a box or a point, each about a microsecond */
@@ -43,6 +45,9 @@ void search_scene_centre(const search_scene *scene, size_t j, double centre[3]);
 
 /* A rank of a face of `points` that is witness j or has its vertex. */
 size_t search_scene_rank(const search_scene *scene, size_t j);
+
+/* The part of the solid that a column bounds. */
+uint32_t search_scene_part(const search_scene *scene, uint32_t column);
 
 /* Does the point see witness j? The point lies in the free space. */
 bool search_scene_sees(const search_scene *scene, const search_point *point, size_t j,

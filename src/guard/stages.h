@@ -85,10 +85,14 @@ starg_status progressive_guards(const guard_problem *problem, const guard_detail
 starg_status bound_guards(const guard_problem *problem, const guard_pool *pool,
                           const guard_selection *first, guard_selection *out);
 
+/* A lower bound for guards anywhere that is free: by parts of the solid (guard/parts_bound.c).
+ * Errors: MEMORY, CANCELLED. */
+starg_status bound_by_parts(const guard_problem *problem, const guard_pool *pool, size_t *bound);
+
 /* The search over every point of the solid: replaces the choice if it finds fewer guards, which see
  * everything that the old ones saw, and adds points to the pool (guard/search.c). It `improves` the
  * guards, or proves a bound if requested, or both; given candidates stay, and so do the guards
- * chosen from them. Errors: MEMORY, CANCELLED. */
+ * chosen from them. The bound in `out` is where it starts. Errors: MEMORY, CANCELLED. */
 starg_status search_guards(const guard_problem *problem, const guard_detail *detail, bool improves,
                            guard_pool *pool, guard_selection *selection, search_record *out);
 

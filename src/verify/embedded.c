@@ -70,6 +70,13 @@ static bool is_contact(const verify_surface *surface, uint32_t f, uint32_t g) {
     return shared == 3;
 }
 
+bool verify_faces_touch(const verify_surface *surface, uint32_t f, uint32_t g) {
+    int own, other;
+    return shared_corners(surface->faces + 3 * (size_t)f, surface->faces + 3 * (size_t)g, &own,
+                          &other) > 0 ||
+           is_contact(surface, f, g);
+}
+
 typedef struct search {
     const verify_scene *scene;
     uint8_t *sound; /* by face */

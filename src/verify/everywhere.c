@@ -12,6 +12,7 @@
 #include "core/checksum.h"
 #include "core/parallel.h"
 #include "verify/claims.h"
+#include "verify/parts.h"
 
 static const char STAGE[] = "verify";
 
@@ -21,8 +22,9 @@ typedef struct checking {
     verify_scene scene; /* the first member, for verify_watch_make */
     const starg_certificate *certificate;
     const verify_facts *known;
-    size_t *wrong; /* by cell: the first reason that does not hold, SIZE_MAX: the cell itself; or
-                      the number of all reasons */
+    uint32_t *parts; /* by face: the part of the model that it bounds; NULL: no reason asks */
+    size_t *wrong;   /* by cell: the first reason that does not hold, SIZE_MAX: the cell itself; or
+                        the number of all reasons */
 } checking;
 
 /* Is all of the box closer to the surface than guards may stand? The distance of its middle and
@@ -41,11 +43,30 @@ static bool is_barred(const checking *own, const verify_box *box) {
                clearance * (0.9995 - sqrt(squared));
 }
 
+/* Is the witness of a part that the cell is not for? */
+static bool is_apart(const checking *own, const everywhere_cell *cell, uint32_t witness) {
+    const starg_certificate *c = own->certificate;
+    const verify_surface *surface = own->known->surface;
+    uint32_t face = c->witnesses[witness];
+    if (c->target == STARG_TARGET_VERTICES) {
+        size_t corner = 0;
+        while (corner < 3 * surface->face_count && surface->faces[corner] != c->witnesses[witness])
+            corner++;
+        if (corner == 3 * surface->face_count)
+            return true; /* a vertex of no face */
+        face = (uint32_t)(corner / 3);
+    }
+    return own->parts[face] < cell->parts[0] || own->parts[face] >= cell->parts[1];
+}
+
 /* A corner is seen from the inner side of its face, past what hides its vertex: as a face is, but
  * for the other two vertices. */
-static bool is_hidden(const starg_certificate *c, verify_watch *watch,
+static bool is_hidden(const checking *own, const everywhere_cell *cell, verify_watch *watch,
                       const verify_reason *reason) {
+    const starg_certificate *c = own->certificate;
     starg_target target = c->target;
+    if (reason->kind == 'd')
+        return is_apart(own, cell, reason->witness);
     if (target == STARG_TARGET_CORNERS) {
         target = STARG_TARGET_FACES;
         if (reason->kind != 'n' && reason->vertex != c->corners[reason->witness])
@@ -65,17 +86,16 @@ static starg_status check_cell(starg_context *context, void *shared, void *scrat
         (cell->kind == EVERYWHERE_BARRED && !is_barred(own, &cell->box)))
         own->wrong[item] = SIZE_MAX;
     for (size_t k = cell->first; k < cell->first + cell->count; k++)
-        if (!is_hidden(c, scratch, &c->reasons.data[k])) {
+        if (!is_hidden(own, cell, scratch, &c->reasons.data[k])) {
             own->wrong[item] = k;
             break;
         }
     return verify_watch_failed(scratch) ? STARG_ERROR_MEMORY : STARG_OK;
 }
 
-/* Reasons that hold only where the surface is embedded. */
-static bool needs_embedding(const starg_certificate *c) {
+static bool has_reason(const starg_certificate *c, const char *kinds) {
     for (size_t i = 0; i < c->reasons.count; i++)
-        if (strchr("sfe", c->reasons.data[i].kind) != NULL)
+        if (strchr(kinds, c->reasons.data[i].kind) != NULL)
             return true;
     return false;
 }
@@ -86,8 +106,11 @@ starg_status verify_check_cells(const starg_certificate *certificate, const veri
     starg_context *context = known->surface->context;
     checking own = {.certificate = certificate, .known = known};
     *cell = certificate->cell_count;
-    STARG_TRY(
-        verify_scene_create(known->surface, known->tree, needs_embedding(certificate), &own.scene));
+    /* some reasons hold only where the surface is embedded */
+    STARG_TRY(verify_scene_create(known->surface, known->tree, has_reason(certificate, "sfe"),
+                                  &own.scene));
+    if (has_reason(certificate, "d"))
+        STARG_TRY(verify_find_parts(known->surface, known->tree, &own.parts));
     STARG_NEW(context, STAGE, own.wrong, certificate->cell_count);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = certificate->cell_count,
@@ -103,6 +126,7 @@ starg_status verify_check_cells(const starg_certificate *certificate, const veri
         }
 done:
     verify_scene_free(&own.scene);
+    starg_release(context, own.parts);
     starg_release(context, own.wrong);
     return status;
 }
@@ -189,6 +213,8 @@ static const char *word_of(char kind) {
         return "patch";
     case 'f':
         return "fold";
+    case 'd':
+        return "part";
     default:
         return "entry";
     }

@@ -23,13 +23,16 @@ enum { EVERYWHERE_DEPTH = 1024 };
 typedef enum everywhere_kind {
     EVERYWHERE_LEAF = 3,
     EVERYWHERE_OUTSIDE,
-    EVERYWHERE_BARRED /* closer to the surface than guards may stand */
+    EVERYWHERE_BARRED, /* closer to the surface than guards may stand */
+    EVERYWHERE_PARTED  /* cut by parts of the model: both halves have the same box */
 } everywhere_kind;
 
 typedef struct everywhere_cell {
     verify_box box;
     size_t first, count; /* of the reasons                          */
     uint32_t row;        /* a leaf's row, or UINT32_MAX             */
+    uint32_t parts[2];   /* of the model: it is for guards in those from the first up to the second,
+                            without that */
     uint8_t kind;        /* 0, 1, 2: the axis; an everywhere_kind   */
 } everywhere_cell;
 

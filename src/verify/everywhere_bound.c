@@ -54,7 +54,7 @@ starg_status verify_visit_leaves(const starg_certificate *own, everywhere_visit 
         uint64_t *row = open + top * words;
         for (size_t k = 0; k < cell->count; k++)
             starg_bit_clear(row, own->reasons.data[cell->first + k].witness);
-        if (cell->kind < EVERYWHERE_LEAF) {
+        if (cell->kind < EVERYWHERE_LEAF || cell->kind == EVERYWHERE_PARTED) {
             memcpy(row + words, row, words * sizeof *row);
             top++;
             continue;

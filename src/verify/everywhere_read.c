@@ -87,9 +87,10 @@ static starg_status read_head(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     STARG_TRY(certificate_take_text(r, "starguard-certificate "));
-    /* the first version has no cuts at given places and no odd sets, the second no pairs */
-    if (!certificate_take(r, '1') && !certificate_take(r, '2'))
-        STARG_TRY(certificate_take_text(r, "3"));
+    /* the first version has no cuts at given places and no odd sets, the second no pairs, the third
+       no parts */
+    if (!certificate_take(r, '1') && !certificate_take(r, '2') && !certificate_take(r, '3'))
+        STARG_TRY(certificate_take_text(r, "4"));
     STARG_TRY(certificate_end_line(r));
     STARG_TRY(read_size(r, "vertices ", &own->vertex_count));
     STARG_TRY(read_size(r, "faces ", &own->face_count));
@@ -173,10 +174,12 @@ static starg_status read_reason(certificate_reader *r) {
     char letter = r->at < r->end ? *r->at : '\0';
     reason.clipped = letter >= 'A' && letter <= 'Z';
     reason.kind = reason.clipped ? (char)(letter - 'A' + 'a') : letter;
-    if (reason.kind == '\0' || strchr("nrspfe", reason.kind) == NULL || letter == 'N')
-        return certificate_reject(r, "the letter of a reason is expected here: n, r, s, p, f or e");
+    if (reason.kind == '\0' || strchr("nrspfed", reason.kind) == NULL || letter == 'N' ||
+        letter == 'D')
+        return certificate_reject(r,
+                                  "the letter of a reason is expected here: n, r, s, p, f, e or d");
     r->at++;
-    if (reason.kind != 'n') {
+    if (reason.kind != 'n' && reason.kind != 'd') {
         if (r->own->vertex_count == 0)
             return certificate_reject(r, "the model has no vertices");
         STARG_TRY(certificate_take_number(r, r->own->vertex_count - 1, &value));
@@ -213,8 +216,26 @@ static starg_status read_kind(certificate_reader *r, everywhere_cell *cell) {
             return certificate_reject(r, "there are no rows");
         STARG_TRY(certificate_take_number(r, r->own->row_count - 1, &row));
         cell->row = (uint32_t)row;
-    } else if (!certificate_take(r, '.'))
-        return certificate_reject(r, "a cell is expected here: x, y, z, a dot, =, c or o");
+    } else if (certificate_take(r, 'm'))
+        cell->kind = EVERYWHERE_PARTED;
+    else if (!certificate_take(r, '.'))
+        return certificate_reject(r, "a cell is expected here: x, y, z, m, a dot, =, c or o");
+done:
+    return status;
+}
+
+static bool is_cut(const everywhere_cell *cell) {
+    return cell->kind < EVERYWHERE_LEAF || cell->kind == EVERYWHERE_PARTED;
+}
+
+/* The first part of the second half. */
+static starg_status read_part(certificate_reader *r, const everywhere_cell *cell, uint32_t *part) {
+    starg_status status = STARG_OK;
+    uint64_t value;
+    STARG_TRY(certificate_take_number(r, UINT32_MAX - 1, &value));
+    *part = (uint32_t)value;
+    if (*part <= cell->parts[0] || *part >= cell->parts[1])
+        status = certificate_reject(r, "the cell is cut at a part that is not within");
 done:
     return status;
 }
@@ -234,13 +255,22 @@ done:
     return status;
 }
 
-static starg_status read_cell(certificate_reader *r, everywhere_cell *cell, double *at) {
+/* With its halves, if it is cut. */
+static starg_status read_cell(certificate_reader *r, everywhere_cell *cell,
+                              everywhere_cell halves[2]) {
     starg_status status = STARG_OK;
+    double at;
     STARG_TRY(read_kind(r, cell));
-    if (cell->kind < EVERYWHERE_LEAF)
-        STARG_TRY(read_cut(r, cell, at));
+    halves[0] = halves[1] = *cell;
+    if (cell->kind == EVERYWHERE_PARTED) {
+        STARG_TRY(read_part(r, cell, &halves[1].parts[0]));
+        halves[0].parts[1] = halves[1].parts[0];
+    } else if (is_cut(cell)) {
+        STARG_TRY(read_cut(r, cell, &at));
+        halves[0].box.upper[cell->kind] = halves[1].box.lower[cell->kind] = at;
+    }
     cell->first = r->own->reasons.count;
-    while (cell->kind <= EVERYWHERE_LEAF && certificate_take(r, ' '))
+    while ((is_cut(cell) || cell->kind == EVERYWHERE_LEAF) && certificate_take(r, ' '))
         STARG_TRY(read_reason(r));
     cell->count = r->own->reasons.count - cell->first;
     STARG_TRY(certificate_end_line(r));
@@ -248,18 +278,13 @@ done:
     return status;
 }
 
-static void cut(const verify_box *box, int axis, double at, verify_box halves[2]) {
-    halves[0] = halves[1] = *box;
-    halves[0].upper[axis] = halves[1].lower[axis] = at;
-}
-
-/* A cell is followed by all of its lower half, then the upper one. Boxes that are still to come
+/* A cell is followed by all of its lower half, then the upper one. Cells that are still to come
  * stand on a stack, the next one on top. */
 static starg_status read_cells(certificate_reader *r, const verify_box *root) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     struct {
-        verify_box box;
+        everywhere_cell cell;
         int depth;
     } *stack = NULL;
     size_t left = 1;
@@ -267,29 +292,27 @@ static starg_status read_cells(certificate_reader *r, const verify_box *root) {
     own->cell_line = (size_t)r->line;
     STARG_NEW(r->context, STAGE, own->cells, own->cell_count);
     STARG_NEW(r->context, STAGE, stack, EVERYWHERE_DEPTH + 2);
-    stack[0].box = *root;
+    stack[0].cell = (everywhere_cell){.box = *root, .parts = {0, UINT32_MAX}};
     stack[0].depth = 0;
     for (size_t i = 0; i < own->cell_count; i++) {
         everywhere_cell *cell = &own->cells[i];
-        verify_box halves[2];
-        double at;
+        everywhere_cell halves[2];
         if (left == 0) {
             status =
                 certificate_reject(r, "the cells before this one fill the root: none may follow");
             goto done;
         }
-        cell->box = stack[--left].box;
+        *cell = stack[--left].cell;
         int depth = stack[left].depth + 1;
-        STARG_TRY(read_cell(r, cell, &at));
-        if (cell->kind >= EVERYWHERE_LEAF)
+        STARG_TRY(read_cell(r, cell, halves));
+        if (!is_cut(cell))
             continue;
         if (depth > EVERYWHERE_DEPTH) {
             status = certificate_reject(r, "cells are cut too often");
             goto done;
         }
-        cut(&cell->box, cell->kind, at, halves);
         for (int k = 1; k >= 0; k--) {
-            stack[left].box = halves[k];
+            stack[left].cell = halves[k];
             stack[left++].depth = depth;
         }
     }

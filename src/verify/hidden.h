@@ -15,7 +15,7 @@ typedef struct verify_box {
 typedef struct verify_reason {
     uint32_t witness;
     uint32_t vertex, seed; /* UINT32_MAX: none */
-    char kind;             /* n, r, s, p, f, e (docs/formats.md) */
+    char kind;             /* n, r, s, p, f, e, d (docs/formats.md) */
     bool clipped;          /* only from the part of the box on the inner side of the face */
 } verify_reason;
 
@@ -67,6 +67,9 @@ bool verify_box_behind(const verify_watch *watch, const verify_box *box, uint32_
  * the seed, of which x is strictly on the inner side, and no point of the other box is? */
 bool verify_box_shades(verify_watch *watch, const verify_box *box, const double x[3], uint32_t seed,
                        const verify_box *other);
+
+/* Do two faces have a point in common (verify/embedded.c)? Exact. */
+bool verify_faces_touch(const verify_surface *surface, uint32_t f, uint32_t g);
 
 /* Which faces are sound, and is the surface embedded (verify/embedded.c)? `sound` is by face.
  * Errors: MEMORY, CANCELLED. */

@@ -256,8 +256,7 @@ done:
 }
 
 /* What touches the pieces of a trial. */
-static starg_status gather_around(const improver *m, const trial *t,
-                                  partition_numbers *out) {
+static starg_status gather_around(const improver *m, const trial *t, partition_numbers *out) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < t->count; i++)
         for (uint32_t k = m->first.data[t->pieces[i]]; k < m->first.data[t->pieces[i] + 1]; k++) {

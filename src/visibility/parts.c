@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parts of a solid, and what they need at least.
+ *
+ * Problem: which faces bound the same connected component of the interior?
+ *
+ * Method: a shell that lies in an even number of others bounds a part from outside; one in an odd
+ * number is a cavity of the part whose outer shell is the innermost around it (mesh/shells.h).
+ *
+ * Why no point sees faces of two parts: nothing lies between a point and what it sees, so it lies
+ * in the same shells as the inner side of the face does. These are, for an outer shell, itself and
+ * all around it; for a cavity, all around it. The innermost of them is the outer shell of the part.
+ *
+ * Cost: O(n log n), and a linear program for each part. */
+#include "visibility/parts.h"
+
+#include "core/memory.h"
+#include "geometry/predicates.h"
+#include "mesh/contact.h"
+#include "mesh/shells.h"
+#include "visibility/kernel.h"
+
+static const char STAGE[] = "kernel";
+
+typedef struct joining {
+    const starg_mesh *mesh;
+    const mesh_topology *topology;
+    uint32_t *parent; /* by shell: those of one part */
+} joining;
+
+static bool join_touching(void *user, uint32_t a, uint32_t b) {
+    joining *j = user;
+    uint32_t first = j->topology->component[a], second = j->topology->component[b];
+    if (first != second && faces_contact(j->mesh->vertices, j->mesh->faces + 3 * (size_t)a,
+                                         j->mesh->faces + 3 * (size_t)b) != TRIANGLES_APART)
+        sets_join(j->parent, first, second);
+    return true;
+}
+
+static starg_status join_shells(starg_context *context, const starg_solid *solid, joining *j) {
+    starg_status status = STARG_OK;
+    mesh_shell *shells = NULL;
+    size_t count = j->topology->component_count;
+    const starg_finding *found = solid->check->findings;
+    STARG_NEW_ZERO(context, STAGE, shells, count);
+    STARG_TRY(shells_classify(context, solid->mesh, j->topology, solid->tree, shells));
+    for (uint32_t c = 0; c < count; c++)
+        if (shells[c].cavity)
+            sets_join(j->parent, c, shells[c].within);
+    if (found[STARG_FINDING_SELF_INTERSECTION].count + found[STARG_FINDING_SELF_CONTACT].count > 0)
+        bvh_query_pairs(solid->tree, join_touching, j);
+done:
+    starg_release(context, shells);
+    return status;
+}
+
+/* Gives parts numbers in the order of their lowest faces. */
+static starg_status number_parts(starg_context *context, const joining *j, solid_parts *out) {
+    starg_status status = STARG_OK;
+    uint32_t *number = NULL;
+    STARG_NEW(context, STAGE, number, j->topology->component_count);
+    for (size_t c = 0; c < j->topology->component_count; c++)
+        number[c] = UINT32_MAX;
+    for (size_t f = 0; f < j->topology->face_count; f++) {
+        uint32_t root = sets_find(j->parent, j->topology->component[f]);
+        if (number[root] == UINT32_MAX)
+            number[root] = (uint32_t)out->count++;
+        out->of[f] = number[root];
+    }
+done:
+    starg_release(context, number);
+    return status;
+}
+
+starg_status solid_parts_find(starg_context *context, const starg_solid *solid, solid_parts *out) {
+    starg_status status = STARG_OK;
+    mesh_topology *topology = NULL;
+    joining j = {.mesh = solid->mesh};
+    *out = (solid_parts){.count = solid->scene || solid->check->components < 2};
+    STARG_NEW_ZERO(context, STAGE, out->of, solid->mesh->face_count);
+    if (out->count == 1)
+        goto done;
+    STARG_TRY(topology_create(context, solid->mesh, &topology));
+    j.topology = topology;
+    STARG_NEW(context, STAGE, j.parent, topology->component_count);
+    sets_make(j.parent, topology->component_count);
+    STARG_TRY(join_shells(context, solid, &j));
+    STARG_TRY(number_parts(context, &j, out));
+done:
+    topology_free(topology);
+    starg_release(context, j.parent);
+    return status;
+}
+
+void solid_parts_free(starg_context *context, solid_parts *parts) {
+    starg_release(context, parts->of);
+    *parts = (solid_parts){0};
+}
+
+/* Faces by part: those of part i are list[first[i]] to list[first[i + 1] - 1]. */
+static starg_status list_faces(starg_context *context, const solid_parts *parts, size_t faces,
+                               uint32_t **list, size_t **first) {
+    starg_status status = STARG_OK;
+    STARG_NEW(context, STAGE, *list, faces);
+    STARG_NEW_ZERO(context, STAGE, *first, parts->count + 2);
+    for (size_t f = 0; f < faces; f++)
+        (*first)[parts->of[f] + 2]++;
+    for (size_t i = 2; i < parts->count + 2; i++)
+        (*first)[i] += (*first)[i - 1];
+    for (size_t f = 0; f < faces; f++)
+        (*list)[(*first)[parts->of[f] + 1]++] = (uint32_t)f;
+done:
+    return status;
+}
+
+static bool is_flat(const starg_mesh *mesh, const uint32_t *c) {
+    return collinear(mesh->vertices + 3 * (size_t)c[0], mesh->vertices + 3 * (size_t)c[1],
+                     mesh->vertices + 3 * (size_t)c[2]);
+}
+
+/* Is it proven that no point is strictly inside all of the faces? Those without area are left out:
+ * nothing sees them. */
+static starg_status is_without_kernel(starg_context *context, const starg_mesh *mesh,
+                                      const uint32_t *list, size_t count, bool *empty) {
+    starg_status status = STARG_OK;
+    uint32_t *faces = NULL;
+    kernel_faces surface = {.vertices = mesh->vertices};
+    starg_kernel_result result;
+    STARG_NEW(context, STAGE, faces, 3 * count);
+    surface.faces = faces;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t *c = mesh->faces + 3 * (size_t)list[i];
+        if (!is_flat(mesh, c))
+            memcpy(faces + 3 * surface.count++, c, 3 * sizeof *c);
+    }
+    STARG_TRY(kernel_find(context, &surface, &result));
+    *empty = result.verdict == STARG_KERNEL_EMPTY && result.witness_count > 0;
+done:
+    starg_release(context, faces);
+    return status;
+}
+
+starg_status solid_parts_bound(starg_context *context, const starg_solid *solid,
+                               const solid_parts *parts, const uint64_t *targets, size_t times,
+                               bool inner, size_t *bound) {
+    starg_status status = STARG_OK;
+    const starg_mesh *mesh = solid->mesh;
+    uint32_t *list = NULL;
+    size_t *first = NULL;
+    *bound = 0;
+    STARG_TRY(list_faces(context, parts, mesh->face_count, &list, &first));
+    for (size_t i = 0; i < parts->count; i++) {
+        bool any = false, all = inner, empty = false;
+        for (size_t k = first[i]; k < first[i + 1]; k++) {
+            bool target = targets == NULL || starg_bit_test(targets, list[k]);
+            any = any || target;
+            all = all && (target || is_flat(mesh, mesh->faces + 3 * (size_t)list[k]));
+        }
+        if (any && all)
+            STARG_TRY(
+                is_without_kernel(context, mesh, list + first[i], first[i + 1] - first[i], &empty));
+        *bound += any ? times + empty : 0;
+    }
+done:
+    starg_release(context, list);
+    starg_release(context, first);
+    return status;
+}
