@@ -136,6 +136,10 @@ static void say_guards(cli_session *session, const starg_guards *g) {
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
+    for (size_t k = 0; k < g->redundant_count; k++)
+        cli_say(session, "%s%s seen by at least %s\n", k == 0 ? "redundancy    " : "              ",
+                cli_count_of(g->redundant_faces[k], "face", "faces").text,
+                cli_count_of(k + 1, "guard", "guards").text);
     if (g->options.baseline > 0)
         cli_say(session, "baseline      %s seen by two guards %g degrees apart\n",
                 cli_count_of(g->baseline_faces, "face", "faces").text, g->options.baseline);

@@ -167,6 +167,8 @@ typedef struct starg_guards {
     double area_bound_everywhere; /* max_guards, prove, faces: so many guards cover no more of the
                                      area, wherever they stand; 0: not sought */
     bool time_limited;            /* the time limit stopped the search */
+    size_t redundant_count;       /* with a redundancy above 1 that, else 0 */
+    size_t *redundant_faces;      /* number of faces that at least 1, 2, ... guards see */
 } starg_guards;
 
 /* Places guards. `options` may be NULL for the defaults. Faces that no candidate sees are listed

@@ -91,6 +91,8 @@ class Guards:
     coverable_faces: int
     #: With a baseline: number of faces that two guards see from places so far apart.
     baseline_faces: int
+    #: With a redundancy above 1: number of faces that at least 1, 2, ... guards see.
+    redundant_faces: Array
     #: Faces that no guard sees, ascending.
     uncovered: Array
     #: The same for vertices, only with target "vertices".
@@ -178,6 +180,7 @@ class Guards:
             ups=_arrays.view(keeper, g.ups, (count, 3), np.float64) if g.ups else None,
             seen_faces=_arrays.view(keeper, g.seen_faces, (count,), np.uintp),
             levels=_arrays.view(keeper, g.levels, (count,), np.intc),
+            redundant_faces=_arrays.view(keeper, g.redundant_faces, (g.redundant_count,), np.uintp),
             uncovered=_arrays.view(keeper, g.uncovered, (g.uncovered_count,), np.uint32),
             uncovered_vertices=_arrays.view(keeper, g.uncovered_vertices, (g.uncovered_vertex_count,),
                                             np.uint32),

@@ -568,5 +568,6 @@ void starg_guards_free(starg_context *context, starg_guards *guards) {
     starg_release(context, guards->curve_area);
     starg_release(context, guards->uncovered);
     starg_release(context, guards->uncovered_vertices);
+    starg_release(context, guards->redundant_faces);
     starg_release(context, guards);
 }

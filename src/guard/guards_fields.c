@@ -329,6 +329,16 @@ static const starg_field CURVE[] = {
 static const starg_fields CURVE_TABLE = {
     .columns = true, .name = "curve", .form = STARG_FORM_TUPLE, FIELD_ROWS(CURVE)};
 
+static const starg_field REDUNDANT[] = {
+    {.key = "faces",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, redundant_faces),
+     .size = sizeof(size_t),
+     .most = UINT32_MAX},
+};
+static const starg_fields REDUNDANT_TABLE = {
+    .columns = true, .name = "redundant_faces", .form = STARG_FORM_BARE, FIELD_ROWS(REDUNDANT)};
+
 static const starg_field COVERAGE[] = {
     {.key = "faces",
      .kind = STARG_FIELD_REAL,
@@ -357,6 +367,13 @@ static const starg_field COVERAGE[] = {
      .most = UINT32_MAX,
      .applies = has_baseline,
      .help = "With baseline: number of faces that two guards see from places so far apart."},
+    {.key = "redundant_faces",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     .of = &REDUNDANT_TABLE,
+     LENGTH(starg_guards, redundant_count),
+     .help = "With redundancy above 1: numbers of faces that at least 1, 2, ... and redundancy "
+             "guards see."},
     {.key = "curve",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_MATCHING,

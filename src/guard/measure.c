@@ -79,6 +79,26 @@ static size_t count_paired(const guard_problem *problem, const starg_bits *seen,
     return paired;
 }
 
+/* The numbers of faces that at least 1, 2, ... guards see, up to the redundancy. */
+static starg_status measure_redundancy(const guard_problem *problem, const starg_bits *seen,
+                                       starg_guards *result) {
+    starg_status status = STARG_OK;
+    size_t most = problem->options->redundancy;
+    if (most < 2)
+        return STARG_OK;
+    STARG_NEW_ZERO(problem->context, STAGE, result->redundant_faces, most);
+    result->redundant_count = most;
+    for (size_t f = 0; f < seen->columns; f++) {
+        size_t times = 0;
+        for (size_t i = 0; i < result->count; i++)
+            times += starg_bits_test(seen, i, f);
+        for (size_t k = 0; k < most && k < times; k++)
+            result->redundant_faces[k]++;
+    }
+done:
+    return status;
+}
+
 static starg_status measure_faces(const guard_problem *problem, starg_guards *result) {
     starg_status status = STARG_OK;
     const starg_visibility_options options =
@@ -94,6 +114,7 @@ static starg_status measure_faces(const guard_problem *problem, starg_guards *re
     STARG_TRY(list_missing(problem, joined, STARG_TARGET_FACES, NULL, &result->uncovered,
                            &result->uncovered_count));
     result->baseline_faces = count_paired(problem, seen, result);
+    STARG_TRY(measure_redundancy(problem, seen, result));
     result->coverage_faces = result->count > 0 ? result->curve_faces[result->count - 1] : 0;
     result->coverage_area = result->count > 0 ? result->curve_area[result->count - 1] : 0;
 done:

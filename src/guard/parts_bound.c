@@ -11,14 +11,9 @@ static const char STAGE[] = "guard";
 /* By column: do as many candidates see it as have to? */
 static starg_status find_required(const guard_pool *pool, size_t times, uint64_t **out) {
     starg_status status = STARG_OK;
-    const starg_bits *rows = pool->rows;
     uint32_t *supply = NULL;
-    STARG_NEW_ZERO(pool->context, STAGE, supply, pool->columns);
+    STARG_TRY(pool_supply(pool, &supply));
     STARG_NEW_ZERO(pool->context, STAGE, *out, starg_bit_words(pool->columns));
-    for (size_t i = 0; i < pool_count(pool); i++)
-        for (size_t w = 0; w < rows->words; w++)
-            STARG_FOR_BITS (bit, starg_bits_row(rows, i)[w])
-                supply[64 * w + bit]++;
     for (size_t j = 0; j < pool->columns; j++)
         if (supply[j] >= times)
             starg_bit_set(*out, j);

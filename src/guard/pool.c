@@ -301,10 +301,24 @@ starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
         if (found.data.count > 0)
             STARG_TRY(pool_add(pool, &found));
     }
+    if (pool->options->redundancy > 1 && pool->options->candidates != STARG_CANDIDATES_GIVEN &&
+        pool_count(pool) > 0)
+        STARG_TRY(pool_add_companions(pool));
 done:
     candidates_free(pool->context, &found);
     starg_release(pool->context, all.tried);
     starg_release(pool->context, unseen);
+    return status;
+}
+
+starg_status pool_supply(const guard_pool *pool, uint32_t **supply) {
+    starg_status status = STARG_OK;
+    STARG_NEW_ZERO(pool->context, STAGE, *supply, pool->columns);
+    for (size_t i = 0; i < pool_count(pool); i++)
+        for (size_t w = 0; w < pool->rows->words; w++)
+            STARG_FOR_BITS (bit, starg_bits_row(pool->rows, i)[w])
+                (*supply)[64 * w + bit]++;
+done:
     return status;
 }
 

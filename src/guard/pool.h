@@ -58,6 +58,13 @@ starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, g
  * given candidates stay as they are. Errors: MEMORY, CANCELLED. */
 starg_status pool_augment(guard_pool *pool, const column_weights *weights);
 
+/* Adds candidates until, where that can be, as many see each column as the redundancy asks
+ * (guard/companions.c). Errors: MEMORY, CANCELLED. */
+starg_status pool_add_companions(guard_pool *pool);
+
+/* By column, how many candidates see it; release with starg_release. Errors: MEMORY. */
+starg_status pool_supply(const guard_pool *pool, uint32_t **supply);
+
 /* The weight of the columns that some candidate covers. */
 uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *weights);
 
