@@ -12,6 +12,7 @@
 #include "starguard/guard.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "core/fields.h"
 #include "guard/baseline.h"
@@ -139,17 +140,39 @@ done:
     return status;
 }
 
-static starg_status fail_without_candidates(const guard_problem *problem, bool time_limited) {
-    if (time_limited)
+/* Candidates that see nothing prove nothing. Says which limits may be the reason. */
+static starg_status fail_unseen(const guard_problem *problem, const guard_pool *pool) {
+    const starg_guard_options *o = problem->options;
+    double diagonal = problem->solid->check->diagonal, range = o->visibility.range;
+    const struct {
+        const char *text;
+        bool set;
+    } limits[] = {
+        {"a smaller clearance", o->clearance > 0},
+        {"a larger range", range < diagonal},
+        {"a wider view", sensor_is_directed(&o->visibility)},
+        {"a larger incidence", o->visibility.incidence > 0 && o->visibility.incidence < 90},
+        {"other faces to see", problem->solid->importance != NULL},
+        {"wider limits of where guards may stand (box, distances, faces)", problem->solid->scene},
+        {"other candidates", o->candidates == STARG_CANDIDATES_GIVEN},
+    };
+    char advice[256] = "";
+    size_t used = 0;
+    if (pool->time_limited)
         return starg_fail(problem->context, STARG_ERROR_TIME, STAGE,
                           "time limit reached before any candidate was evaluated; allow more time");
+    if (range < diagonal / 1000)
+        return starg_fail(problem->context, STARG_ERROR_MESH, STAGE,
+                          "no candidate sees any target: the range is %g, but the model measures "
+                          "%g across; is the range given in another unit than the model?",
+                          range, diagonal);
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
+        if (limits[i].set)
+            used += (size_t)snprintf(advice + used, sizeof advice - used, "%s%s",
+                                     used > 0 ? ", or " : "; try ", limits[i].text);
     return starg_fail(problem->context, STARG_ERROR_MESH, STAGE,
-                      problem->solid->scene
-                          ? "no candidate in the free space sees anything; try wider limits of "
-                            "where guards may stand (box, distances, faces), a smaller clearance, "
-                            "a larger range or other candidates"
-                          : "no candidate inside the solid sees anything; try a smaller clearance, "
-                            "a larger range or other candidates");
+                      "no candidate sees any target%s",
+                      used > 0 ? advice : ": the solid is too thin for the candidates");
 }
 
 static starg_status find_pool(const guard_problem *problem, const guard_detail *detail,
@@ -157,8 +180,9 @@ static starg_status find_pool(const guard_problem *problem, const guard_detail *
     starg_status status = STARG_OK;
     STARG_TRY(find_candidates(problem, detail, out));
     STARG_TRY(pool_augment(out, &problem->weights));
-    if (pool_count(out) == 0)
-        status = fail_without_candidates(problem, detail->time_limited || out->time_limited);
+    out->time_limited = out->time_limited || (detail->time_limited && pool_count(out) == 0);
+    if (starg_bit_count(out->coverable, starg_bit_words(out->columns)) == 0)
+        status = fail_unseen(problem, out);
 done:
     return status;
 }
