@@ -16,6 +16,7 @@
 #include "star/united.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
+#include "visibility/parts.h"
 
 static const char STAGE[] = "pieces";
 
@@ -254,6 +255,20 @@ done:
     return status;
 }
 
+/* What is known without a search: each part of the solid needs a piece, and two if its kernel has no
+ * interior. */
+static starg_status bound_by_parts(starg_context *context, const starg_solid *solid,
+                                   starg_decomposition *d) {
+    starg_status status = STARG_OK;
+    solid_parts parts = {0};
+    STARG_TRY(solid_parts_find(context, solid, &parts));
+    STARG_TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
+    d->optimal = d->lower_bound == d->piece_count;
+done:
+    solid_parts_free(context, &parts);
+    return status;
+}
+
 /* Nothing but the surface is needed where that bounds the solid as it is; else *out stays NULL. */
 static starg_status decompose_surface(starg_context *context, const starg_solid *solid,
                                       const starg_decompose_options *options,
@@ -265,8 +280,10 @@ static starg_status decompose_surface(starg_context *context, const starg_solid 
         goto done;
     const kernel_faces surface = {solid->mesh->vertices, faces, solid->mesh->face_count};
     STARG_TRY(strict_decompose_surface(context, &surface, options, out));
-    if (*out != NULL)
+    if (*out != NULL) {
         (*out)->flattest_given = -1;
+        STARG_TRY(bound_by_parts(context, solid, *out));
+    }
 done:
     starg_release(context, faces);
     return status;
@@ -283,8 +300,11 @@ static starg_status decompose_union(starg_context *context, const starg_solid *s
     if (united == NULL)
         goto done;
     STARG_TRY(decompose_surface(context, united, options, out));
-    if (*out != NULL)
-        STARG_TRY(united_report(context, solid, united, rounding, *out));
+    if (*out == NULL)
+        goto done;
+    (*out)->lower_bound = 0; /* it is that of the union */
+    (*out)->optimal = false;
+    STARG_TRY(united_report(context, solid, united, rounding, *out));
 done:
     starg_solid_free(united);
     return status;
@@ -344,8 +364,9 @@ static starg_status decompose_proven(starg_context *context, const starg_solid *
     STARG_TRY(decompose_model(context, solid, NULL, &own, out));
     STARG_TRY(piece_bound_raise(context, solid, options->prove_work, certified, (*out)->piece_count,
                                 bound));
-    (*out)->lower_bound = bound->bound;
-    (*out)->optimal = bound->bound == (*out)->piece_count;
+    if (certified || (*out)->lower_bound < bound->bound)
+        (*out)->lower_bound = bound->bound;
+    (*out)->optimal = (*out)->lower_bound == (*out)->piece_count;
     (*out)->time_limited = (*out)->time_limited || time_limited;
     remember(context, options, *out);
 done:
