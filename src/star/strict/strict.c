@@ -44,8 +44,10 @@ static const uint64_t WORK_MOST = 4700000000;
  * the searches have taken, up to the second; the third if more is asked for. */
 static const uint64_t ROOM_LEAST = 50000000, ROOM_USUAL = 600000000, ROOM_MOST = 6000000000;
 
-/* Of small changes in a round; about as much as a renewal takes. */
+/* Of small changes in a round; about as much as a renewal takes. Where pieces and facets are so few
+ * that their product is below USUAL_SIZE, there is less to try: the square of its share. */
 static const uint64_t WORK_EACH = 100000000;
+static const double USUAL_SIZE = 4000;
 
 /* Each round, what there was before counts so much less: a search that has saved forty pieces and
  * now saves none need not wait for seventy rounds. */
@@ -179,8 +181,9 @@ typedef struct record {
 typedef struct searches {
     uint64_t trials, trials_left, work, work_left;
     size_t enough;
-    uint64_t rounds; /* so far */
-    size_t idle;     /* of them, since the last that saved a piece */
+    uint64_t work_each; /* of small changes in a round */
+    uint64_t rounds;    /* so far */
+    size_t idle;        /* of them, since the last that saved a piece */
     record changes, renewals;
     bool time_limited;
     double began;                             /* clock */
@@ -206,7 +209,7 @@ static starg_status change_some(searches *s, partition *p) {
     starg_status status = STARG_OK;
     improve_report report;
     const improve_options wanted = {.trials = s->trials_left,
-                                    .work = least(s->work_left, WORK_EACH),
+                                    .work = least(s->work_left, s->work_each),
                                     .patience = UINT64_MAX,
                                     .enough = s->enough,
                                     .first = s->trials,
@@ -235,8 +238,8 @@ done:
     return status;
 }
 
-static double gain_of(const record *of) {
-    return (of->saved + 1) / (of->work + (double)WORK_EACH);
+static double gain_of(const record *of, uint64_t each) {
+    return (of->saved + 1) / (of->work + (double)each);
 }
 
 static void fade(record *of) {
@@ -288,12 +291,14 @@ static void tell_progress(const searches *s, const partition *p) {
 static starg_status search(searches *s, partition *p) {
     starg_status status = STARG_OK;
     s->began = starg_clock();
+    double share = fmin(1, (double)p->pieces.count * (double)p->facets.count / USUAL_SIZE);
+    s->work_each = (uint64_t)(share * share * (double)WORK_EACH);
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(change_some(s, p));
     for (bool on; (status = may_go_on(s, p, &on)) == STARG_OK && on;) {
         STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
         s->rounds++;
-        if (gain_of(&s->changes) >= gain_of(&s->renewals))
+        if (gain_of(&s->changes, s->work_each) >= gain_of(&s->renewals, s->work_each))
             STARG_TRY(change_some(s, p));
         else
             STARG_TRY(renew_some(s, p));

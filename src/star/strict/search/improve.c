@@ -38,6 +38,10 @@ static const double FLOOR = 0.03;
 /* Each batch, tallies of the former ones count so much less. */
 static const double FADING = 0.998;
 
+/* Of a trial that finds no pieces to look at: every trial counts something, or a search without any
+ * possible move would not end. */
+static const uint64_t TRIAL_WORK = 1000;
+
 /* What no tally says yet. */
 static const double USUAL_WORK = 1e5, USUAL_SAVED = 1, USUAL_SPENT = 3e7;
 
@@ -297,6 +301,7 @@ static starg_status run_trial(starg_context *context, void *shared, void *scratc
     region_scratch *own = scratch;
     uint64_t before = own->work;
     choose_union(m, &rng, what->count, t, &t->found);
+    t->work = TRIAL_WORK;
     if (!t->found)
         return STARG_OK;
     if (what->how == BY_FANS)
