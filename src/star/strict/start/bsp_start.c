@@ -43,13 +43,15 @@
 
 enum { FAIR_FROM = 1, HALVE_FROM = 4, REFLEX_FROM = 8, ATTEMPTS_MOST = 60, EFFORT_MOST = 3 };
 enum { PROOFS_MOST = 40 }; /* rounds of them */
-enum { SAMPLE = 12000 };   /* facets of a piece that are looked at first, or twice as many */
+enum { MANY_LEAST = 16 };
+enum { SAMPLE = 12000 }; /* facets of a piece that are looked at first, or twice as many */
 
 /* Numbers of stages are below. */
 static const uint64_t STREAMS = 1000;
 
 static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9,
-                    SMALL_COMPONENT = 1e-7;       /* unit coordinates */
+                    SMALL_COMPONENT = 1e-7; /* unit coordinates */
+static const double THIN_SHARE = 0.125;
 static const double TURN = 1e-5, TURN_MOST = 0.1; /* radians, about */
 
 /* A piece that is not known to be star-shaped. */
@@ -58,6 +60,7 @@ typedef struct job {
     int attempts;
     double above;    /* so large the ball must be: a smaller one has failed */
     double radius;   /* of the ball in its kernel, in unit coordinates */
+    double most;     /* no such ball is larger, however the piece is cut */
     double guard[3]; /* the middle of it, in those of the solid */
     partition_plane plane;
     bool found;
@@ -78,6 +81,7 @@ typedef struct bsp_builder {
     double finished;   /* of it, in pieces that have a guard */
     uint64_t began;    /* with this stamp */
     uint64_t work;
+    size_t many; /* more pieces than that: only planes of reflex edges are taken, which end */
     bool hopeless;
 } bsp_builder;
 
@@ -86,8 +90,10 @@ static double ease_of(const job *j) {
     return pow(0.25, j->attempts);
 }
 
+/* More than a share of what there can be is not asked for: cutting a thin piece leaves thin ones.
+ */
 static double margin_of(const job *j) {
-    return fmax(MARGIN * ease_of(j), MARGIN_LEAST);
+    return fmin(fmax(MARGIN * ease_of(j), MARGIN_LEAST), THIN_SHARE * j->most);
 }
 
 /* In pieces that resist, what exact proof there is will do. */
@@ -131,6 +137,22 @@ done:
     return status;
 }
 
+/* The heights of a guard's planes above it, times the areas of the facets on them, sum to three
+ * times the volume: so no ball about it is larger than three times the volume by the area. */
+static double largest_radius(const region *r) {
+    double area = 0, volume = 0;
+    for (size_t i = 0; i < r->triangles.count; i++) {
+        const double *c[3];
+        double normal[3];
+        for (int k = 0; k < 3; k++)
+            c[k] = r->vertices.data + 3 * (size_t)r->triangles.data[i].corners[k];
+        vec3_triangle_normal(c[0], c[1], c[2], normal);
+        area += vec3_length(normal) / 2;
+        volume += vec3_dot(normal, c[0]) / 6;
+    }
+    return 3 * fabs(volume) / area;
+}
+
 static starg_status find_guard(const partition *p, const region *r, job *j,
                                region_scratch *scratch) {
     starg_status status = STARG_OK;
@@ -138,7 +160,8 @@ static starg_status find_guard(const partition *p, const region *r, job *j,
     STARG_TRY(region_find_center(r, NULL, 0, scratch, center, &j->radius));
     if (j->radius > 0)
         partition_from_unit(p, center, j->guard);
-    if (j->attempts >= HALVE_FROM && j->radius < margin_of(j)) {
+    bool thin = j->most < MARGIN;
+    if ((j->attempts >= HALVE_FROM || thin) && j->radius < margin_of(j)) {
         j->radius = -1;
         STARG_TRY(find_kernel(p, j));
     }
@@ -160,6 +183,7 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     j->found = false;
     for (int all = facets < 2 * SAMPLE || j->attempts >= HALVE_FROM; all < 2; all++) {
         STARG_TRY(region_gather_some(b->p, &j->number, 1, all ? UINT32_MAX : SAMPLE, scratch, &r));
+        j->most = all ? largest_radius(&r) : INFINITY;
         STARG_TRY(find_guard(b->p, &r, j, scratch));
         if (!is_star(j))
             break;
@@ -237,6 +261,8 @@ done:
 
 static starg_status open_piece(bsp_builder *b, uint32_t number, int attempts) {
     starg_status status = STARG_OK;
+    if (b->p->pieces.count > b->many && attempts < REFLEX_FROM)
+        attempts = REFLEX_FROM;
     const job fresh = {.number = number, .attempts = attempts};
     STARG_PUSH(b->p->context, PARTITION_STAGE, &b->next, fresh);
 done:
@@ -369,6 +395,7 @@ static starg_status open_all(bsp_builder *b) {
     starg_status status = STARG_OK;
     size_t given = b->p->pieces.count, chosen = b->options->piece_count;
     size_t count = b->options->pieces != NULL ? chosen : given;
+    b->many = given + MANY_LEAST + b->p->facets.count / 2;
     for (size_t i = 0; i < count; i++) {
         uint32_t number = b->options->pieces != NULL ? b->options->pieces[i] : (uint32_t)i;
         STARG_TRY(partition_separate(b->p, number));
