@@ -128,6 +128,7 @@ double starg_clock(void) {
 
 void starg_context_set_time_limit(starg_context *context, double seconds) {
     context->deadline.at = seconds > 0 ? starg_clock() + seconds : 0;
+    context->deadline.grace = fmax(0.5, 0.1 * seconds);
 }
 
 starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule) {
@@ -150,6 +151,10 @@ double starg_seconds_left(const starg_context *context) {
 
 bool starg_time_is_over(const starg_context *context) {
     return starg_seconds_left(context) <= 0;
+}
+
+bool starg_time_is_long_over(const starg_context *context) {
+    return starg_seconds_left(context) <= -context->deadline.grace;
 }
 
 bool starg_time_has_failed(const starg_context *context) {

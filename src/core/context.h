@@ -23,7 +23,8 @@ typedef enum starg_time_rule {
 } starg_time_rule;
 
 typedef struct starg_deadline {
-    double at; /* on starg_clock(); 0: none */
+    double at;    /* on starg_clock(); 0: none */
+    double grace; /* seconds after that in which what has begun may come to a result */
     starg_time_rule rule;
 } starg_deadline;
 
@@ -89,6 +90,10 @@ double starg_seconds_left(const starg_context *context) STARG_PRIVATE(starg_seco
 
 /* True after the time limit, unless it is ignored. */
 bool starg_time_is_over(const starg_context *context) STARG_PRIVATE(starg_time_is_over);
+
+/* True half a second after it, or a tenth of it if that is longer: too late for what would be the
+ * first result. */
+bool starg_time_is_long_over(const starg_context *context);
 
 /* True after the time limit, if it ends the call. */
 bool starg_time_has_failed(const starg_context *context) STARG_PRIVATE(starg_time_has_failed);

@@ -8,10 +8,10 @@
  * (widen.c), borders between pieces better triangles (refine_caps.c), vertices of cuts and guards
  * better places (reshape.c), and each piece is made of tetrahedra about its guard (cone.c).
  *
- * The start runs to its end whatever the time limit says, in a hurry once that has passed: so there
- * is a result. Where it fails, which takes roundings that spoil every cut of some piece, others are
- * tried. Given tetrahedra are grown into regions first (region_growing.c), which always succeeds,
- * and the better one of both starts is searched. */
+ * A start that the time limit overtakes goes on for a while, in a hurry, since without it there is
+ * no result (starg_time_is_long_over). Where it fails, which takes roundings that spoil every cut
+ * of some piece, others are tried. Given tetrahedra are grown into regions first
+ * (region_growing.c), which always succeeds, and the better one of both starts is searched. */
 #include "star/strict/strict.h"
 
 #include <math.h>

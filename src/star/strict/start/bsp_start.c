@@ -81,6 +81,7 @@ typedef struct bsp_builder {
     double finished;   /* of it, in pieces that have a guard */
     uint64_t began;    /* with this stamp */
     uint64_t work;
+    bool stale;  /* the index of the partition is */
     size_t many; /* more pieces than that: only planes of reflex edges are taken, which end */
     bool hopeless;
 } bsp_builder;
@@ -235,11 +236,18 @@ static bool is_flat(const partition *p, size_t old_points, double most) {
     return true;
 }
 
+static starg_status renew_index(bsp_builder *b) {
+    starg_status status = b->stale ? partition_build_index(b->p) : STARG_OK;
+    b->stale = b->stale && status != STARG_OK;
+    return status;
+}
+
 /* In the extract: the piece cut, and both sides parted into what is connected. */
 static starg_status cut(bsp_builder *b, const job *j, partition_extract *e, bool *done) {
     starg_status status = STARG_OK;
     const piece fresh = {.stamp = ++b->p->stamps};
     partition *part = &e->part;
+    STARG_TRY(renew_index(b));
     STARG_TRY(extract_make(b->p, &j->number, 1, &b->scratch, e));
     uint32_t first = (uint32_t)part->pieces.count;
     STARG_PUSH(part->context, PARTITION_STAGE, &part->pieces, fresh);
@@ -286,7 +294,7 @@ static starg_status carry_out(bsp_builder *b, const job *j) {
     }
     uint32_t first = (uint32_t)b->p->pieces.count;
     STARG_TRY(extract_return(&e, b->p));
-    STARG_TRY(partition_build_index(b->p));
+    b->stale = true;
     STARG_TRY(open_piece(b, j->number, j->attempts / 2));
     for (uint32_t i = first; i < b->p->pieces.count; i++)
         STARG_TRY(open_piece(b, i, j->attempts / 2));
@@ -332,6 +340,8 @@ static starg_status run_round(bsp_builder *b) {
         const job *j = &b->jobs.data[i];
         b->work += j->work;
         STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
+        if (b->options->to_the_end && starg_time_is_long_over(b->p->context))
+            return starg_fail_time(b->p->context, PARTITION_STAGE);
         if (b->hopeless)
             continue;
         if (is_star(j))
@@ -339,6 +349,7 @@ static starg_status run_round(bsp_builder *b) {
         else
             STARG_TRY(carry_out(b, j));
     }
+    STARG_TRY(renew_index(b));
     STARG_TRY(merge_if_crowded(b));
 done:
     return status;
