@@ -218,6 +218,8 @@ static clip_result clip(const box_scene *scene, const box_triangle *t, const bvh
 
 /* ---- a box's question ---- */
 
+enum { STEPS = 32 }; /* triangles that take about a microsecond */
+
 starg_status box_worker_create(const box_scene *scene, box_worker **out) {
     starg_context *context = scene->context;
     size_t n = scene->vertex_count, m = scene->face_count;
@@ -262,8 +264,13 @@ uint64_t box_worker_tests(const box_worker *worker) {
     return worker->tests;
 }
 
+uint64_t box_worker_work(const box_worker *worker) {
+    return worker->tests + worker->steps / STEPS;
+}
+
 static bool add_crossing(void *user, uint32_t face) {
     box_worker *w = user;
+    w->steps++;
     uint32_t rank = w->scene->rank_of[face];
     if (box_may_cross(w->scene, &w->scene->triangles[rank], &w->box)) {
         w->crossing[w->crossing_count++] = rank;
@@ -279,7 +286,7 @@ static void renew_marks(box_worker *w) {
     memset(w->visit, 0, w->scene->face_count * sizeof *w->visit);
     memset(w->crossing_mark, 0, w->scene->face_count * sizeof *w->crossing_mark);
     memset(w->answer_mark, 0, w->scene->vertex_count * sizeof *w->answer_mark);
-    w->flood = w->question = 0;
+    w->flood = w->question = w->meeting = 0;
 }
 
 static void set_current(box_worker *w, const bvh_box *box) {

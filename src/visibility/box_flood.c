@@ -48,6 +48,8 @@
 #include "geometry/intersect.h"
 #include "visibility/box_parts.h"
 
+enum { STEPS_OF_MEETING = 16 }; /* looks at a triangle that take as long */
+
 typedef struct flood {
     box_worker *worker;
     const box_shaft *shaft;
@@ -63,7 +65,8 @@ static bool has_corner(const box_triangle *t, uint32_t vertex) {
 
 /* May the triangle be in the patch? */
 static bool admits(const flood *f, uint32_t rank, const box_triangle *t) {
-    const box_worker *w = f->worker;
+    box_worker *w = f->worker;
+    w->steps++;
     if (has_corner(t, w->vertex))
         return false;
     if (f->kind != FLOOD_ENTRY && w->crossing_mark[rank] == w->question &&
@@ -142,6 +145,7 @@ static bool try_seed(void *user, size_t rank) {
     const box_scene *scene = w->scene;
     const box_triangle *t = &scene->triangles[rank];
     const double *v = search->shaft->v;
+    w->steps++;
     if (w->visit[rank] > search->first || has_corner(t, w->vertex))
         return true; /* a failed flood came here, or it would fail at once */
     int side = box_side(scene, t, v);
@@ -212,12 +216,18 @@ static bool meets(const box_scene *scene, const box_triangle *t, const bvh_box *
     return meets_border(box, corner);
 }
 
-/* One triangle at least has to meet the box, not only perhaps. */
-static bool some_meets(const box_worker *w) {
-    for (size_t i = 0; i < w->crossing_count; i++)
-        if (meets(w->scene, &w->scene->triangles[w->crossing[i]], w->current))
-            return true;
-    return false;
+/* One triangle at least has to meet the box, not only perhaps. The whole box is asked once. */
+static bool some_meets(box_worker *w) {
+    bool found = false, whole = w->current == &w->box;
+    if (whole && (w->meeting - 1) / 2 == w->question)
+        return w->meeting % 2 == 0;
+    for (size_t i = 0; i < w->crossing_count && !found; i++) {
+        w->steps += STEPS_OF_MEETING;
+        found = meets(w->scene, &w->scene->triangles[w->crossing[i]], w->current);
+    }
+    if (whole)
+        w->meeting = 2 * w->question + 1 + found;
+    return found;
 }
 
 bool box_entry_hides(box_worker *w, const box_shaft *shaft) {
@@ -226,6 +236,7 @@ bool box_entry_hides(box_worker *w, const box_shaft *shaft) {
     for (size_t i = 0; i < w->crossing_count; i++) {
         uint32_t rank = w->crossing[i];
         const box_triangle *t = &scene->triangles[rank];
+        w->steps++;
         if (w->current != &w->box && !box_may_cross(scene, t, w->current))
             continue;
         if (!scene->sound[rank])

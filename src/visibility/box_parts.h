@@ -49,7 +49,9 @@ struct box_worker {
     uint32_t *seed;        /* by vertex: rank of the seed that was last good   */
     uint32_t *answer_mark; /* by vertex: the number of the question, if known */
     uint8_t *answer;       /* by vertex: a box_reason_kind                    */
-    uint64_t tests;
+    uint64_t meeting; /* 1 + twice the last question of which the whole box was asked whether some
+                         triangle meets it, 2 + that if one does */
+    uint64_t tests, steps; /* vertices, and triangles looked at */
 };
 
 static inline const double *box_corner(const box_scene *scene, const box_triangle *t, int k) {
