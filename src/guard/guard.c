@@ -170,8 +170,7 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
         if (limits[i].set)
             used += (size_t)snprintf(advice + used, sizeof advice - used, "%s%s",
                                      used > 0 ? ", or " : "; try ", limits[i].text);
-    return starg_fail(problem->context, STARG_ERROR_MESH, STAGE,
-                      "no candidate sees any target%s",
+    return starg_fail(problem->context, STARG_ERROR_MESH, STAGE, "no candidate sees any target%s",
                       used > 0 ? advice : ": the solid is too thin for the candidates");
 }
 

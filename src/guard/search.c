@@ -276,7 +276,7 @@ static starg_status run(search *s, bool improves) {
     s->improve_work = s->scene.work;
     s->nodes = MANY_NODES;
     if (o->prove) {
-        STARG_TRY(run_proof(s, o->prove_work));
+        STARG_TRY(run_proof(s, (uint64_t)((double)o->prove_work / search_scene_unit(&s->scene))));
         STARG_TRY(search_prove_by_leaves(s));
     }
     if (s->bound < s->count)
@@ -419,6 +419,10 @@ done:
     return status;
 }
 
+static uint64_t in_microseconds(const search *s, uint64_t work) {
+    return (uint64_t)((double)work * search_scene_unit(&s->scene));
+}
+
 starg_status search_guards(const guard_problem *problem, const guard_detail *detail, bool improves,
                            guard_pool *pool, guard_selection *selection, search_record *out) {
     starg_status status = STARG_OK;
@@ -448,8 +452,8 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
     *out = (search_record){s.bound,
                            s.cells.count,
                            s.scene.witnesses.count,
-                           s.improve_work,
-                           s.scene.work - s.improve_work,
+                           in_microseconds(&s, s.improve_work),
+                           in_microseconds(&s, s.scene.work - s.improve_work),
                            0};
 done:
     end(&s);

@@ -38,7 +38,8 @@ static uint64_t default_work(const search *s) {
 
 uint64_t search_improve_work(const search *s) {
     uint64_t asked = s->problem->options->refine_lines;
-    return asked == STARG_DEFAULT_LINES ? default_work(s) : asked;
+    return asked == STARG_DEFAULT_LINES ? default_work(s)
+                                        : (uint64_t)((double)asked / search_scene_unit(&s->scene));
 }
 
 starg_status search_improve(search *s, row_list *list) {

@@ -11,6 +11,8 @@
 
 static const char STAGE[] = "search";
 
+enum { WHOLE_WORK = 9 }; /* of a face that is seen whole */
+
 static void fill_places(search_scene *scene) {
     const visibility_scene *points = scene->points;
     const starg_mesh *mesh = scene->solid->mesh;
@@ -46,6 +48,12 @@ done:
     if (status != STARG_OK)
         search_scene_close(out);
     return status;
+}
+
+/* Sight lines go down a tree; by docs/BENCHMARKS.md, "Units of work". */
+double search_scene_unit(const search_scene *scene) {
+    double faces = (double)scene->solid->mesh->face_count;
+    return fmin(1, fmax(0.25, 0.12 * log2(faces) - 0.45));
 }
 
 void search_scene_close(search_scene *scene) {
@@ -121,7 +129,7 @@ bool search_scene_sees(const search_scene *scene, const search_point *point, siz
         whole ? scene_sees_face(scene->points, point->place, place, &view)
               : (view.target == STARG_TARGET_VERTICES || is_before(scene, column, point->place)) &&
                     scene_sees_vertex(scene->points, point->place, place, &view);
-    *work += sees && whole ? 3 : 1;
+    *work += !sees || !whole ? 1 : view.face_rule == STARG_FACES_WHOLE ? WHOLE_WORK : 3;
     return sees;
 }
 

@@ -24,7 +24,7 @@ typedef struct search_scene {
     solid_parts parts;               /* no point sees witnesses of two of them */
     STARG_ARRAY(uint32_t) witnesses; /* columns: the faces or vertices that stand for all */
     uint64_t number;                 /* of the context's scenes */
-    uint64_t work; /* tests of a vertex against a box or a point, each about a microsecond */
+    uint64_t work; /* tests of a vertex against a box or a point, and what takes as long */
 } search_scene;
 
 /* Errors: MEMORY. */
@@ -32,6 +32,9 @@ starg_status search_scene_open(starg_context *context, const starg_solid *solid,
                                const starg_visibility_options *view, double clearance,
                                search_scene *out);
 void search_scene_close(search_scene *scene);
+
+/* How many microseconds a unit of work takes, within a factor of two: less in small models. */
+double search_scene_unit(const search_scene *scene);
 
 /* A point where a guard may stand. */
 typedef struct search_point {

@@ -16,6 +16,7 @@
 #include "mesh/contact.h"
 #include "mesh/examine.h"
 #include "mesh/mesh.h"
+#include "mesh/pairs.h"
 
 typedef struct checker {
     starg_context *context;
@@ -245,8 +246,8 @@ static bool check_pair(void *user, uint32_t a, uint32_t b) {
 }
 
 static starg_status check_intersections(checker *c) {
-    bvh_query_pairs(c->tree, check_pair, c);
-    return starg_check_cancel(c->context, "check");
+    starg_status status = face_pairs_visit(c->context, c->mesh, c->tree, check_pair, c);
+    return status != STARG_OK ? status : starg_check_cancel(c->context, "check");
 }
 
 static size_t count_of(const checker *c, starg_finding_kind kind) {
