@@ -178,6 +178,8 @@ static bool print(json_t *object) {
 starg_status cli_report_print(cli_session *session) {
     json_t *report = session->report;
     cli_put(session, report, "log", json_incref(session->log));
+    cli_put(session, report, "counted_work",
+            json_integer((json_int_t)starg_context_work(session->context)));
     cli_put(session, report, "seconds", seconds(session));
     cli_put(session, report, "memory", memory(session));
     if (cli_ranks() != NULL)

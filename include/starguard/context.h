@@ -81,6 +81,10 @@ STARG_API void starg_context_set_time_limit(starg_context *context, double secon
 STARG_API size_t starg_context_peak_bytes(const starg_context *context);
 STARG_API size_t starg_context_live_blocks(const starg_context *context);
 
+/* Work that searches of this context have counted so far, in units of about a microsecond: the same
+ * for the same calls, on every machine and at any number of threads. */
+STARG_API uint64_t starg_context_work(const starg_context *context);
+
 /* The kind of element that indices of an error refer to. */
 typedef enum starg_element {
     STARG_ELEMENT_NONE = 0,

@@ -165,6 +165,10 @@ size_t starg_context_peak_bytes(const starg_context *context) {
     return atomic_load(&context->peak_bytes);
 }
 
+uint64_t starg_context_work(const starg_context *context) {
+    return context->work;
+}
+
 size_t starg_context_live_blocks(const starg_context *context) {
     return atomic_load(&context->live_blocks);
 }

@@ -55,6 +55,7 @@ struct starg_context {
 
     const starg_ranks *ranks; /* processes that share the work, or NULL */
     uint64_t shared_loops;    /* number of shared loops so far */
+    uint64_t work;            /* counted by searches so far, about microseconds */
     uint64_t search_scenes;   /* number of search scenes so far */
     uint64_t shared_scene;    /* the search scene that other processes hold; 0: none */
     double shared_seconds;    /* total time in them */

@@ -449,6 +449,7 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
         STARG_TRY(choose_again(&s, selection));
     if (!problem->options->prove && s.bound < 2)
         s.bound = 0; /* no improvement */
+    problem->context->work += in_microseconds(&s, s.scene.work);
     *out = (search_record){s.bound,
                            s.cells.count,
                            s.scene.witnesses.count,

@@ -256,6 +256,7 @@ starg_status search_area(const guard_problem *problem, const guard_pool *pool,
     STARG_TRY(begin(&a));
     STARG_TRY(run(&a, selection));
     selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
+    problem->context->work += a.work;
     *out = (search_record){.cells = a.cells.count, .prove_work = a.work};
     if (problem->options->max_guards > 0)
         out->weight_bound = a.weight_bound;

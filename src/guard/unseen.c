@@ -375,6 +375,7 @@ starg_status starg_unseen(starg_context *context, const starg_solid *scene,
         STARG_TRY(cut_boxes(&s, work));
     status = report(&s, out);
 done:
+    context->work += s.spent;
     end(&s);
     return status;
 }

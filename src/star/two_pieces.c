@@ -332,6 +332,7 @@ starg_status two_pieces_exclude(starg_context *context, const starg_solid *solid
     STARG_TRY(open_pair(&s, 0, 0, 1));
     while (s.open.count > 0 && s.tables.looks < work && !starg_time_is_over(context))
         STARG_TRY(visit_next(&s));
+    context->work += s.tables.looks;
     out->excluded = s.open.count == 0;
     if (out->excluded && certified)
         STARG_TRY(certificate_write(context, put_proof, &s, &out->certificate, &out->size));

@@ -32,6 +32,7 @@ enum {
     STARTS = 6, /* until one succeeds */
     IDLE = 1,   /* rounds for each piece that save nothing: then no more */
     IDLE_LEAST = 25,
+    IDLE_FEW = 5, /* the same for the smallest models */
     EVALUATIONS_LEAST = 50,
     EVALUATIONS_EACH = 3 /* for each grown region */
 };
@@ -181,6 +182,7 @@ typedef struct record {
 typedef struct searches {
     uint64_t trials, trials_left, work, work_left;
     size_t enough;
+    double share;       /* of the usual size */
     uint64_t work_each; /* of small changes in a round */
     uint64_t rounds;    /* so far */
     size_t idle;        /* of them, since the last that saved a piece */
@@ -247,8 +249,8 @@ static void fade(record *of) {
     of->saved *= FADING;
 }
 
-static size_t idle_most(const partition *p) {
-    return IDLE * p->pieces.count + IDLE_LEAST;
+static size_t idle_most(const searches *s, const partition *p) {
+    return IDLE * p->pieces.count + IDLE_FEW + (size_t)(s->share * (IDLE_LEAST - IDLE_FEW));
 }
 
 static uint64_t room_for(const searches *s, const starg_decompose_options *options) {
@@ -260,7 +262,7 @@ static uint64_t room_for(const searches *s, const starg_decompose_options *optio
 static starg_status may_go_on(const searches *s, const partition *p, bool *on) {
     starg_status status = STARG_OK;
     partition_numbers open = {0};
-    *on = s->idle < idle_most(p) && s->trials_left > 0 && s->work_left > 0 && !s->time_limited &&
+    *on = s->idle < idle_most(s, p) && s->trials_left > 0 && s->work_left > 0 && !s->time_limited &&
           p->pieces.count > s->enough;
     if (!*on)
         return STARG_OK;
@@ -278,7 +280,7 @@ static uint64_t effort_of(const searches *s, const starg_decompose_options *opti
 
 /* How far the search is, by whatever will end it. */
 static void tell_progress(const searches *s, const partition *p) {
-    double part = (double)s->idle / (double)idle_most(p), passed = starg_clock() - s->began;
+    double part = (double)s->idle / (double)idle_most(s, p), passed = starg_clock() - s->began;
     if (s->trials_left != UINT64_MAX)
         part = fmax(part, (double)s->trials / (double)(s->trials + s->trials_left));
     if (s->work_left <= WORK_MOST)
@@ -291,8 +293,8 @@ static void tell_progress(const searches *s, const partition *p) {
 static starg_status search(searches *s, partition *p) {
     starg_status status = STARG_OK;
     s->began = starg_clock();
-    double share = fmin(1, (double)p->pieces.count * (double)p->facets.count / USUAL_SIZE);
-    s->work_each = (uint64_t)(share * share * (double)WORK_EACH);
+    s->share = fmin(1, (double)p->pieces.count * (double)p->facets.count / USUAL_SIZE);
+    s->work_each = (uint64_t)(s->share * s->share * (double)WORK_EACH);
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(change_some(s, p));
     for (bool on; (status = may_go_on(s, p, &on)) == STARG_OK && on;) {

@@ -420,6 +420,7 @@ starg_status reshape(partition *p, uint64_t work) {
     }
     STARG_TRY(measure_pieces(p));
 done:
+    p->context->work += (work / LOOK_WORK - r.looks) * LOOK_WORK / PARTITION_WORK;
     starg_release(p->context, r.margins);
     STARG_ARRAY_FREE(p->context, &r.flat);
     return status;

@@ -205,6 +205,7 @@ starg_status widen(partition *p, uint64_t work) {
         STARG_TRY(apply_centers(p, &w.scratch));
     }
 done:
+    p->context->work += w.scratch.work / PARTITION_WORK;
     starg_release(p->context, list);
     STARG_ARRAY_FREE(p->context, &w.around);
     region_scratch_free(&w.scratch);

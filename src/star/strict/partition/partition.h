@@ -11,6 +11,9 @@
 
 #define PARTITION_STAGE "decompose"
 
+/* So many vertices, facets and rows are looked at in about a microsecond. */
+enum { PARTITION_WORK = 250 };
+
 /* A plane {x : normal . x = offset} in unit coordinates; the normal has length one. */
 typedef struct partition_plane {
     double normal[3], offset;

@@ -553,6 +553,7 @@ starg_status improve(partition *p, const improve_options *options, improve_repor
     STARG_TRY(join_all(&m));
     STARG_TRY(search(&m));
 done:
+    p->context->work += report->work / PARTITION_WORK;
     starg_progress_end(p->context);
     improver_free(&m);
     return status;

@@ -454,6 +454,7 @@ starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *rep
     }
     report->done = !b.hopeless;
 done:
+    p->context->work += b.work / PARTITION_WORK;
     region_scratch_free(&b.scratch);
     STARG_ARRAY_FREE(p->context, &b.hints);
     STARG_ARRAY_FREE(p->context, &b.jobs);
