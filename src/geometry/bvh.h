@@ -68,6 +68,10 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface);
  * through it, -1 where it enters, 0 where it misses. */
 int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
 
+/* Same about a point just beside p[0] in the triangle p: p[0] + e (p[1] - p[0]) + e^2 (p[2] - p[0])
+ * for all small e > 0. Exact; 0 if that is on the triangle. */
+int bvh_crossing_beside(const bvh *tree, uint32_t triangle, const double *const p[3]);
+
 /* Calls visit with the position in `order` of every triangle in the leaves that the segment from p
  * to q may meet (a superset of those that it meets), until it returns false. Returns false exactly
  * if visit did. */

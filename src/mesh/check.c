@@ -24,7 +24,8 @@ typedef struct checker {
     mesh_topology *topology;
     bvh *tree;
     mesh_shell *shells;
-    size_t pairs; /* of faces tested so far */
+    uint8_t *touching; /* by face: meets another shell */
+    size_t pairs;      /* of faces tested so far */
 } checker;
 
 /* Pairs between two checks of the clock. */
@@ -224,20 +225,37 @@ static void check_areas(checker *c) {
     }
 }
 
+static bool in_plane_of(const checker *c, uint32_t face, uint32_t other) {
+    const uint32_t *f = c->mesh->faces + 3 * (size_t)face, *o = c->mesh->faces + 3 * (size_t)other;
+    bool within = true;
+    for (int k = 0; k < 3 && within; k++)
+        within = orient3d(position(c, f[0]), position(c, f[1]), position(c, f[2]),
+                          position(c, o[k])) == 0;
+    return within;
+}
+
+/* Shells whose faces overlap in a plane touch there: they need not cross. */
+static void note_shells(checker *c, uint32_t a, uint32_t b, triangle_contact contact) {
+    uint32_t first = c->topology->component[a], second = c->topology->component[b];
+    if (contact == TRIANGLES_APART || first == second)
+        return;
+    c->touching[a] = c->touching[b] = 1;
+    if (contact == TRIANGLES_CROSS && !(in_plane_of(c, a, b) && in_plane_of(c, b, a)))
+        c->shells[first].crossed = c->shells[second].crossed = true;
+}
+
 static bool check_pair(void *user, uint32_t a, uint32_t b) {
     checker *c = user;
     const uint32_t *faces = c->mesh->faces;
     triangle_contact contact =
         faces_contact(c->mesh->vertices, faces + 3 * (size_t)a, faces + 3 * (size_t)b);
+    note_shells(c, a, b, contact);
     if (contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS) {
         starg_finding_kind kind = contact == TRIANGLES_CROSS ? STARG_FINDING_SELF_INTERSECTION
                                                              : STARG_FINDING_SELF_CONTACT;
         find_pair(c, kind, STARG_ELEMENT_FACE, a, b);
         mark_face(c, kind, a);
         mark_face(c, kind, b);
-        uint32_t first = c->topology->component[a], second = c->topology->component[b];
-        if (kind == STARG_FINDING_SELF_INTERSECTION && first != second)
-            c->shells[first].crossed = c->shells[second].crossed = true;
     }
     bool look_up = ++c->pairs % PAIRS_PER_CLOCK == 0;
     return !(look_up && starg_time_has_failed(c->context)) &&
@@ -255,7 +273,8 @@ static size_t count_of(const checker *c, starg_finding_kind kind) {
 
 static starg_status check_shells(checker *c) {
     starg_check *check = c->check;
-    starg_status status = shells_classify(c->context, c->mesh, c->topology, c->tree, c->shells);
+    starg_status status = shells_classify(c->context, c->mesh, c->topology, c->tree,
+                                          c->touching, c->shells);
     if (status != STARG_OK)
         return status;
     double volume = 0; /* scaled: the true volume may underflow */
@@ -308,6 +327,7 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     STARG_TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &c.tree));
     STARG_TRY(starg_check_cancel(context, "check"));
     STARG_NEW_ZERO(context, "check", c.shells, c.topology->component_count);
+    STARG_NEW_ZERO(context, "check", c.touching, mesh->face_count);
     check_corners(&c);
     check_edges(&c);
     STARG_TRY(check_vertices(&c));
@@ -322,6 +342,7 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     if (!c.check->oriented)
         STARG_TRY(topology_count_one_sided(c.topology, mesh, &c.check->one_sided_faces));
 done:
+    starg_release(context, c.touching);
     starg_progress_end(context);
     *out = (mesh_examination){c.check, c.topology, c.tree, c.shells};
     return status;

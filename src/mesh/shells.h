@@ -14,7 +14,7 @@ typedef struct mesh_shell {
     uint32_t first_face;
     double volume; /* signed, as given, times 8^-starg_mesh_exponent */
     int around;    /* winding number of the other shells about it, as given */
-    bool crossed;  /* intersects other shells; set by the caller */
+    bool crossed;  /* intersects other shells; set by the caller where faces cross */
     bool cavity;   /* bounds a hole: it lies in an odd number of other shells */
     bool turn;     /* faces must be reversed */
 } mesh_shell;
@@ -22,8 +22,10 @@ typedef struct mesh_shell {
 /* Fills volume, around, cavity and turn of topology->component_count shells of a closed, oriented
  * mesh. A shell inside an even number of others bounds the solid from outside (positive volume),
  * inside an odd number a cavity (negative). Nesting is undefined where shells intersect; those all
- * get positive volume. Errors: MEMORY. */
+ * get positive volume. `touching` marks the faces that meet other shells. Errors: MEMORY,
+ * CANCELLED, TIME. */
 starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
-                             const mesh_topology *topology, const bvh *tree, mesh_shell *shells);
+                             const mesh_topology *topology, const bvh *tree,
+                             const uint8_t *touching, mesh_shell *shells);
 
 #endif
