@@ -225,22 +225,30 @@ static void check_areas(checker *c) {
     }
 }
 
-static bool in_plane_of(const checker *c, uint32_t face, uint32_t other) {
-    const uint32_t *f = c->mesh->faces + 3 * (size_t)face, *o = c->mesh->faces + 3 * (size_t)other;
-    bool within = true;
-    for (int k = 0; k < 3 && within; k++)
-        within = orient3d(position(c, f[0]), position(c, f[1]), position(c, f[2]),
-                          position(c, o[k])) == 0;
-    return within;
+/* Does an edge of face a pass through the inside of face b? */
+static bool passes_through(const checker *c, uint32_t a, uint32_t b) {
+    const double *s[3], *t[3];
+    for (size_t k = 0; k < 3; k++) {
+        s[k] = position(c, c->mesh->faces[3 * (size_t)a + k]);
+        t[k] = position(c, c->mesh->faces[3 * (size_t)b + k]);
+    }
+    for (int i = 0; i < 3; i++) {
+        const double *p = s[i], *q = s[(i + 1) % 3];
+        int turn = orient3d(p, q, t[0], t[1]);
+        if (turn != 0 && orient3d(p, q, t[1], t[2]) == turn && orient3d(p, q, t[2], t[0]) == turn &&
+            orient3d(t[0], t[1], t[2], p) * orient3d(t[0], t[1], t[2], q) < 0)
+            return true;
+    }
+    return false;
 }
 
-/* Shells whose faces overlap in a plane touch there: they need not cross. */
+/* Shells touch where faces overlap in a plane, or meet in edges: they need not cross there. */
 static void note_shells(checker *c, uint32_t a, uint32_t b, triangle_contact contact) {
     uint32_t first = c->topology->component[a], second = c->topology->component[b];
     if (contact == TRIANGLES_APART || first == second)
         return;
     c->touching[a] = c->touching[b] = 1;
-    if (contact == TRIANGLES_CROSS && !(in_plane_of(c, a, b) && in_plane_of(c, b, a)))
+    if (contact == TRIANGLES_CROSS && (passes_through(c, a, b) || passes_through(c, b, a)))
         c->shells[first].crossed = c->shells[second].crossed = true;
 }
 

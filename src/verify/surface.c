@@ -2,8 +2,8 @@
 /* Shells are components of faces that share edges. They are oriented by the rule of the library's
  * solids, reimplemented: a shell inside an even number of others bounds the solid from outside and
  * must have positive volume; inside an odd number it bounds a cavity and must have negative volume;
- * "inside" means that the other shell has a nonzero winding number about a corner. A shell that
- * crosses another gets positive volume. Signs of volumes are exact.
+ * "inside" means that the other shell has a nonzero winding number about points that are not on it.
+ * A shell that crosses another gets positive volume. Signs of volumes are exact.
  *
  * Cost: a hash table of directed edges, O(n); with several shells one winding number for each pair
  * whose bounds allow nesting, and all pairs of faces for each cavity and a shell around it. */
@@ -158,20 +158,29 @@ static bool bounds_meet(const shell *a, const shell *b) {
     return true;
 }
 
-/* Does `other` have a nonzero winding number about the first corner of `own` that is not on it? */
+/* Place number `which` of a face: its corners, then points within, which are rounded. */
+static void place_on(const double *const t[3], int which, double out[3]) {
+    const double *a = t[which % 3], *b = t[(which + 1) % 3], *c = t[(which + 2) % 3];
+    for (int k = 0; k < 3; k++)
+        out[k] = which < 3 ? a[k] : 0.5 * a[k] + (0.25 * b[k] + 0.25 * c[k]);
+}
+
+/* Does `other` have a nonzero winding number about the first place of `own` that is not on it?
+ * Corners come first, which are exact. */
 static bool lies_in(const verify_surface *surface, const shell *own, const shell *other) {
     if (!bounds_meet(own, other))
         return false;
-    for (size_t i = 0; i < own->count; i++) {
-        const double *t[3];
-        verify_corners(surface, own->faces[i], t);
-        for (int j = 0; j < 3; j++) {
+    for (int first = 0; first < 6; first += 3)
+        for (size_t i = 0; i < 3 * own->count; i++) {
+            const double *t[3];
+            double p[3];
             bool on_surface;
-            int winding = verify_winding(surface, other->faces, other->count, t[j], &on_surface);
+            verify_corners(surface, own->faces[i / 3], t);
+            place_on(t, first + (int)(i % 3), p);
+            int winding = verify_winding(surface, other->faces, other->count, p, &on_surface);
             if (!on_surface)
                 return winding != 0;
         }
-    }
     return false;
 }
 
@@ -184,22 +193,53 @@ static void face_bounds(const verify_surface *surface, uint32_t face, shell *bou
     widen(bounds, t[2]);
 }
 
-static bool shells_cross(const verify_surface *surface, const shell *own, const shell *other) {
+/* Does an edge of s pass through the inside of t? */
+static bool passes_through(const double *const s[3], const double *const t[3]) {
+    for (int i = 0; i < 3; i++) {
+        const double *p = s[i], *q = s[(i + 1) % 3];
+        int turn = verify_side(p, q, t[0], t[1]);
+        if (turn != 0 && verify_side(p, q, t[1], t[2]) == turn &&
+            verify_side(p, q, t[2], t[0]) == turn &&
+            verify_side(t[0], t[1], t[2], p) * verify_side(t[0], t[1], t[2], q) < 0)
+            return true;
+    }
+    return false;
+}
+
+/* Is a corner of a face elsewhere than the shell, beside or in the other? */
+static bool strays(const verify_surface *surface, const double *const t[3], const shell *other,
+                   bool in) {
+    for (int k = 0; k < 3; k++) {
+        bool on_surface;
+        int winding = verify_winding(surface, other->faces, other->count, t[k], &on_surface);
+        if (!on_surface && (winding != 0) != in)
+            return true;
+    }
+    return false;
+}
+
+/* Faces that overlap in a plane touch. */
+static bool shells_cross(const verify_surface *surface, const shell *own, const shell *other,
+                         bool in) {
     if (!bounds_meet(own, other))
         return false;
-    for (size_t j = 0; j < other->count; j++) {
+    for (size_t i = 0; i < own->count; i++) {
         shell far_face, near_face;
-        face_bounds(surface, other->faces[j], &far_face);
-        if (!bounds_meet(own, &far_face))
-            continue;
         const double *s[3], *t[3];
-        verify_corners(surface, other->faces[j], t);
-        for (size_t i = 0; i < own->count; i++) {
-            face_bounds(surface, own->faces[i], &near_face);
-            verify_corners(surface, own->faces[i], s);
-            if (bounds_meet(&near_face, &far_face) && verify_cross(s, t))
+        bool near = false;
+        face_bounds(surface, own->faces[i], &near_face);
+        verify_corners(surface, own->faces[i], s);
+        for (size_t j = 0; j < other->count && bounds_meet(&near_face, other); j++) {
+            face_bounds(surface, other->faces[j], &far_face);
+            if (!bounds_meet(&near_face, &far_face))
+                continue;
+            near = true;
+            verify_corners(surface, other->faces[j], t);
+            if (passes_through(s, t) || passes_through(t, s))
                 return true;
         }
+        if (near && strays(surface, s, other, in))
+            return true;
     }
     return false;
 }
@@ -210,9 +250,11 @@ static bool is_cavity(const verify_surface *surface, const shell_list *shells, c
         depth += own != &shells->list.data[s] && lies_in(surface, own, &shells->list.data[s]);
     if (depth % 2 == 0)
         return false;
-    for (size_t s = 0; s < shells->list.count; s++)
-        if (own != &shells->list.data[s] && shells_cross(surface, own, &shells->list.data[s]))
+    for (size_t s = 0; s < shells->list.count; s++) {
+        const shell *other = &shells->list.data[s];
+        if (own != other && shells_cross(surface, own, other, lies_in(surface, own, other)))
             return false;
+    }
     return true;
 }
 
