@@ -281,8 +281,8 @@ static size_t count_of(const checker *c, starg_finding_kind kind) {
 
 static starg_status check_shells(checker *c) {
     starg_check *check = c->check;
-    starg_status status = shells_classify(c->context, c->mesh, c->topology, c->tree,
-                                          c->touching, c->shells);
+    starg_status status =
+        shells_classify(c->context, c->mesh, c->topology, c->tree, c->touching, c->shells);
     if (status != STARG_OK)
         return status;
     double volume = 0; /* scaled: the true volume may underflow */

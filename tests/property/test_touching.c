@@ -34,7 +34,7 @@ typedef struct model {
     shape s;
 } model;
 
-static const int STEP[3] = {1, WIDE, WIDE * WIDE};
+static const int STEP[3] = {1, WIDE, WIDE *WIDE};
 
 static void free_model(model *m) {
     shape_free(&m->s);
@@ -288,7 +288,8 @@ static model *make_boxes(starg_rng *rng) {
         bool fits = true;
         for (int k = 0; k < 3; k++) {
             own.low[k] = 1 + (int)starg_rng_below(rng, SIDE);
-            own.high[k] = own.low[k] + 1 + (int)starg_rng_below(rng, (uint64_t)(WIDE - 1 - own.low[k]));
+            own.high[k] =
+                own.low[k] + 1 + (int)starg_rng_below(rng, (uint64_t)(WIDE - 1 - own.low[k]));
         }
         for (size_t i = 0; i < count && fits; i++)
             fits = lies_in(&own, &all[i]) >= 0 || lies_in(&all[i], &own) > 0;
@@ -310,7 +311,8 @@ static model *make_boxes(starg_rng *rng) {
 }
 
 static model *make_model(starg_rng *rng, uint64_t round) {
-    return round % 3 == 0 ? make_boxes(rng) : make_polycube(rng, getenv("SH") != NULL && round % 3 == 1, true);
+    return round % 3 == 0 ? make_boxes(rng)
+                          : make_polycube(rng, getenv("SH") != NULL && round % 3 == 1, true);
 }
 
 /* ---- inside ---- */
@@ -322,7 +324,8 @@ static void check_cells(const model *m, const starg_solid *solid, const verify_s
         bool on;
         centre_of(m, cell, p);
         if (starg_solid_contains(solid, p) != m->solid[cell])
-            fail_msg("model %d: cell %d is %ssolid", (int)round, cell, m->solid[cell] ? "" : "not ");
+            fail_msg("model %d: cell %d is %ssolid", (int)round, cell,
+                     m->solid[cell] ? "" : "not ");
         int winding = verify_winding(surface, NULL, surface->face_count, p, &on);
         if (on || winding != m->solid[cell])
             fail_msg("model %d: verify winds %d times about cell %d, which is %ssolid", (int)round,
