@@ -7,6 +7,7 @@
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/flood.h"
+#include "mesh/wings.h"
 
 /* Findings that rule out a solid, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {
@@ -39,50 +40,81 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                       "the mesh is closed but encloses no volume: its shells are flat or doubled");
 }
 
-/* ---- coincident vertices ---- */
+/* ---- vertices at one position ---- */
 
-/* Maps corners at equal positions to the first vertex there; the others stay as isolated vertices,
- * so that vertices and faces keep their numbers. *welded counts those. */
-static starg_status weld_faces(starg_context *context, starg_mesh *mesh, size_t *welded) {
+/* A copy in which corners at equal positions have the first vertex there; the others stay as
+ * isolated vertices, so that vertices and faces keep their numbers. *out is NULL if there are none;
+ * *welded counts them. */
+static starg_status weld(starg_context *context, const starg_mesh *mesh, starg_mesh **out,
+                         size_t *welded) {
     starg_status status = STARG_OK;
     uint32_t *first = NULL;
     STARG_TRY(mesh_find_coincident(context, mesh, &first, welded));
+    if (*welded == 0)
+        goto done;
+    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
+                                mesh->face_count, out));
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
-        mesh->faces[i] = first[mesh->faces[i]];
+        (*out)->faces[i] = first[mesh->faces[i]];
 done:
     starg_release(context, first);
     return status;
 }
 
-/* Many programs write a vertex per corner along a seam. Coincident vertices are welded if the faces
- * then bound a solid; otherwise the mesh is examined as given. */
-static starg_status weld_if_closed(starg_context *context, starg_solid *solid,
+/* Takes `other` and its examination if it bounds a solid. Frees `other`, or else what it replaces.
+ */
+static starg_status take_if_usable(starg_context *context, starg_solid *solid, starg_mesh *other,
                                    mesh_examination *all) {
+    mesh_examination own = {0};
+    starg_status status = mesh_examine(context, other, &own);
+    if (status == STARG_OK && own.check->usable) {
+        mesh_examination former = *all;
+        *all = own;
+        own = former;
+        starg_mesh *given = solid->mesh;
+        solid->mesh = other;
+        other = given;
+    }
+    mesh_examination_free(context, &own);
+    starg_mesh_free(other);
+    return status;
+}
+
+/* Many programs write a vertex per corner along a seam: coincident vertices are welded. Others share
+ * vertices where parts only touch: each part gets its own. Either is done if the faces then bound a
+ * solid; otherwise the mesh is examined as given. */
+static starg_status mend_vertices(starg_context *context, starg_solid *solid,
+                                  mesh_examination *all) {
     starg_status status = STARG_OK;
-    mesh_examination welded = {0};
-    starg_mesh *copy = NULL;
+    starg_mesh *welded = NULL, *parted = NULL;
     size_t count = 0;
-    STARG_TRY(starg_mesh_create(context, solid->mesh->vertices, solid->mesh->vertex_count,
-                                solid->mesh->faces, solid->mesh->face_count, &copy));
-    STARG_TRY(weld_faces(context, copy, &count));
-    if (count == 0)
+    if (all->check->findings[STARG_FINDING_DUPLICATE_VERTEX].count > 0 && !all->check->closed)
+        STARG_TRY(weld(context, solid->mesh, &welded, &count));
+    const starg_mesh *mesh = welded != NULL ? welded : solid->mesh;
+    STARG_TRY(wings_part(context, mesh, &parted));
+    size_t copies = parted != NULL ? parted->vertex_count - mesh->vertex_count : 0;
+    if (parted == NULL) {
+        parted = welded;
+        welded = NULL;
+    }
+    if (parted == NULL)
         goto done;
-    STARG_TRY(mesh_examine(context, copy, &welded));
-    if (!welded.check->usable)
+    status = take_if_usable(context, solid, parted, all);
+    parted = NULL;
+    if (status != STARG_OK || !all->check->usable)
         goto done;
-    starg_log(
-        context, STARG_LOG_NOTICE,
-        "merged %zu vertices with earlier ones at the same position, which closes the surface",
-        count);
-    mesh_examination open = *all;
-    starg_mesh *given = solid->mesh;
-    *all = welded;
-    welded = open;
-    solid->mesh = copy;
-    copy = given;
+    if (count > 0)
+        starg_log(context, STARG_LOG_NOTICE,
+                  "merged %zu vertices with earlier ones at the same position, which closes the "
+                  "surface",
+                  count);
+    if (copies > 0)
+        starg_log(context, STARG_LOG_NOTICE,
+                  "parts of the surface share %zu %s where they touch; each part got its own",
+                  copies, copies == 1 ? "vertex" : "vertices");
 done:
-    mesh_examination_free(context, &welded);
-    starg_mesh_free(copy);
+    starg_mesh_free(welded);
+    starg_mesh_free(parted);
     return status;
 }
 
@@ -127,12 +159,13 @@ static starg_status make(starg_context *context, const starg_mesh *mesh, bool tu
     *out = NULL;
     STARG_NEW_ZERO(context, "solid", solid, 1);
     solid->context = context;
+    solid->model_vertices = mesh->vertex_count;
     STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
                                 mesh->face_count, &solid->mesh));
     STARG_TRY(mesh_check_extent(context, mesh, "solid"));
     STARG_TRY(mesh_examine(context, solid->mesh, &all));
-    if (!all.check->usable && all.check->findings[STARG_FINDING_DUPLICATE_VERTEX].count > 0)
-        STARG_TRY(weld_if_closed(context, solid, &all));
+    if (!all.check->usable)
+        STARG_TRY(mend_vertices(context, solid, &all));
     if (!all.check->usable) {
         status = fail_unusable(context, all.check);
         goto done;
@@ -182,6 +215,7 @@ starg_status solid_of_parts(starg_context *context, const double *vertices, size
     *out = NULL;
     STARG_NEW_ZERO(context, "solid", solid, 1);
     solid->context = context;
+    solid->model_vertices = vertex_count;
     STARG_TRY(starg_mesh_create(context, vertices, vertex_count, faces, face_count, &solid->mesh));
     STARG_NEW(context, "solid", solid->check, 1);
     *solid->check = *check;

@@ -18,10 +18,12 @@ struct starg_solid {
     starg_check *check; /* `embedded` promises that no face has free space outside */
     bvh *tree;
 
+    size_t model_vertices; /* as given; others follow: copies, those of obstacles */
+
     /* Scenes (mesh/space.c); all zero in a plain solid. */
     bool scene;
     int ambient;
-    size_t model_vertices, model_faces; /* those of obstacles follow */
+    size_t model_faces; /* those of obstacles follow */
     size_t obstacle_count;
     size_t *obstacle_sizes; /* vertices and faces of each, as given */
     uint32_t *other_side;   /* by face: of a triangle that stands twice, front and back, the other

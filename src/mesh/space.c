@@ -415,7 +415,7 @@ done:
 /* ---- questions ---- */
 
 size_t starg_space_model_vertices(const starg_solid *scene) {
-    return scene->scene ? scene->model_vertices : scene->mesh->vertex_count;
+    return scene->model_vertices;
 }
 
 size_t starg_space_model_faces(const starg_solid *scene) {
