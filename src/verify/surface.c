@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shells are components of faces that share edges. They are oriented by the rule of the library's
- * solids, reimplemented: a shell inside an even number of others bounds the solid from outside and
- * must have positive volume; inside an odd number it bounds a cavity and must have negative volume;
+/* Shells are components of faces that share edges; of more than two faces at an edge, those with
+ * solid between them belong together. They are oriented by the rule of the library's solids,
+ * reimplemented: a shell inside an even number of others bounds the solid from outside and must
+ * have positive volume; inside an odd number it bounds a cavity and must have negative volume;
  * "inside" means that the other shell has a nonzero winding number about points that are not on it.
  * A shell that crosses another gets positive volume. Signs of volumes are exact.
  *
- * Cost: a hash table of directed edges, O(n); with several shells one winding number for each pair
- * whose bounds allow nesting, and all pairs of faces for each cavity and a shell around it. */
+ * Cost: sorted edges, O(n log n); with several shells one winding number for each pair whose bounds
+ * allow nesting, and all pairs of faces for each cavity and a shell around it. */
 #include "verify/surface.h"
 
 #include <math.h>
@@ -14,7 +15,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/rng.h"
 #include "verify/exact_sum.h"
 #include "verify/sets.h"
 #include "verify/signs.h"
@@ -23,70 +23,128 @@ static const char STAGE[] = "verify";
 
 /* ---- edges ---- */
 
-/* Directed edge e runs from corner e % 3 of face e / 3 to the next corner. The table holds e + 1 at
- * the first free slot after the hash of its ends. */
-typedef struct edge_table {
-    const uint32_t *faces;
-    uint64_t *slots;
-    size_t mask;
-} edge_table;
+/* Edge e of a face runs from corner e % 3 of face e / 3 to the next corner. */
+typedef struct side {
+    uint32_t low, high, edge; /* the lower and the higher end */
+} side;
 
-static uint32_t edge_from(const uint32_t *faces, uint64_t e) {
-    return faces[e];
+static uint32_t edge_from(const verify_surface *surface, uint32_t e) {
+    return surface->faces[e];
 }
 
-static uint32_t edge_to(const uint32_t *faces, uint64_t e) {
-    return faces[e % 3 == 2 ? e - 2 : e + 1];
+static uint32_t edge_to(const verify_surface *surface, uint32_t e) {
+    return surface->faces[e % 3 == 2 ? e - 2 : e + 1];
 }
 
-/* The slot of the edge from a to b, or the free slot for it. */
-static uint64_t *find_edge(const edge_table *table, uint32_t a, uint32_t b) {
-    size_t i = (size_t)starg_hash64((uint64_t)a << 32 | b) & table->mask;
-    for (;; i = (i + 1) & table->mask) {
-        uint64_t *slot = &table->slots[i];
-        if (*slot == 0 ||
-            (edge_from(table->faces, *slot - 1) == a && edge_to(table->faces, *slot - 1) == b))
-            return slot;
+static const double *tip_of(const verify_surface *surface, uint32_t e) {
+    return surface->vertices + 3 * (size_t)surface->faces[e % 3 == 0 ? e + 2 : e - 1];
+}
+
+static int compare_sides(const void *left, const void *right) {
+    const side *a = left, *b = right;
+    if (a->low != b->low)
+        return a->low < b->low ? -1 : 1;
+    if (a->high != b->high)
+        return a->high < b->high ? -1 : 1;
+    return (a->edge > b->edge) - (a->edge < b->edge);
+}
+
+/* In which quarter about the line a b is p, as seen from `first`: 0 the same half plane, 1 before
+ * the opposite one, 2 that, 3 beyond it. */
+static int quarter(const double a[3], const double b[3], const double first[3], const double p[3]) {
+    int sign = verify_side(a, b, first, p);
+    for (int axis = 0; sign == 0 && axis < 3; axis++) {
+        int turn = verify_turn(a, b, first, axis);
+        if (turn != 0)
+            return verify_turn(a, b, p, axis) == -turn ? 2 : 0;
     }
+    return sign > 0 ? 1 : sign < 0 ? 3 : 0;
 }
 
-static starg_status insert_edges(starg_context *context, edge_table *table, size_t edge_count) {
-    for (uint64_t e = 0; e < edge_count; e++) {
-        uint32_t a = edge_from(table->faces, e), b = edge_to(table->faces, e);
-        uint64_t *slot = find_edge(table, a, b);
-        if (a == b || *slot != 0) {
-            const uint64_t ends[2] = {a, b};
-            return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
-                                 "the surface is not oriented: face %zu runs along edge %u-%u %s",
-                                 (size_t)(e / 3), a, b,
-                                 a == b ? "that has no length" : "like another face");
+/* Does the face of edge e come before that of f, turning about the line from that of `first`? */
+static bool turns_before(const verify_surface *surface, const side *s, uint32_t first, uint32_t e,
+                         uint32_t f) {
+    const double *a = surface->vertices + 3 * (size_t)s->low;
+    const double *b = surface->vertices + 3 * (size_t)s->high;
+    int own = quarter(a, b, tip_of(surface, first), tip_of(surface, e));
+    int other = quarter(a, b, tip_of(surface, first), tip_of(surface, f));
+    if (own != other)
+        return own < other;
+    return own % 2 == 1 && verify_side(a, b, tip_of(surface, e), tip_of(surface, f)) > 0;
+}
+
+/* The faces at one edge, in order about it: each that runs from the lower end with the next one
+ * that runs back, past pairs between them. Solid is between the two. */
+static void pair_about(const verify_surface *surface, side *s, size_t count, uint32_t *twin) {
+    for (size_t i = 1; i < count; i++)
+        for (size_t k = i;
+             k > 0 && turns_before(surface, s, s[0].edge, s[k].edge, s[k - 1].edge) && k > 1; k--) {
+            side other = s[k];
+            s[k] = s[k - 1];
+            s[k - 1] = other;
         }
-        *slot = e + 1;
+    for (size_t i = 0; i < count; i++) {
+        size_t depth = 1, k = i;
+        if (edge_from(surface, s[i].edge) != s[i].low)
+            continue;
+        while (depth > 0) {
+            k = (k + 1) % count;
+            depth = edge_from(surface, s[k].edge) == s[k].low ? depth + 1 : depth - 1;
+        }
+        twin[s[i].edge] = s[k].edge;
+        twin[s[k].edge] = s[i].edge;
     }
+}
+
+static starg_status pair_sides(const verify_surface *surface, side *s, size_t count,
+                               uint32_t *twin) {
+    size_t forward = 0;
+    const uint64_t ends[2] = {s->low, s->high};
+    for (size_t i = 0; i < count; i++)
+        forward += edge_from(surface, s[i].edge) == s->low;
+    if (s->low == s->high || (2 * forward != count && count % 2 == 0))
+        return starg_fail_at(surface->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
+                             "the surface is not oriented: face %u runs along edge %u-%u %s",
+                             s[count - 1].edge / 3, s->low, s->high,
+                             s->low == s->high ? "that has no length" : "like another face");
+    if (2 * forward != count)
+        return starg_fail_at(surface->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
+                             "the surface is not closed: edge %u-%u of face %u has no face on its "
+                             "other side",
+                             s->low, s->high, s->edge / 3);
+    pair_about(surface, s, count, twin);
     return STARG_OK;
+}
+
+starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin) {
+    starg_context *context = surface->context;
+    starg_status status = STARG_OK;
+    size_t edges = 3 * surface->face_count, count;
+    side *sides = NULL;
+    *twin = NULL;
+    STARG_NEW(context, STAGE, sides, edges);
+    STARG_NEW(context, STAGE, *twin, edges);
+    for (uint32_t e = 0; e < edges; e++) {
+        uint32_t a = edge_from(surface, e), b = edge_to(surface, e);
+        sides[e] = (side){a < b ? a : b, a < b ? b : a, e};
+    }
+    qsort(sides, edges, sizeof *sides, compare_sides);
+    for (size_t i = 0; i < edges; i += count) {
+        for (count = 1; i + count < edges && sides[i + count].low == sides[i].low &&
+                        sides[i + count].high == sides[i].high;)
+            count++;
+        STARG_TRY(pair_sides(surface, sides + i, count, *twin));
+    }
+done:
+    starg_release(context, sides);
+    if (status != STARG_OK) {
+        starg_release(context, *twin);
+        *twin = NULL;
+    }
+    return status;
 }
 
 /* ---- shells ---- */
-
-/* Joins faces that share an edge; the root of a shell is its lowest face. */
-static starg_status join_faces(starg_context *context, const edge_table *table, size_t edge_count,
-                               uint32_t *parent) {
-    for (uint32_t f = 0; f < edge_count / 3; f++)
-        parent[f] = f;
-    for (uint64_t e = 0; e < edge_count; e++) {
-        uint32_t a = edge_from(table->faces, e), b = edge_to(table->faces, e);
-        uint64_t twin = *find_edge(table, b, a);
-        if (twin == 0) {
-            const uint64_t ends[2] = {a, b};
-            return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
-                                 "the surface is not closed: edge %u-%u of face %zu has no face "
-                                 "on its other side",
-                                 a, b, (size_t)(e / 3));
-        }
-        verify_join(parent, (uint32_t)(e / 3), (uint32_t)((twin - 1) / 3));
-    }
-    return STARG_OK;
-}
 
 typedef struct shell {
     const uint32_t *faces;
@@ -285,43 +343,22 @@ done:
 static starg_status orient(verify_surface *surface, bool turns) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
-    edge_table table = {.faces = surface->faces, .mask = 1};
-    size_t edge_count = 3 * surface->face_count;
-    uint32_t *parent = NULL;
+    uint32_t *parent = NULL, *twin = NULL;
     shell_list shells = {0};
-    while (table.mask < 2 * edge_count)
-        table.mask = 2 * table.mask + 1;
-    STARG_NEW_ZERO(context, STAGE, table.slots, table.mask + 1);
     STARG_NEW(context, STAGE, parent, surface->face_count);
-    STARG_TRY(insert_edges(context, &table, edge_count));
-    STARG_TRY(join_faces(context, &table, edge_count, parent));
+    STARG_TRY(verify_find_twins(surface, &twin));
+    for (uint32_t f = 0; f < surface->face_count; f++) /* the root of a shell is its lowest face */
+        parent[f] = f;
+    for (size_t e = 0; e < 3 * surface->face_count; e++)
+        verify_join(parent, (uint32_t)(e / 3), twin[e] / 3);
     STARG_TRY(gather_shells(surface, parent, &shells));
     if (turns)
         STARG_TRY(turn_shells(surface, &shells));
 done:
-    starg_release(context, table.slots);
+    starg_release(context, twin);
     starg_release(context, parent);
     starg_release(context, shells.faces);
     STARG_ARRAY_FREE(context, &shells.list);
-    return status;
-}
-
-starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin) {
-    starg_status status = STARG_OK;
-    starg_context *context = surface->context;
-    const uint32_t *faces = surface->faces;
-    edge_table table = {.faces = faces, .mask = 1};
-    size_t edge_count = 3 * surface->face_count;
-    *twin = NULL;
-    while (table.mask < 2 * edge_count)
-        table.mask = 2 * table.mask + 1;
-    STARG_NEW_ZERO(context, STAGE, table.slots, table.mask + 1);
-    STARG_NEW(context, STAGE, *twin, edge_count);
-    STARG_TRY(insert_edges(context, &table, edge_count));
-    for (uint64_t e = 0; e < edge_count; e++)
-        (*twin)[e] = (uint32_t)(*find_edge(&table, edge_to(faces, e), edge_from(faces, e)) - 1);
-done:
-    starg_release(context, table.slots);
     return status;
 }
 

@@ -312,7 +312,7 @@ static model *make_boxes(starg_rng *rng) {
 
 static model *make_model(starg_rng *rng, uint64_t round) {
     return round % 3 == 0 ? make_boxes(rng)
-                          : make_polycube(rng, getenv("SH") != NULL && round % 3 == 1, true);
+                          : make_polycube(rng, round % 3 == 1, true);
 }
 
 /* ---- inside ---- */
