@@ -288,6 +288,33 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
     return query.winding;
 }
 
+typedef struct beside_query {
+    const bvh *tree;
+    const double *p[3];
+    int winding;
+} beside_query;
+
+static bool add_crossing_beside(void *user, uint32_t triangle) {
+    beside_query *query = user;
+    query->winding += bvh_crossing_beside(query->tree, triangle, query->p);
+    return true;
+}
+
+/* The upward line begins on the triangle and leaves it on its upper side; one in a vertical
+ * triangle runs beside it, as perturbed_turn says. */
+int bvh_winding_before(const bvh *tree, uint32_t triangle) {
+    beside_query query = {.tree = tree};
+    for (int k = 0; k < 3; k++)
+        query.p[k] = corner(tree, triangle, k);
+    const double *p = query.p[0];
+    const bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
+    int up = 0;
+    for (int u = 0; u < 3 && up == 0; u++)
+        up = orient2d(query.p[0], query.p[1], query.p[2], u, (u + 1) % 3);
+    bvh_query_box(tree, &line, add_crossing_beside, &query);
+    return up > 0 ? query.winding : query.winding - 1;
+}
+
 /* A segment p + t d, 0 <= t <= 1, prepared for slab tests. */
 typedef struct slab_segment {
     double origin[3], extent[3], inverse[3];

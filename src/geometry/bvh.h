@@ -72,6 +72,10 @@ int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
  * for all small e > 0. Exact; 0 if that is on the triangle. */
 int bvh_crossing_beside(const bvh *tree, uint32_t triangle, const double *const p[3]);
 
+/* Winding number of the mesh just before a triangle (on its outer side, near corner 0), which has
+ * area and lies on no other. Exact for closed meshes. */
+int bvh_winding_before(const bvh *tree, uint32_t triangle);
+
 /* Calls visit with the position in `order` of every triangle in the leaves that the segment from p
  * to q may meet (a superset of those that it meets), until it returns false. Returns false exactly
  * if visit did. */

@@ -72,4 +72,8 @@ bool verify_box_shades(verify_watch *watch, const verify_box *box, const double 
  * Errors: MEMORY, CANCELLED. */
 starg_status verify_find_sound(const verify_scene *scene, uint8_t *sound, bool *embedded);
 
+/* Do faces meet only in corners and edges at equal positions, and is the outside surely just before
+ * each? Errors: MEMORY, CANCELLED. */
+starg_status verify_find_bounding(const verify_scene *scene, bool *bounding);
+
 #endif

@@ -340,6 +340,46 @@ done:
 
 /* ---- public function ---- */
 
+/* The corners at each vertex that follow each other across edges keep it, or get a copy, in the
+ * order of the lowest corners, behind the other vertices. */
+static starg_status part_vertices(verify_surface *surface, const uint32_t *twin) {
+    starg_status status = STARG_OK;
+    starg_context *context = surface->context;
+    STARG_ARRAY(double) vertices = {0};
+    uint8_t *met = NULL, *used = NULL;
+    size_t given = surface->vertex_count;
+    STARG_NEW_ZERO(context, STAGE, met, 3 * surface->face_count);
+    STARG_NEW_ZERO(context, STAGE, used, given);
+    for (size_t i = 0; i < 3 * given; i++)
+        STARG_PUSH(context, STAGE, &vertices, surface->vertices[i]);
+    for (uint32_t e = 0; e < 3 * surface->face_count; e++) {
+        uint32_t vertex = surface->faces[e], own = vertex;
+        if (met[e])
+            continue;
+        if (used[vertex]) {
+            own = (uint32_t)(vertices.count / 3);
+            for (size_t k = 0; k < 3; k++)
+                STARG_PUSH(context, STAGE, &vertices, surface->vertices[3 * (size_t)vertex + k]);
+        }
+        used[vertex] = 1;
+        for (uint32_t c = e; !met[c]; c = twin[c % 3 == 0 ? c + 2 : c - 1]) {
+            met[c] = 1;
+            surface->faces[c] = own;
+        }
+    }
+    surface->vertex_count = vertices.count / 3;
+    if (surface->vertex_count > given) {
+        starg_release(context, surface->own_vertices);
+        surface->vertices = surface->own_vertices = vertices.data;
+        vertices.data = NULL;
+    }
+done:
+    STARG_ARRAY_FREE(context, &vertices);
+    starg_release(context, met);
+    starg_release(context, used);
+    return status;
+}
+
 static starg_status orient(verify_surface *surface, bool turns) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
@@ -351,6 +391,7 @@ static starg_status orient(verify_surface *surface, bool turns) {
         parent[f] = f;
     for (size_t e = 0; e < 3 * surface->face_count; e++)
         verify_join(parent, (uint32_t)(e / 3), twin[e] / 3);
+    STARG_TRY(part_vertices(surface, twin));
     STARG_TRY(gather_shells(surface, parent, &shells));
     if (turns)
         STARG_TRY(turn_shells(surface, &shells));
