@@ -166,7 +166,7 @@ static void turn_shells(shape *s, const uint32_t *shell, starg_rng *rng) {
 }
 
 /* The mesh, with a vertex of its own for every fan of faces, or with one for all at a position. */
-static void make_mesh(builder *b, bool shared, bool turned, starg_rng *rng) {
+static void make_mesh(builder *b, bool shared, starg_rng *rng) {
     shape *s = &b->m->s;
     uint32_t corners = (uint32_t)(3 * b->face_count), count = 0;
     uint32_t *fan = malloc(corners * sizeof *fan), *shell = malloc(corners * sizeof *shell);
@@ -192,25 +192,27 @@ static void make_mesh(builder *b, bool shared, bool turned, starg_rng *rng) {
         s->faces[h] = *own;
     }
     s->vertex_count = count;
-    if (turned)
-        turn_shells(s, shell, rng);
+    turn_shells(s, shell, rng);
     free(fan);
     free(shell);
     free(name);
 }
 
-/* Cells of half the size leave no edge whose both ends are in one fan, twice. */
-static void fill_cells(model *m, starg_rng *rng) {
+/* Cells of a grid of 3, some of them of half the size, so that no edge has both ends in one fan,
+ * twice. */
+static void fill_cells(model *m, starg_rng *rng, bool fine) {
     uint64_t share = 2 + starg_rng_below(rng, 6), checkered = starg_rng_below(rng, 4);
-    for (int z = 0; z < SIDE / 2; z++)
-        for (int y = 0; y < SIDE / 2; y++)
-            for (int x = 0; x < SIDE / 2; x++) {
-                bool solid = starg_rng_below(rng, 9) < share;
-                solid = checkered == 0 ? (x + y + z) % 2 == (int)(share % 2) : solid;
-                for (int i = 0; i < 8 && solid; i++)
-                    m->solid[(2 * x + 1 + i % 2) + WIDE * (2 * y + 1 + i / 2 % 2) +
-                             WIDE * WIDE * (2 * z + 1 + i / 4)] = true;
-            }
+    for (int cell = 0; cell < 27; cell++) {
+        int at[3] = {cell % 3, cell / 3 % 3, cell / 9};
+        bool solid = starg_rng_below(rng, 9) < share;
+        if (checkered == 0)
+            solid = (at[0] + at[1] + at[2]) % 2 == (int)(share % 2);
+        for (int i = 0; i < (fine ? 8 : 1) && solid; i++) {
+            int scale = fine ? 2 : 1;
+            m->solid[(scale * at[0] + 1 + i % 2) + WIDE * (scale * at[1] + 1 + i / 2 % 2) +
+                     WIDE * WIDE * (scale * at[2] + 1 + i / 4)] = true;
+        }
+    }
     for (int i = 0; i < CELLS; i++)
         m->count += m->solid[i];
 }
@@ -223,17 +225,17 @@ static model *new_model(starg_rng *rng) {
     return m;
 }
 
-static model *make_polycube(starg_rng *rng, bool shared, bool turned) {
+static model *make_polycube(starg_rng *rng, bool shared, bool fine) {
     model *m = new_model(rng);
     builder *b = calloc(1, sizeof *b);
     assert_non_null(b);
     b->m = m;
     while (m->count == 0)
-        fill_cells(m, rng);
+        fill_cells(m, rng, fine);
     list_sides(b);
     split_sides(b, rng);
     assert_true(pair_faces(b, rng));
-    make_mesh(b, shared, turned, rng);
+    make_mesh(b, shared, rng);
     free(b);
     return m;
 }
@@ -242,12 +244,12 @@ static model *make_polycube(starg_rng *rng, bool shared, bool turned) {
 
 enum { BOXES = 7 };
 
-typedef struct box {
+typedef struct block {
     int low[3], high[3];
-} box;
+} block;
 
 /* 1: the inner one lies in the other, 0: they are apart, -1: neither. */
-static int lies_in(const box *inner, const box *outer) {
+static int lies_in(const block *inner, const block *outer) {
     bool in = true, apart = false, same = true;
     for (int k = 0; k < 3; k++) {
         in = in && outer->low[k] <= inner->low[k] && inner->high[k] <= outer->high[k];
@@ -257,7 +259,7 @@ static int lies_in(const box *inner, const box *outer) {
     return apart ? 0 : in && !same ? 1 : -1;
 }
 
-static void add_box(model *m, const box *own, bool turned) {
+static void add_box(model *m, const block *own, bool turned) {
     static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                          {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     shape *s = &m->s;
@@ -278,13 +280,13 @@ static void add_box(model *m, const box *own, bool turned) {
 
 static model *make_boxes(starg_rng *rng) {
     model *m = new_model(rng);
-    box all[BOXES];
+    block all[BOXES];
     size_t count = 0;
     m->s.vertices = malloc(sizeof(double[BOXES * 8 * 3]));
     m->s.faces = malloc(sizeof(uint32_t[BOXES * 12 * 3]));
     assert_true(m->s.vertices != NULL && m->s.faces != NULL);
     for (int tries = 0; tries < 200 && count < BOXES; tries++) {
-        box own;
+        block own;
         bool fits = true;
         for (int k = 0; k < 3; k++) {
             own.low[k] = 1 + (int)starg_rng_below(rng, SIDE);
@@ -311,8 +313,7 @@ static model *make_boxes(starg_rng *rng) {
 }
 
 static model *make_model(starg_rng *rng, uint64_t round) {
-    return round % 3 == 0 ? make_boxes(rng)
-                          : make_polycube(rng, round % 3 == 1, true);
+    return round % 3 == 0 ? make_boxes(rng) : make_polycube(rng, round % 3 == 1, true);
 }
 
 /* ---- inside ---- */
@@ -336,7 +337,7 @@ static void check_cells(const model *m, const starg_solid *solid, const verify_s
 static void test_cells(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    for (uint64_t round = 0; round < test_rounds(300, 6000); round++) {
+    for (uint64_t round = 0; round < test_rounds(120, 6000); round++) {
         starg_rng rng = starg_rng_make(55, 1, round);
         model *m = make_model(&rng, round);
         starg_mesh *mesh = test_mesh_of(context, &m->s);
@@ -347,8 +348,6 @@ static void test_cells(void **state) {
         if (verify_surface_create(context, mesh, &surface) != STARG_OK)
             fail_msg("model %d: %s", (int)round, starg_context_error(context)->message);
         const starg_check *check = starg_solid_check(solid);
-        if (getenv("DUMP") && fabs(check->volume - (double)m->count) > 1e-9)
-            test_ok(context, starg_mesh_write(context, mesh, "/tmp/w3t/bad.off", NULL));
         if (fabs(check->volume - (double)m->count) > 1e-9)
             fail_msg("model %d: volume %g of %zu cells", (int)round, check->volume, m->count);
         check_cells(m, solid, surface, round);
@@ -360,7 +359,181 @@ static void test_cells(void **state) {
     test_context_free(context);
 }
 
+/* ---- what is seen ---- */
+
+typedef struct subject {
+    starg_context *context;
+    uint64_t round;
+    model *m;
+    starg_mesh *mesh;
+    starg_solid *solid;
+} subject;
+
+static subject make_subject(starg_context *context, uint64_t round) {
+    starg_rng rng = starg_rng_make(55, 2, round);
+    subject s = {.context = context, .round = round, .m = make_model(&rng, round)};
+    s.mesh = test_mesh_of(context, &s.m->s);
+    test_ok(context, starg_solid_create(context, s.mesh, &s.solid));
+    return s;
+}
+
+static void free_subject(subject *s) {
+    starg_solid_free(s->solid);
+    starg_mesh_free(s->mesh);
+    free_model(s->m);
+}
+
+/* All engines against the definition. */
+static void check_engines(const subject *s, const double p[3], const bool *expected) {
+    size_t count = starg_mesh_face_count(s->mesh);
+    for (int engine = 0; engine <= STARG_VISIBILITY_FASTEST; engine++) {
+        starg_visibility_options options;
+        starg_bits *seen = NULL;
+        starg_visibility_options_default(&options);
+        options.engine = (starg_visibility_engine)engine;
+        test_ok(s->context, starg_visibility(s->context, s->solid, p, 1, &options, &seen));
+        for (size_t f = 0; f < count; f++)
+            if (starg_bits_test(seen, 0, f) != expected[f])
+                fail_msg("model %d: engine %d is wrong about face %zu from (%g, %g, %g)",
+                         (int)s->round, engine, f, p[0], p[1], p[2]);
+        starg_bits_free(seen);
+    }
+}
+
+/* What is hidden from a box is hidden from points of it. */
+static void check_box(const subject *s, box_worker *worker, const bvh_box *box,
+                      const double *points, size_t count) {
+    const starg_mesh *own = starg_solid_mesh(s->solid);
+    box_question q = {.box = *box, .range = INFINITY, .count = starg_mesh_face_count(own)};
+    uint64_t *open = calloc(starg_bit_words(q.count), sizeof *open);
+    bool *seen = calloc(q.count, sizeof *seen);
+    assert_true(open != NULL && seen != NULL);
+    box_look(worker, &q, open, NULL);
+    for (size_t i = 0; i < count; i++) {
+        visibility_oracle_faces(starg_mesh_vertices(own), starg_mesh_vertex_count(own),
+                                starg_mesh_faces(own), q.count, points + 3 * i, false, seen);
+        for (size_t f = 0; f < q.count; f++)
+            if (seen[f] && !starg_bit_test(open, f))
+                fail_msg("model %d: (%g, %g, %g) sees face %zu, which is hidden from its box",
+                         (int)s->round, points[3 * i], points[3 * i + 1], points[3 * i + 2], f);
+        if (i == 0)
+            check_engines(s, points, seen);
+    }
+    free(open);
+    free(seen);
+}
+
+static void test_sight(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t round = 0; round < test_rounds(18, 1000); round++) {
+        subject s = make_subject(context, round);
+        box_scene *scene = NULL;
+        box_worker *worker = NULL;
+        test_ok(context, box_scene_create(context, s.solid, &scene));
+        test_ok(context, box_worker_create(scene, &worker));
+        for (size_t i = 0; i < 6; i++) {
+            starg_rng rng = starg_rng_make(55, 3, 6 * round + i);
+            double points[9];
+            bvh_box box = box_about(s.solid, &rng, i);
+            check_box(&s, worker, &box, points, box_points(s.solid, &box, &rng, 3, points));
+        }
+        box_worker_free(worker);
+        box_scene_free(scene);
+        free_subject(&s);
+    }
+    test_context_free(context);
+}
+
+/* ---- results ---- */
+
+static void expect_passed(const subject *s, starg_verdict *verdict) {
+    for (size_t i = 0; i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            fail_msg("model %d: %s", (int)s->round, verdict->claims[i].text);
+    starg_verdict_free(s->context, verdict);
+}
+
+static void check_guards(const subject *s) {
+    starg_guard_options options;
+    starg_guards *guards = NULL;
+    starg_certificate *why = NULL;
+    starg_verdict *verdict = NULL;
+    char *text = NULL;
+    size_t size;
+    starg_guard_options_default(&options);
+    options.candidate_count = 100;
+    options.prove = true;
+    options.prove_work = 100000;
+    test_ok(s->context,
+            starg_guard_certified(s->context, s->solid, &options, &guards, &text, &size));
+    test_ok(s->context, starg_certificate_read_memory(s->context, text, size, "c", &why));
+    const starg_guards_evidence evidence = {.certificate = why};
+    test_ok(s->context, starg_verify_guards_with(s->context, s->mesh, &evidence, guards, &verdict));
+    expect_passed(s, verdict);
+    assert_int_equal(guards->vertex_count, starg_mesh_vertex_count(s->mesh));
+    starg_certificate_free(why);
+    starg_text_free(s->context, text);
+    starg_guards_free(s->context, guards);
+}
+
+static void check_pieces(const subject *s) {
+    starg_decompose_options options;
+    starg_decomposition *d = NULL;
+    starg_certificate *why = NULL;
+    starg_verdict *verdict = NULL;
+    char *text = NULL;
+    size_t size;
+    starg_decompose_options_default(&options);
+    options.effort = 1;
+    options.prove = true;
+    options.prove_work = 20000;
+    test_ok(s->context,
+            starg_decompose_certified(s->context, s->solid, &options, &d, &text, &size));
+    test_ok(s->context, starg_certificate_read_memory(s->context, text, size, "c", &why));
+    const starg_pieces_mesh mesh = {
+        .vertex_count = starg_tetmesh_vertex_count(d->mesh),
+        .count = starg_tetmesh_count(d->mesh),
+        .vertices = (double *)(uintptr_t)starg_tetmesh_vertices(d->mesh),
+        .tetrahedra = (uint32_t *)(uintptr_t)starg_tetmesh_tetrahedra(d->mesh),
+        .labels = d->labels};
+    const starg_pieces_report report = {.mode = d->mode,
+                                        .tetrahedra = mesh.count,
+                                        .piece_count = d->piece_count,
+                                        .pieces = d->pieces,
+                                        .contact_count = d->contact_count,
+                                        .contacts = d->contacts,
+                                        .strictly_star = d->strictly_star,
+                                        .visible_vertices = d->visible_vertices,
+                                        .flattest = d->flattest,
+                                        .lower_bound = d->lower_bound,
+                                        .optimal = d->optimal};
+    test_ok(s->context,
+            starg_verify_pieces_with(s->context, s->mesh, why, &mesh, &report, &verdict));
+    expect_passed(s, verdict);
+    assert_true(d->tetra.surface_kept && d->strictly_star == d->piece_count);
+    assert_int_equal(d->model_vertices, starg_mesh_vertex_count(s->mesh));
+    assert_true(fabs(starg_tetmesh_volume(d->mesh) - (double)s->m->count) < 1e-9);
+    starg_certificate_free(why);
+    starg_text_free(s->context, text);
+    starg_decomposition_free(s->context, d);
+}
+
+static void test_results(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t round = 0; round < test_rounds(9, 300); round++) {
+        subject s = make_subject(context, round);
+        check_guards(&s);
+        if (round % 3 > 0) /* not of flush boxes: walls in walls are no contacts */
+            check_pieces(&s);
+        free_subject(&s);
+    }
+    test_context_free(context);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cells)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cells), cmocka_unit_test(test_sight),
+                                       cmocka_unit_test(test_results)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
