@@ -288,31 +288,53 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
     return query.winding;
 }
 
+int bvh_covers_beside(const bvh *tree, uint32_t triangle, const double *const p[3]) {
+    const double *t[3];
+    int u = 0, turn = 0, other = 0;
+    for (int k = 0; k < 3; k++)
+        t[k] = corner(tree, triangle, k);
+    for (int i = 0; i < 3; i++)
+        if (orient3d(t[0], t[1], t[2], p[i]) != 0)
+            return 0;
+    for (; u < 3 && turn == 0; u += turn == 0)
+        turn = orient2d(t[0], t[1], t[2], u, (u + 1) % 3);
+    for (int k = 0; k < 3 && turn != 0; k++) {
+        int side = 0;
+        for (int i = 0; i < 3 && side == 0; i++)
+            side = orient2d(t[k], t[(k + 1) % 3], p[i], u, (u + 1) % 3);
+        turn = side == turn ? turn : 0;
+    }
+    if (turn != 0)
+        other = orient2d(p[0], p[1], p[2], u, (u + 1) % 3);
+    return turn * other;
+}
+
 typedef struct beside_query {
     const bvh *tree;
     const double *p[3];
-    int winding;
+    int winding, layers;
 } beside_query;
 
 static bool add_crossing_beside(void *user, uint32_t triangle) {
     beside_query *query = user;
     query->winding += bvh_crossing_beside(query->tree, triangle, query->p);
+    query->layers += bvh_covers_beside(query->tree, triangle, query->p);
     return true;
 }
 
-/* The upward line begins on the triangle and leaves it on its upper side; one in a vertical
- * triangle runs beside it, as perturbed_turn says. */
-int bvh_winding_before(const bvh *tree, uint32_t triangle) {
+/* The upward line begins above the triangle, or beside a vertical one, as perturbed_turn says. If
+ * that is the outer side, the triangle, and others on it, are between there and the inner one. */
+int bvh_winding_behind(const bvh *tree, uint32_t triangle, int k) {
     beside_query query = {.tree = tree};
-    for (int k = 0; k < 3; k++)
-        query.p[k] = corner(tree, triangle, k);
+    for (int i = 0; i < 3; i++)
+        query.p[i] = corner(tree, triangle, (k + i) % 3);
     const double *p = query.p[0];
     const bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
     int up = 0;
     for (int u = 0; u < 3 && up == 0; u++)
         up = orient2d(query.p[0], query.p[1], query.p[2], u, (u + 1) % 3);
     bvh_query_box(tree, &line, add_crossing_beside, &query);
-    return up > 0 ? query.winding : query.winding - 1;
+    return up > 0 ? query.winding + query.layers : query.winding;
 }
 
 /* A segment p + t d, 0 <= t <= 1, prepared for slab tests. */

@@ -52,24 +52,6 @@ static bool has_area(const nesting *n, size_t face) {
     return !collinear(corner(n, face, 0), corner(n, face, 1), corner(n, face, 2));
 }
 
-/* Is the point, whose face has area, on a triangle? */
-static bool is_on(const nesting *n, size_t face) {
-    const double *t[3] = {corner(n, face, 0), corner(n, face, 1), corner(n, face, 2)};
-    int u = 0, turn = 0;
-    for (int i = 0; i < 3; i++)
-        if (orient3d(t[0], t[1], t[2], n->p[i]) != 0)
-            return false;
-    for (; u < 3 && turn == 0; u += turn == 0)
-        turn = orient2d(t[0], t[1], t[2], u, (u + 1) % 3);
-    for (int k = 0; k < 3 && turn != 0; k++) {
-        int side = 0;
-        for (int i = 0; i < 3 && side == 0; i++)
-            side = orient2d(t[k], t[(k + 1) % 3], n->p[i], u, (u + 1) % 3);
-        turn = side == turn ? turn : 0;
-    }
-    return turn != 0;
-}
-
 static bool count_crossing(void *user, uint32_t triangle) {
     nesting *n = user;
     uint32_t name = n->topology->component[triangle];
@@ -77,7 +59,7 @@ static bool count_crossing(void *user, uint32_t triangle) {
         return true;
     other_shell *other = &n->others[name];
     int crossing = bvh_crossing_beside(n->tree, triangle, n->p);
-    bool covers = crossing == 0 && is_on(n, triangle);
+    bool covers = crossing == 0 && bvh_covers_beside(n->tree, triangle, n->p) != 0;
     if (!other->listed && (crossing != 0 || covers)) {
         *other = (other_shell){.listed = true, .known = n->asked ? 0 : UNKNOWN};
         n->list[n->count++] = name;

@@ -61,28 +61,26 @@ done:
     return status;
 }
 
-/* Takes `other` and its examination if it bounds a solid. Frees `other`, or else what it replaces.
- */
-static starg_status take_if_usable(starg_context *context, starg_solid *solid, starg_mesh *other,
+/* Takes *other and its examination if it bounds a solid; *other is then what it replaces. */
+static starg_status take_if_usable(starg_context *context, starg_solid *solid, starg_mesh **other,
                                    mesh_examination *all) {
     mesh_examination own = {0};
-    starg_status status = mesh_examine(context, other, &own);
+    starg_status status = mesh_examine(context, *other, &own);
     if (status == STARG_OK && own.check->usable) {
         mesh_examination former = *all;
         *all = own;
         own = former;
         starg_mesh *given = solid->mesh;
-        solid->mesh = other;
-        other = given;
+        solid->mesh = *other;
+        *other = given;
     }
     mesh_examination_free(context, &own);
-    starg_mesh_free(other);
     return status;
 }
 
-/* Many programs write a vertex per corner along a seam: coincident vertices are welded. Others share
- * vertices where parts only touch: each part gets its own. Either is done if the faces then bound a
- * solid; otherwise the mesh is examined as given. */
+/* Many programs write a vertex per corner along a seam: coincident vertices are welded. Others
+ * share vertices where parts only touch: each part gets its own. Either is done if the faces then
+ * bound a solid; otherwise the mesh is examined as given. */
 static starg_status mend_vertices(starg_context *context, starg_solid *solid,
                                   mesh_examination *all) {
     starg_status status = STARG_OK;
@@ -90,19 +88,18 @@ static starg_status mend_vertices(starg_context *context, starg_solid *solid,
     size_t count = 0;
     if (all->check->findings[STARG_FINDING_DUPLICATE_VERTEX].count > 0 && !all->check->closed)
         STARG_TRY(weld(context, solid->mesh, &welded, &count));
-    const starg_mesh *mesh = welded != NULL ? welded : solid->mesh;
-    STARG_TRY(wings_part(context, mesh, &parted));
-    size_t copies = parted != NULL ? parted->vertex_count - mesh->vertex_count : 0;
-    if (parted == NULL) {
-        parted = welded;
-        welded = NULL;
+    starg_mesh **shared = welded != NULL ? &welded : &solid->mesh;
+    STARG_TRY(wings_part(context, *shared, &parted));
+    size_t copies = parted != NULL ? parted->vertex_count - (*shared)->vertex_count : 0;
+    if (parted == NULL && welded == NULL)
+        goto done;
+    STARG_TRY(take_if_usable(context, solid, parted != NULL ? &parted : &welded, all));
+    if (!all->check->usable)
+        goto done;
+    if (copies > 0) { /* the mesh as given is in `parted` now */
+        solid->shared = welded != NULL ? welded : parted;
+        *(welded != NULL ? &welded : &parted) = NULL;
     }
-    if (parted == NULL)
-        goto done;
-    status = take_if_usable(context, solid, parted, all);
-    parted = NULL;
-    if (status != STARG_OK || !all->check->usable)
-        goto done;
     if (count > 0)
         starg_log(context, STARG_LOG_NOTICE,
                   "merged %zu vertices with earlier ones at the same position, which closes the "
@@ -118,9 +115,11 @@ done:
     return status;
 }
 
-static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const mesh_shell *shells) {
+static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const mesh_shell *shells,
+                        shell_facing facing) {
     for (size_t f = 0; f < mesh->face_count; f++) {
-        if (!shells[topology->component[f]].turn)
+        const mesh_shell *own = &shells[topology->component[f]];
+        if (!(facing == SHELLS_OUTWARD ? own->volume < 0 : own->turn))
             continue;
         uint32_t *corner = mesh->faces + 3 * f, swap = corner[1];
         corner[1] = corner[2];
@@ -151,8 +150,8 @@ void solid_tell(starg_context *context, const char *whose, const starg_check *ch
                   flat == 1 ? "it" : "them");
 }
 
-static starg_status make(starg_context *context, const starg_mesh *mesh, bool turns,
-                         starg_solid **out) {
+starg_status solid_make_facing(starg_context *context, const starg_mesh *mesh, shell_facing facing,
+                               starg_solid **out) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     mesh_examination all = {0};
@@ -170,8 +169,10 @@ static starg_status make(starg_context *context, const starg_mesh *mesh, bool tu
         status = fail_unusable(context, all.check);
         goto done;
     }
-    if (turns)
-        turn_shells(solid->mesh, all.topology, all.shells);
+    if (facing != SHELLS_AS_GIVEN)
+        turn_shells(solid->mesh, all.topology, all.shells, facing);
+    if (facing != SHELLS_AS_GIVEN && solid->shared != NULL)
+        turn_shells(solid->shared, all.topology, all.shells, facing);
     solid->check = all.check;
     solid->tree = all.tree;
     all.check = NULL;
@@ -185,12 +186,7 @@ done:
 }
 
 starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
-    return make(context, mesh, true, out);
-}
-
-starg_status solid_make_as_given(starg_context *context, const starg_mesh *mesh,
-                                 starg_solid **out) {
-    return make(context, mesh, false, out);
+    return solid_make_facing(context, mesh, SHELLS_NESTED, out);
 }
 
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
@@ -205,6 +201,16 @@ starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, 
     if (status == STARG_OK)
         solid_tell(context, "", (*out)->check);
     return status;
+}
+
+starg_status solid_must_not_share(starg_context *context, const starg_solid *solid,
+                                  const char *stage) {
+    if (solid->shared == NULL)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_MESH, stage,
+                      "parts of the surface share %zu vertices where they touch; give each part its "
+                      "own by 'starguard repair'",
+                      solid->mesh->vertex_count - solid->shared->vertex_count);
 }
 
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,
@@ -251,6 +257,7 @@ void starg_solid_free(starg_solid *solid) {
         return;
     starg_context *context = solid->context;
     starg_mesh_free(solid->mesh);
+    starg_mesh_free(solid->shared);
     starg_check_free(context, solid->check);
     bvh_free(solid->tree);
     starg_release(context, solid->obstacle_sizes);
@@ -268,7 +275,7 @@ void starg_solid_free(starg_solid *solid) {
 }
 
 const starg_mesh *starg_solid_mesh(const starg_solid *solid) {
-    return solid->mesh;
+    return solid->shared != NULL ? solid->shared : solid->mesh;
 }
 
 const starg_check *starg_solid_check(const starg_solid *solid) {

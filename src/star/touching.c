@@ -6,7 +6,7 @@
  *
  * Method: vertices at equal positions become one; then every pair of faces must meet in what they
  * share. No face then meets another inside, so that the winding number is the same everywhere just
- * before it. Exact. Cost: that of finding the pairs again, where the check has found contacts. */
+ * behind it. Exact. Cost: that of finding the pairs again, where the check has found contacts. */
 #include "star/touching.h"
 
 #include "core/memory.h"
@@ -60,7 +60,7 @@ starg_status touching_bounds(starg_context *context, const starg_solid *solid, b
     status = touching_weld(context, solid, &faces);
     *bounds = faces != NULL;
     for (uint32_t f = 0; f < solid->mesh->face_count && *bounds; f++)
-        *bounds = bvh_winding_before(solid->tree, f) == 0;
+        *bounds = bvh_winding_behind(solid->tree, f, 0) == 1;
     starg_release(context, faces);
     return status;
 }

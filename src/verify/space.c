@@ -72,8 +72,11 @@ static starg_status add_model(gathering *g, const starg_mesh *mesh, const starg_
     bool keeps = guards->space.orientation == STARG_ORIENTATION_KEEP;
     if (guards->space.soup)
         return add_sheet(g, mesh, BACK); /* what faces out of the free space */
-    STARG_TRY(keeps ? verify_surface_as_given(g->context, mesh, &surface)
-                    : verify_surface_create(g->context, mesh, &surface));
+    STARG_TRY(verify_surface_facing(g->context, mesh,
+                                    keeps                   ? VERIFY_AS_GIVEN
+                                    : guards->space.outside ? VERIFY_OUTWARD
+                                                            : VERIFY_NESTED,
+                                    &surface));
     bool inward = keeps && volume_sign(surface) < 0;
     STARG_TRY(add_vertices(g, surface, &first));
     status =

@@ -316,7 +316,8 @@ static bool is_cavity(const verify_surface *surface, const shell_list *shells, c
     return true;
 }
 
-static starg_status turn_shells(verify_surface *surface, const shell_list *shells) {
+static starg_status turn_shells(verify_surface *surface, const shell_list *shells,
+                                verify_facing facing) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
     uint8_t *turn = NULL;
@@ -324,7 +325,8 @@ static starg_status turn_shells(verify_surface *surface, const shell_list *shell
     for (size_t s = 0; s < shells->list.count; s++) {
         const shell *own = &shells->list.data[s];
         STARG_TRY(starg_check_cancel(context, STAGE));
-        turn[s] = volume_sign(surface, own) == (is_cavity(surface, shells, own) ? 1 : -1);
+        bool cavity = facing == VERIFY_NESTED && is_cavity(surface, shells, own);
+        turn[s] = volume_sign(surface, own) == (cavity ? 1 : -1);
     }
     for (size_t s = 0; s < shells->list.count; s++)
         for (size_t i = 0; turn[s] && i < shells->list.data[s].count; i++) {
@@ -380,7 +382,7 @@ done:
     return status;
 }
 
-static starg_status orient(verify_surface *surface, bool turns) {
+static starg_status orient(verify_surface *surface, verify_facing facing) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
     uint32_t *parent = NULL, *twin = NULL;
@@ -393,8 +395,8 @@ static starg_status orient(verify_surface *surface, bool turns) {
         verify_join(parent, (uint32_t)(e / 3), twin[e] / 3);
     STARG_TRY(part_vertices(surface, twin));
     STARG_TRY(gather_shells(surface, parent, &shells));
-    if (turns)
-        STARG_TRY(turn_shells(surface, &shells));
+    if (facing != VERIFY_AS_GIVEN)
+        STARG_TRY(turn_shells(surface, &shells, facing));
 done:
     starg_release(context, twin);
     starg_release(context, parent);
@@ -483,16 +485,16 @@ done:
     return status;
 }
 
-static starg_status create(starg_context *context, const starg_mesh *mesh, bool turns,
-                           verify_surface **out) {
+starg_status verify_surface_facing(starg_context *context, const starg_mesh *mesh,
+                                   verify_facing facing, verify_surface **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     *out = NULL;
     STARG_TRY(copy_faces(context, mesh, &surface));
-    status = orient(surface, turns);
+    status = orient(surface, facing);
     if (status == STARG_ERROR_MESH) { /* nothing has been reversed yet */
         STARG_TRY(weld(surface));
-        STARG_TRY(orient(surface, turns));
+        STARG_TRY(orient(surface, facing));
     }
     *out = status == STARG_OK ? surface : NULL;
 done:
@@ -503,12 +505,7 @@ done:
 
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out) {
-    return create(context, mesh, true, out);
-}
-
-starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
-                                     verify_surface **out) {
-    return create(context, mesh, false, out);
+    return verify_surface_facing(context, mesh, VERIFY_NESTED, out);
 }
 
 starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,

@@ -36,9 +36,10 @@ static inline bool verify_is_target(const verify_surface *surface, size_t face) 
  * further group, and orients shells. Errors: MESH, MEMORY, CANCELLED. */
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
-/* Same without reorienting shells. */
-starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
-                                     verify_surface **out);
+/* Same with all shells facing outward, also those of cavities, or as given. */
+typedef enum verify_facing { VERIFY_NESTED, VERIFY_OUTWARD, VERIFY_AS_GIVEN } verify_facing;
+starg_status verify_surface_facing(starg_context *context, const starg_mesh *mesh,
+                                   verify_facing facing, verify_surface **out);
 /* The faces of any mesh, with coincident vertices welded; without checks or reorientation. */
 starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
