@@ -14,8 +14,8 @@
 extern "C" {
 #endif
 
-/* Kinds of findings. The first five make a mesh unusable as a solid; the others are only reported.
- */
+/* Kinds of findings. The first five make a mesh unusable as a solid, unless edges of more faces and
+ * vertices of several fans are where parts of it touch; the others are only reported. */
 typedef enum starg_finding_kind {
     STARG_FINDING_OPEN_EDGE = 0,          /* an edge of one face                               */
     STARG_FINDING_NONMANIFOLD_EDGE = 1,   /* an edge of three or more faces                    */
@@ -48,7 +48,7 @@ typedef struct starg_check {
     bool manifold;          /* every edge at most two faces, every vertex one fan           */
     bool oriented;          /* neighbours agree; inward shells are allowed */
     bool embedded;          /* no degenerate face, intersection or contact                  */
-    bool usable;            /* closed, manifold, oriented, with faces and positive volume   */
+    bool usable;            /* closed, oriented, with positive volume; manifold but for contacts */
     int64_t genus;          /* sum over components; -1 unless closed and manifold           */
     double area, volume;    /* volume after turning inward shells; 0 unless usable          */
     double diagonal;        /* of the bounding box                                          */

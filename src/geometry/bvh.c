@@ -225,10 +225,15 @@ bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user) {
     return true;
 }
 
-/* Where the upward line from p passes edge a b in projection: 1 if on its left. p is perturbed to
- * (x + e, y + e^2), so that it never lies on the edge. */
-static int perturbed_turn(const double a[3], const double b[3], const double p[3]) {
-    int turn = orient2d(a, b, p, 0, 1);
+/* Of points p[0] .. p[count - 1], the tests look at p[0] + e (p[1] - p[0]) + e^2 (p[2] - p[0]) for
+ * all small e > 0: an affine function has the sign there of its first value that is not 0. */
+
+/* Where the upward line from there passes edge a b in projection: 1 if on its left. It is perturbed
+ * by (d, d^2) for still smaller d, so that it never passes through the edge. */
+static int perturbed_turn(const double a[3], const double b[3], const double *const *p, int count) {
+    int turn = 0;
+    for (int i = 0; i < count && turn == 0; i++)
+        turn = orient2d(a, b, p[i], 0, 1);
     if (turn == 0)
         turn = (a[1] > b[1]) - (a[1] < b[1]);
     if (turn == 0)
@@ -236,15 +241,26 @@ static int perturbed_turn(const double a[3], const double b[3], const double p[3
     return turn;
 }
 
-int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]) {
+static int crossing(const bvh *tree, uint32_t triangle, const double *const *p, int count) {
     const double *a = corner(tree, triangle, 0);
     const double *b = corner(tree, triangle, 1);
     const double *c = corner(tree, triangle, 2);
-    int ab = perturbed_turn(a, b, p), bc = perturbed_turn(b, c, p), ca = perturbed_turn(c, a, p);
-    if (ab == 0 || ab != bc || bc != ca)
+    int ab = perturbed_turn(a, b, p, count), bc = perturbed_turn(b, c, p, count);
+    if (ab == 0 || ab != bc || bc != perturbed_turn(c, a, p, count))
         return 0;
     /* The triangle is not vertical, and ab tells whether it faces up. */
-    return orient3d(a, b, c, p) * ab > 0 ? ab : 0;
+    int side = 0;
+    for (int i = 0; i < count && side == 0; i++)
+        side = orient3d(a, b, c, p[i]);
+    return side * ab > 0 ? ab : 0;
+}
+
+int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]) {
+    return crossing(tree, triangle, &p, 1);
+}
+
+int bvh_crossing_beside(const bvh *tree, uint32_t triangle, const double *const p[3]) {
+    return crossing(tree, triangle, p, 3);
 }
 
 typedef struct winding_query {
@@ -270,6 +286,55 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
     bvh_query_box(tree, &line, add_crossing, &query);
     *on_surface = query.on_surface;
     return query.winding;
+}
+
+int bvh_covers_beside(const bvh *tree, uint32_t triangle, const double *const p[3]) {
+    const double *t[3];
+    int u = 0, turn = 0, other = 0;
+    for (int k = 0; k < 3; k++)
+        t[k] = corner(tree, triangle, k);
+    for (int i = 0; i < 3; i++)
+        if (orient3d(t[0], t[1], t[2], p[i]) != 0)
+            return 0;
+    for (; u < 3 && turn == 0; u += turn == 0)
+        turn = orient2d(t[0], t[1], t[2], u, (u + 1) % 3);
+    for (int k = 0; k < 3 && turn != 0; k++) {
+        int side = 0;
+        for (int i = 0; i < 3 && side == 0; i++)
+            side = orient2d(t[k], t[(k + 1) % 3], p[i], u, (u + 1) % 3);
+        turn = side == turn ? turn : 0;
+    }
+    if (turn != 0)
+        other = orient2d(p[0], p[1], p[2], u, (u + 1) % 3);
+    return turn * other;
+}
+
+typedef struct beside_query {
+    const bvh *tree;
+    const double *p[3];
+    int winding, layers;
+} beside_query;
+
+static bool add_crossing_beside(void *user, uint32_t triangle) {
+    beside_query *query = user;
+    query->winding += bvh_crossing_beside(query->tree, triangle, query->p);
+    query->layers += bvh_covers_beside(query->tree, triangle, query->p);
+    return true;
+}
+
+/* The upward line begins above the triangle, or beside a vertical one, as perturbed_turn says. If
+ * that is the outer side, the triangle, and others on it, are between there and the inner one. */
+int bvh_winding_behind(const bvh *tree, uint32_t triangle, int k) {
+    beside_query query = {.tree = tree};
+    for (int i = 0; i < 3; i++)
+        query.p[i] = corner(tree, triangle, (k + i) % 3);
+    const double *p = query.p[0];
+    const bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
+    int up = 0;
+    for (int u = 0; u < 3 && up == 0; u++)
+        up = orient2d(query.p[0], query.p[1], query.p[2], u, (u + 1) % 3);
+    bvh_query_box(tree, &line, add_crossing_beside, &query);
+    return up > 0 ? query.winding + query.layers : query.winding;
 }
 
 /* A segment p + t d, 0 <= t <= 1, prepared for slab tests. */

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The bound of a search, in integers: however floating point found the prices, this sum and this
- * maximum are exact. Prices are below 2^44 and there are at most 2^10 witnesses, so sums stay below
- * 2^54, and below 2^64 when each witness must be seen 1,000 times; halves of odd sets, which have
- * prices only where each must be seen once, add less than 2^54. */
+ * maximum are exact. No row is worth more than 1, so that no price is; any below BOUND_HIGHEST is
+ * used as it is, and so low no sum overflows. */
 #include "guard/bound.h"
 
 static const char STAGE[] = "search";
 
+_Static_assert((uint64_t)MOST_WITNESSES *BOUND_MOST_TIMES +
+                       (uint64_t)MOST_ODD_SETS * ((BOUND_MOST_TIMES * ODD_SET_SIZE + 1) / 2) <=
+                   UINT64_MAX / (BOUND_HIGHEST * BOUND_ONE),
+               "sums of prices fit into 64 bits");
+
 static uint64_t round_down(double price) {
-    return price > 0 && price < 16 ? (uint64_t)(price * (double)BOUND_ONE) : 0;
+    return price > 0 && price < BOUND_HIGHEST ? (uint64_t)(price * (double)BOUND_ONE) : 0;
 }
 
 void bound_round(const witness_prices *prices, const odd_sets *sets, whole_prices *whole) {

@@ -7,13 +7,16 @@
 
 #define BOUND_ONE ((uint64_t)1 << 40)
 
+/* How high prices may be, and how often each witness must be seen. */
+enum { BOUND_HIGHEST = 4, BOUND_MOST_TIMES = 1000 };
+
 /* Prices of witnesses and of odd sets, in units of 1 / BOUND_ONE. */
 typedef struct whole_prices {
     uint64_t price[MOST_WITNESSES], odd[MOST_ODD_SETS];
     odd_sets sets;
 } whole_prices;
 
-/* Prices rounded down; they must be below 16. `sets` may be NULL. */
+/* Prices rounded down; those of BOUND_HIGHEST or more count as 0. `sets` may be NULL. */
 void bound_round(const witness_prices *prices, const odd_sets *sets, whole_prices *whole);
 
 /* What the row holds is worth. */
@@ -22,8 +25,8 @@ uint64_t bound_worth(const whole_prices *whole, const witness_row *row);
 uint64_t bound_worth_of_all(const whole_prices *whole, size_t times);
 
 /* A lower bound on the number of rows that cover every priced witness `times` times (at most
- * 1,000): one row holds at most what is worth most, so k rows hold at most k times that. 0 where no
- * row holds anything. */
+ * BOUND_MOST_TIMES): one row holds at most what is worth most, so k rows hold at most k times that.
+ * 0 where no row holds anything. */
 size_t bound_of_prices(const witness_row *const *rows, size_t count, const whole_prices *whole,
                        size_t times);
 

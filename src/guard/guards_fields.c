@@ -2,6 +2,7 @@
 /* Guard options and GUARDS.json as tables (starguard/fields.h): the only place with their names,
  * ranges and descriptions. Rows are in the order of the file. */
 #include "guard/guards_fields.h"
+#include "guard/bound.h"
 
 #include "starguard/guard.h"
 #include "visibility/fields.h"
@@ -80,7 +81,7 @@ static const starg_field OPTIONS[] = {
      .kind = STARG_FIELD_COUNT,
      OPTION(redundancy),
      .least = 1,
-     .most = 1000,
+     .most = BOUND_MOST_TIMES,
      .initial = 1,
      .value = "K",
      .help = "Cover each face by K guards, or by as many candidates as see it."},

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Faces that are invisible from everywhere in the free space: what a scanner misses, and what a
- * renderer can drop.
+/* Faces that are invisible from everywhere in the free space, as a whole: what a scanner misses,
+ * and what a renderer can drop.
  *
  * Stages:
  *   1. Candidates, and points above the faces that these do not see (guard/augment.c): what one of
@@ -358,6 +358,7 @@ starg_status starg_unseen(starg_context *context, const starg_solid *scene,
     if (view != NULL)
         options.visibility = *view;
     options.visibility.target = STARG_TARGET_FACES;
+    options.visibility.face_rule = STARG_FACES_WHOLE;
     options.clearance = clearance;
     unseen_search s = {
         .context = context, .solid = scene, .view = options.visibility, .clearance = clearance};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Vertices within matter, where shells overlap, and faces with matter before them, where they
- * touch.
+/* Vertices within matter, where shells overlap, and faces with matter on their inner side, from
+ * which they are seen, where shells touch.
  *
  * What is seen of a vertex is seen along a segment that meets no face on its way, so that its end
  * runs in one part of space at the vertex, which must be free. If the faces at the vertex are a
@@ -9,9 +9,8 @@
  * Their winding numbers differ by one. A point from which a segment reaches the vertex, met by
  * nothing, tells that of its part, exactly.
  *
- * A face is seen from before its plane only. If no face that contains its corner reaches there,
- * what is before it at the corner is one part of space, and if that is matter, the face is never
- * seen.
+ * A face is seen whole by segments to all of its points, which come from its inner side. If there
+ * is matter on that side just beside a corner, the face is never seen whole.
  *
  * Stages: the faces at the vertex; are they a cycle without folds; points above and below them
  * until both parts are known. Cost: O(d^2) contacts of triangles for d faces, and a few segments.
@@ -193,56 +192,15 @@ bool solid_buries(const starg_solid *solid, uint32_t vertex) {
 
 /* ---- faces ---- */
 
-typedef struct front {
-    const starg_mesh *mesh;
-    const uint32_t *face;
-    uint32_t corner;
-} front;
-
-static int side_of(const front *f, const double p[3]) {
-    const double *v = f->mesh->vertices;
-    return orient3d(v + 3 * (size_t)f->face[0], v + 3 * (size_t)f->face[1],
-                    v + 3 * (size_t)f->face[2], p);
-}
-
-/* False: a face that contains the corner reaches before the plane. */
-static bool stays_behind(void *user, uint32_t other) {
-    const front *f = user;
-    const double *v = f->mesh->vertices;
-    const uint32_t *c = f->mesh->faces + 3 * (size_t)other;
-    bool before = false;
-    for (int k = 0; k < 3; k++)
-        before = before || side_of(f, v + 3 * (size_t)c[k]) > 0;
-    return !before || !point_on_triangle(v + 3 * (size_t)f->corner, v + 3 * (size_t)c[0],
-                                         v + 3 * (size_t)c[1], v + 3 * (size_t)c[2]);
-}
-
-/* Is there matter before the face at its corner k? */
-static bool is_covered(const starg_solid *solid, uint32_t face, int k) {
-    fan alone = {.mesh = solid->mesh, .faces = {face}, .count = 1};
-    front f = {solid->mesh, solid->mesh->faces + 3 * (size_t)face, 0};
-    f.corner = alone.vertex = f.face[k];
-    const double *v = at(&alone, f.corner);
-    const bvh_box point = {{v[0], v[1], v[2]}, {v[0], v[1], v[2]}};
-    if (!bvh_query_box(solid->tree, &point, stays_behind, &f))
-        return false;
-    for (double share = 0.5; share > 1e-4; share *= 0.125) {
-        double d[3], p[3];
-        int winding;
-        aim_beside(&alone, 0, -1, d);
-        for (int i = 0; i < 3; i++)
-            p[i] = v[i] + share * d[i];
-        if (side_of(&f, p) > 0 && look(solid, &alone, d, share, &winding))
-            return winding + solid->ambient <= 0;
-    }
-    return false;
-}
-
 bool solid_hides(const starg_solid *solid, uint32_t face) {
     const uint32_t *c = solid->mesh->faces + 3 * (size_t)face;
+    const double *v = solid->mesh->vertices;
     bool from_behind = solid_is_two_sided(solid) && solid->other_side[face] != TOPOLOGY_NONE;
+    bool has_area = !collinear(v + 3 * (size_t)c[0], v + 3 * (size_t)c[1], v + 3 * (size_t)c[2]);
     for (int k = 0; k < 3; k++)
-        if (solid_buries(solid, c[k]) || (!from_behind && is_covered(solid, face, k)))
+        if (solid_buries(solid, c[k]) ||
+            (has_area && !from_behind &&
+             bvh_winding_behind(solid->tree, face, k) + solid->ambient <= 0))
             return true;
     return false;
 }

@@ -9,8 +9,8 @@
  * mean unknown: where other faces touch it, or a fold of its own ones does. */
 bool solid_buries(const starg_solid *solid, uint32_t vertex);
 
-/* True proves that the face is seen from nowhere: a corner of it is buried, or there is matter
- * before the face at one, as where furniture stands on a floor. */
+/* True proves that the whole face is seen from nowhere: a corner of it is buried, or there is
+ * matter right before the face beside one, as where furniture stands on a floor. */
 bool solid_hides(const starg_solid *solid, uint32_t face);
 
 #endif

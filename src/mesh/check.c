@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Checks a mesh as the boundary of a solid.
  *
+ * Parts of it may share vertices and edges where they touch, if all faces there have partners
+ * (mesh/wings.c): then it is examined with vertices of their own for all fans.
+ *
  * Stages: corners, edges, vertices (fans), positions, duplicate faces, degenerate faces,
  * intersections of all pairs with overlapping boxes (by the tree), shells. All decisions are exact.
  * Cost: O(n log n) plus the number of box pairs. */
@@ -17,6 +20,7 @@
 #include "mesh/examine.h"
 #include "mesh/mesh.h"
 #include "mesh/pairs.h"
+#include "mesh/wings.h"
 
 typedef struct checker {
     starg_context *context;
@@ -25,7 +29,8 @@ typedef struct checker {
     mesh_topology *topology;
     bvh *tree;
     mesh_shell *shells;
-    size_t pairs; /* of faces tested so far */
+    uint8_t *touching; /* by face: meets another shell */
+    size_t pairs;      /* of faces tested so far */
 } checker;
 
 /* Pairs between two checks of the clock. */
@@ -103,28 +108,13 @@ static void check_edges(checker *c) {
     }
 }
 
-/* Joins the corners at a vertex across manifold edges into fans. */
-static void link_fans(const checker *c, uint32_t *fan) {
-    const uint32_t *faces = c->mesh->faces;
-    for (uint32_t h = 0; h < 3 * c->mesh->face_count; h++) {
-        uint32_t twin = c->topology->twin[h];
-        if (twin == TOPOLOGY_NONE || twin < h)
-            continue;
-        uint32_t other_end = corner_next(twin);
-        bool opposite = faces[twin] != faces[h];
-        sets_join(fan, h, opposite ? other_end : twin);
-        sets_join(fan, corner_next(h), opposite ? twin : other_end);
-    }
-}
-
 static starg_status check_vertices(checker *c) {
     starg_status status = STARG_OK;
     size_t corners = 3 * c->mesh->face_count;
     uint32_t *fan = NULL, *fans = NULL;
     STARG_NEW(c->context, "check", fan, corners);
     STARG_NEW_ZERO(c->context, "check", fans, c->mesh->vertex_count);
-    sets_make(fan, corners);
-    link_fans(c, fan);
+    wings_find_fans(c->topology, c->mesh, fan);
     for (uint32_t h = 0; h < corners; h++)
         if (sets_find(fan, h) == h)
             fans[c->mesh->faces[h]]++;
@@ -225,20 +215,45 @@ static void check_areas(checker *c) {
     }
 }
 
+/* Does an edge of face a pass through the inside of face b? */
+static bool passes_through(const checker *c, uint32_t a, uint32_t b) {
+    const double *s[3], *t[3];
+    for (size_t k = 0; k < 3; k++) {
+        s[k] = position(c, c->mesh->faces[3 * (size_t)a + k]);
+        t[k] = position(c, c->mesh->faces[3 * (size_t)b + k]);
+    }
+    for (int i = 0; i < 3; i++) {
+        const double *p = s[i], *q = s[(i + 1) % 3];
+        int turn = orient3d(p, q, t[0], t[1]);
+        if (turn != 0 && orient3d(p, q, t[1], t[2]) == turn && orient3d(p, q, t[2], t[0]) == turn &&
+            orient3d(t[0], t[1], t[2], p) * orient3d(t[0], t[1], t[2], q) < 0)
+            return true;
+    }
+    return false;
+}
+
+/* Shells touch where faces overlap in a plane, or meet in edges: they need not cross there. */
+static void note_shells(checker *c, uint32_t a, uint32_t b, triangle_contact contact) {
+    uint32_t first = c->topology->component[a], second = c->topology->component[b];
+    if (contact == TRIANGLES_APART || first == second)
+        return;
+    c->touching[a] = c->touching[b] = 1;
+    if (contact == TRIANGLES_CROSS && (passes_through(c, a, b) || passes_through(c, b, a)))
+        c->shells[first].crossed = c->shells[second].crossed = true;
+}
+
 static bool check_pair(void *user, uint32_t a, uint32_t b) {
     checker *c = user;
     const uint32_t *faces = c->mesh->faces;
     triangle_contact contact =
         faces_contact(c->mesh->vertices, faces + 3 * (size_t)a, faces + 3 * (size_t)b);
+    note_shells(c, a, b, contact);
     if (contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS) {
         starg_finding_kind kind = contact == TRIANGLES_CROSS ? STARG_FINDING_SELF_INTERSECTION
                                                              : STARG_FINDING_SELF_CONTACT;
         find_pair(c, kind, STARG_ELEMENT_FACE, a, b);
         mark_face(c, kind, a);
         mark_face(c, kind, b);
-        uint32_t first = c->topology->component[a], second = c->topology->component[b];
-        if (kind == STARG_FINDING_SELF_INTERSECTION && first != second)
-            c->shells[first].crossed = c->shells[second].crossed = true;
     }
     bool look_up = ++c->pairs % PAIRS_PER_CLOCK == 0;
     return !(look_up && starg_time_has_failed(c->context)) &&
@@ -256,7 +271,8 @@ static size_t count_of(const checker *c, starg_finding_kind kind) {
 
 static starg_status check_shells(checker *c) {
     starg_check *check = c->check;
-    starg_status status = shells_classify(c->context, c->mesh, c->topology, c->tree, c->shells);
+    starg_status status =
+        shells_classify(c->context, c->mesh, c->topology, c->tree, c->touching, c->shells);
     if (status != STARG_OK)
         return status;
     double volume = 0; /* scaled: the true volume may underflow */
@@ -270,6 +286,17 @@ static starg_status check_shells(checker *c) {
     check->volume = ldexp(volume, 3 * starg_mesh_exponent(c->mesh));
     check->usable = volume > 0;
     return STARG_OK;
+}
+
+/* Does every face have one neighbour across each edge, facing the same way, and every vertex one
+ * fan? Then the Euler characteristic tells the genus. */
+static bool is_sound(const checker *c) {
+    bool sound = c->check->closed && c->check->oriented &&
+                 count_of(c, STARG_FINDING_NONMANIFOLD_VERTEX) == 0 &&
+                 count_of(c, STARG_FINDING_REPEATED_CORNER) == 0;
+    for (size_t h = 0; h < 3 * c->mesh->face_count && sound; h++)
+        sound = c->topology->twin[h] != TOPOLOGY_NONE;
+    return sound;
 }
 
 static void summarise(checker *c) {
@@ -291,9 +318,9 @@ static void summarise(checker *c) {
                       count_of(c, STARG_FINDING_SELF_INTERSECTION) == 0 &&
                       count_of(c, STARG_FINDING_SELF_CONTACT) == 0 && check->manifold;
     check->genus = -1;
-    if (check->closed && check->manifold) {
+    if (is_sound(c) || (check->closed && check->manifold)) {
         int64_t used = (int64_t)(check->vertices - count_of(c, STARG_FINDING_ISOLATED_VERTEX));
-        int64_t euler = used - (int64_t)check->edges + (int64_t)check->faces;
+        int64_t euler = used - (int64_t)check->faces / 2;
         check->genus = (int64_t)check->components - euler / 2;
     }
 }
@@ -304,11 +331,12 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     starg_progress_begin(context, "check");
     STARG_NEW_ZERO(context, "check", c.check, 1);
     STARG_NEW_ZERO(context, "check", c.check->face_marks, mesh->face_count);
-    STARG_TRY(topology_create(context, mesh, &c.topology));
+    STARG_TRY(wings_create(context, mesh, &c.topology));
     STARG_TRY(starg_check_cancel(context, "check"));
     STARG_TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &c.tree));
     STARG_TRY(starg_check_cancel(context, "check"));
     STARG_NEW_ZERO(context, "check", c.shells, c.topology->component_count);
+    STARG_NEW_ZERO(context, "check", c.touching, mesh->face_count);
     check_corners(&c);
     check_edges(&c);
     STARG_TRY(check_vertices(&c));
@@ -318,11 +346,12 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     check_areas(&c);
     STARG_TRY(check_intersections(&c));
     summarise(&c);
-    if (c.check->closed && c.check->manifold && c.check->oriented)
+    if (is_sound(&c))
         STARG_TRY(check_shells(&c));
     if (!c.check->oriented)
         STARG_TRY(topology_count_one_sided(c.topology, mesh, &c.check->one_sided_faces));
 done:
+    starg_release(context, c.touching);
     starg_progress_end(context);
     *out = (mesh_examination){c.check, c.topology, c.tree, c.shells};
     return status;
@@ -335,11 +364,40 @@ void mesh_examination_free(starg_context *context, mesh_examination *examination
     starg_release(context, examination->shells);
 }
 
+/* What the shells enclose where they share vertices. */
+static starg_status check_parted(starg_context *context, const starg_mesh *mesh,
+                                 starg_check *check) {
+    starg_status status = STARG_OK;
+    mesh_examination all = {0};
+    starg_mesh *parted = NULL;
+    if (check->usable || !check->closed || !check->oriented)
+        return STARG_OK;
+    STARG_TRY(wings_part(context, mesh, &parted));
+    if (parted == NULL)
+        goto done;
+    STARG_TRY(mesh_examine(context, parted, &all));
+    if (!all.check->usable)
+        goto done;
+    check->usable = true;
+    check->volume = all.check->volume;
+    check->components = all.check->components;
+    check->cavities = all.check->cavities;
+    check->genus = all.check->genus;
+    check->findings[STARG_FINDING_INWARD_COMPONENT] =
+        all.check->findings[STARG_FINDING_INWARD_COMPONENT];
+done:
+    mesh_examination_free(context, &all);
+    starg_mesh_free(parted);
+    return status;
+}
+
 starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, starg_check **out) {
     mesh_examination all;
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = mesh_examine(context, mesh, &all);
+    if (status == STARG_OK)
+        status = check_parted(context, mesh, all.check);
     starg_time_end(context, former);
     if (status == STARG_OK) {
         *out = all.check;

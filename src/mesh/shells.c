@@ -1,66 +1,136 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The depth of a shell is the number of other shells with nonzero winding number about one of its
- * corners, counted along a vertical line: usually O(log n) per shell. */
+/* Which shells lie in which.
+ *
+ * Problem: a shell lies in another if that has a nonzero winding number about it. Shells may touch,
+ * with corners, edges, or faces that overlap in a plane; one that crosses another, perhaps along
+ * edges alone, lies in none.
+ *
+ * Method: winding numbers are counted along a vertical line, exactly, from points that are on no
+ * other shell: just beside a corner, within a face (bvh_crossing_beside). No curve or corner of
+ * another shell passes there, only a face that overlaps this one; then the other shell is asked
+ * about elsewhere. Shells without contacts are asked at one point, others also at all corners of
+ * faces in contact: there a shell that crosses another along edges has points on both sides.
+ *
+ * Cost: O(log n) a shell and a contact, if few shells lie around one. */
 #include "mesh/shells.h"
 
+#include <limits.h>
 #include <math.h>
 
 #include "core/memory.h"
+#include "geometry/predicates.h"
 #include "geometry/vec3.h"
 
-/* Windings are zero between queries; each query resets the shells that it touched. */
-typedef struct line_query {
-    const bvh *tree;
+static const char STAGE[] = "check";
+
+enum { UNKNOWN = INT_MIN };
+
+/* What is known of another shell, about the one in question. */
+typedef struct other_shell {
+    bool listed, covers; /* covers: the point is on it */
+    int winding;         /* about the point */
+    int known;           /* about points before, or UNKNOWN */
+} other_shell;
+
+typedef struct nesting {
+    const starg_mesh *mesh;
     const mesh_topology *topology;
-    const double *p;
-    int *winding;      /* per shell */
-    uint32_t *touched; /* shells, one entry per crossing */
-    size_t touched_count;
-} line_query;
+    const bvh *tree;
+    other_shell *others; /* by shell; all zero but for those in `list` */
+    uint32_t *list;
+    size_t count;
+    uint32_t own;
+    bool asked;                   /* a point has been asked before */
+    const double *p[3];           /* the point: beside p[0], towards p[1], a little to p[2] */
+    STARG_ARRAY(uint32_t) around; /* pairs: a cavity, and a shell that it lies in */
+} nesting;
+
+static const double *corner(const nesting *n, size_t face, size_t k) {
+    return n->mesh->vertices + 3 * (size_t)n->mesh->faces[3 * face + k % 3];
+}
+
+static bool has_area(const nesting *n, size_t face) {
+    return !collinear(corner(n, face, 0), corner(n, face, 1), corner(n, face, 2));
+}
 
 static bool count_crossing(void *user, uint32_t triangle) {
-    line_query *query = user;
-    int crossing = bvh_crossing(query->tree, triangle, query->p);
-    if (crossing != 0) {
-        query->winding[query->topology->component[triangle]] += crossing;
-        query->touched[query->touched_count++] = query->topology->component[triangle];
+    nesting *n = user;
+    uint32_t name = n->topology->component[triangle];
+    if (name == n->own)
+        return true;
+    other_shell *other = &n->others[name];
+    int crossing = bvh_crossing_beside(n->tree, triangle, n->p);
+    bool covers = crossing == 0 && bvh_covers_beside(n->tree, triangle, n->p) != 0;
+    if (!other->listed && (crossing != 0 || covers)) {
+        *other = (other_shell){.listed = true, .known = n->asked ? 0 : UNKNOWN};
+        n->list[n->count++] = name;
     }
+    other->winding += crossing;
+    other->covers = other->covers || covers;
     return true;
 }
 
-/* Number of other shells that contain p, and their total winding number about it. */
-static size_t nesting_depth(line_query *query, const double *p, uint32_t own, int *around) {
-    bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
-    size_t depth = 0;
-    *around = 0;
-    query->p = p;
-    query->touched_count = 0;
-    bvh_query_box(query->tree, &line, count_crossing, query);
-    for (size_t i = 0; i < query->touched_count; i++) {
-        uint32_t touched = query->touched[i];
-        depth += touched != own && query->winding[touched] != 0;
-        *around += touched != own ? query->winding[touched] : 0;
-        query->winding[touched] = 0;
+/* Compares the winding numbers about a point of a shell with those about others of its points. */
+static void ask(nesting *n, mesh_shell *shells, size_t face, size_t k) {
+    for (size_t i = 0; i < 3; i++)
+        n->p[i] = corner(n, face, k + i);
+    const double *p = n->p[0];
+    const bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
+    bvh_query_box(n->tree, &line, count_crossing, n);
+    for (size_t i = 0; i < n->count; i++) {
+        other_shell *other = &n->others[n->list[i]];
+        if (!other->covers && other->known == UNKNOWN)
+            other->known = other->winding;
+        else if (!other->covers && other->known != other->winding)
+            shells[n->own].crossed = shells[n->list[i]].crossed = true;
+        other->winding = 0;
+        other->covers = false;
     }
-    return depth;
+    n->asked = true;
 }
 
-/* The innermost shell around a point in an odd number of them: of those that contain it, the only
- * one that is no cavity and lies in no other that is none. They are nested in each other, so it is
- * the deepest one. */
-static uint32_t innermost(line_query *query, const double *p, uint32_t own, const size_t *depths) {
-    bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
-    uint32_t best = UINT32_MAX;
-    query->p = p;
-    query->touched_count = 0;
-    bvh_query_box(query->tree, &line, count_crossing, query);
-    for (size_t i = 0; i < query->touched_count; i++) {
-        uint32_t c = query->touched[i];
-        if (c != own && query->winding[c] != 0 && (best == UINT32_MAX || depths[c] > depths[best]))
-            best = c;
-        query->winding[c] = 0;
+/* Asks about all others, and forgets. */
+static starg_status nest(starg_context *context, nesting *n, const uint32_t *faces, size_t count,
+                         const uint8_t *touching, mesh_shell *shells) {
+    starg_status status = STARG_OK;
+    mesh_shell *own = &shells[n->own];
+    size_t first = 0, listed = n->around.count;
+    n->asked = false;
+    while (first + 1 < count && !has_area(n, faces[first]))
+        first++;
+    ask(n, shells, faces[first], 0);
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < 3 && touching[faces[i]] && has_area(n, faces[i]); k++)
+            ask(n, shells, faces[i], k);
+    for (; n->count > 0; n->count--) {
+        other_shell *other = &n->others[n->list[n->count - 1]];
+        int winding = other->known != UNKNOWN ? other->known : 0;
+        own->depth += winding != 0;
+        own->around += winding;
+        *other = (other_shell){0};
+        if (winding == 0)
+            continue;
+        STARG_PUSH(context, STAGE, &n->around, n->own);
+        STARG_PUSH(context, STAGE, &n->around, n->list[n->count - 1]);
     }
-    return best;
+    own->cavity = own->depth % 2 == 1;
+    if (!own->cavity)
+        n->around.count = listed;
+done:
+    return status;
+}
+
+/* The shells around a cavity lie in each other: the innermost one is the deepest. */
+static void find_innermost(const nesting *n, mesh_shell *shells) {
+    for (size_t c = 0; c < n->topology->component_count; c++)
+        shells[c].within = UINT32_MAX;
+    for (size_t i = 0; i < n->around.count; i += 2) {
+        mesh_shell *own = &shells[n->around.data[i]];
+        uint32_t other = n->around.data[i + 1];
+        if (own->cavity &&
+            (own->within == UINT32_MAX || shells[other].depth > shells[own->within].depth))
+            own->within = other;
+    }
 }
 
 static void sum_volumes(const starg_mesh *mesh, const mesh_topology *topology, mesh_shell *shells) {
@@ -75,31 +145,47 @@ static void sum_volumes(const starg_mesh *mesh, const mesh_topology *topology, m
     }
 }
 
+/* The faces shell by shell; those of shell c start at start[c]. */
+static void sort_faces(const mesh_topology *topology, size_t *start, uint32_t *sorted) {
+    for (size_t f = 0; f < topology->face_count; f++)
+        start[topology->component[f] + 1]++;
+    for (size_t c = 0; c < topology->component_count; c++)
+        start[c + 1] += start[c];
+    for (size_t f = topology->face_count; f-- > 0;)
+        sorted[--start[topology->component[f] + 1]] = (uint32_t)f;
+}
+
 starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
-                             const mesh_topology *topology, const bvh *tree, mesh_shell *shells) {
+                             const mesh_topology *topology, const bvh *tree,
+                             const uint8_t *touching, mesh_shell *shells) {
     starg_status status = STARG_OK;
-    line_query query = {.tree = tree, .topology = topology};
-    size_t *depths = NULL;
-    STARG_NEW_ZERO(context, "check", query.winding, topology->component_count);
-    STARG_NEW_ZERO(context, "check", depths, topology->component_count);
-    STARG_NEW(context, "check", query.touched, mesh->face_count);
+    nesting n = {.mesh = mesh, .topology = topology, .tree = tree};
+    size_t count = topology->component_count, *start = NULL;
+    uint32_t *sorted = NULL;
+    STARG_NEW_ZERO(context, STAGE, n.others, count);
+    STARG_NEW(context, STAGE, n.list, count);
+    STARG_NEW_ZERO(context, STAGE, start, count + 2);
+    STARG_NEW(context, STAGE, sorted, mesh->face_count);
     sum_volumes(mesh, topology, shells);
-    for (size_t c = 0; c < topology->component_count; c++) {
+    sort_faces(topology, start, sorted);
+    for (size_t c = 0; c < count; c++) {
+        n.own = (uint32_t)c;
+        size_t end = c + 1 < count ? start[c + 2] : mesh->face_count;
+        STARG_TRY(nest(context, &n, sorted + start[c + 1], end - start[c + 1], touching, shells));
+        STARG_TRY(starg_check_cancel(context, STAGE));
+    }
+    for (size_t c = 0; c < count; c++) {
         mesh_shell *own = &shells[c];
-        const double *p = mesh->vertices + 3 * (size_t)mesh->faces[3 * (size_t)own->first_face];
-        if (!own->crossed)
-            depths[c] = nesting_depth(&query, p, (uint32_t)c, &own->around);
-        own->cavity = depths[c] % 2 == 1;
+        if (own->crossed)
+            own->around = own->cavity = 0;
         own->turn = own->cavity ? own->volume > 0 : own->volume < 0;
     }
-    for (size_t c = 0; c < topology->component_count; c++) {
-        mesh_shell *own = &shells[c];
-        const double *p = mesh->vertices + 3 * (size_t)mesh->faces[3 * (size_t)own->first_face];
-        own->within = own->cavity ? innermost(&query, p, (uint32_t)c, depths) : UINT32_MAX;
-    }
+    find_innermost(&n, shells);
 done:
-    starg_release(context, depths);
-    starg_release(context, query.winding);
-    starg_release(context, query.touched);
+    STARG_ARRAY_FREE(context, &n.around);
+    starg_release(context, n.others);
+    starg_release(context, n.list);
+    starg_release(context, start);
+    starg_release(context, sorted);
     return status;
 }

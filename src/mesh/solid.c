@@ -7,6 +7,7 @@
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/flood.h"
+#include "mesh/wings.h"
 
 /* Findings that rule out a solid, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {
@@ -39,56 +40,86 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                       "the mesh is closed but encloses no volume: its shells are flat or doubled");
 }
 
-/* ---- coincident vertices ---- */
+/* ---- vertices at one position ---- */
 
-/* Maps corners at equal positions to the first vertex there; the others stay as isolated vertices,
- * so that vertices and faces keep their numbers. *welded counts those. */
-static starg_status weld_faces(starg_context *context, starg_mesh *mesh, size_t *welded) {
+/* A copy in which corners at equal positions have the first vertex there; the others stay as
+ * isolated vertices, so that vertices and faces keep their numbers. *out is NULL if there are none;
+ * *welded counts them. */
+static starg_status weld(starg_context *context, const starg_mesh *mesh, starg_mesh **out,
+                         size_t *welded) {
     starg_status status = STARG_OK;
     uint32_t *first = NULL;
     STARG_TRY(mesh_find_coincident(context, mesh, &first, welded));
+    if (*welded == 0)
+        goto done;
+    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
+                                mesh->face_count, out));
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
-        mesh->faces[i] = first[mesh->faces[i]];
+        (*out)->faces[i] = first[mesh->faces[i]];
 done:
     starg_release(context, first);
     return status;
 }
 
-/* Many programs write a vertex per corner along a seam. Coincident vertices are welded if the faces
- * then bound a solid; otherwise the mesh is examined as given. */
-static starg_status weld_if_closed(starg_context *context, starg_solid *solid,
+/* Takes *other and its examination if it bounds a solid; *other is then what it replaces. */
+static starg_status take_if_usable(starg_context *context, starg_solid *solid, starg_mesh **other,
                                    mesh_examination *all) {
-    starg_status status = STARG_OK;
-    mesh_examination welded = {0};
-    starg_mesh *copy = NULL;
-    size_t count = 0;
-    STARG_TRY(starg_mesh_create(context, solid->mesh->vertices, solid->mesh->vertex_count,
-                                solid->mesh->faces, solid->mesh->face_count, &copy));
-    STARG_TRY(weld_faces(context, copy, &count));
-    if (count == 0)
-        goto done;
-    STARG_TRY(mesh_examine(context, copy, &welded));
-    if (!welded.check->usable)
-        goto done;
-    starg_log(
-        context, STARG_LOG_NOTICE,
-        "merged %zu vertices with earlier ones at the same position, which closes the surface",
-        count);
-    mesh_examination open = *all;
-    starg_mesh *given = solid->mesh;
-    *all = welded;
-    welded = open;
-    solid->mesh = copy;
-    copy = given;
-done:
-    mesh_examination_free(context, &welded);
-    starg_mesh_free(copy);
+    mesh_examination own = {0};
+    starg_status status = mesh_examine(context, *other, &own);
+    if (status == STARG_OK && own.check->usable) {
+        mesh_examination former = *all;
+        *all = own;
+        own = former;
+        starg_mesh *given = solid->mesh;
+        solid->mesh = *other;
+        *other = given;
+    }
+    mesh_examination_free(context, &own);
     return status;
 }
 
-static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const mesh_shell *shells) {
+/* Many programs write a vertex per corner along a seam: coincident vertices are welded. Others
+ * share vertices where parts only touch: each part gets its own. Either is done if the faces then
+ * bound a solid; otherwise the mesh is examined as given. */
+static starg_status mend_vertices(starg_context *context, starg_solid *solid,
+                                  mesh_examination *all) {
+    starg_status status = STARG_OK;
+    starg_mesh *welded = NULL, *parted = NULL;
+    size_t count = 0;
+    if (all->check->findings[STARG_FINDING_DUPLICATE_VERTEX].count > 0 && !all->check->closed)
+        STARG_TRY(weld(context, solid->mesh, &welded, &count));
+    starg_mesh **shared = welded != NULL ? &welded : &solid->mesh;
+    STARG_TRY(wings_part(context, *shared, &parted));
+    size_t copies = parted != NULL ? parted->vertex_count - (*shared)->vertex_count : 0;
+    if (parted == NULL && welded == NULL)
+        goto done;
+    STARG_TRY(take_if_usable(context, solid, parted != NULL ? &parted : &welded, all));
+    if (!all->check->usable)
+        goto done;
+    if (copies > 0) { /* the mesh as given is in `parted` now */
+        solid->shared = welded != NULL ? welded : parted;
+        *(welded != NULL ? &welded : &parted) = NULL;
+    }
+    if (count > 0)
+        starg_log(context, STARG_LOG_NOTICE,
+                  "merged %zu vertices with earlier ones at the same position, which closes the "
+                  "surface",
+                  count);
+    if (copies > 0)
+        starg_log(context, STARG_LOG_NOTICE,
+                  "parts of the surface share %zu %s where they touch; each part got its own",
+                  copies, copies == 1 ? "vertex" : "vertices");
+done:
+    starg_mesh_free(welded);
+    starg_mesh_free(parted);
+    return status;
+}
+
+static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const mesh_shell *shells,
+                        shell_facing facing) {
     for (size_t f = 0; f < mesh->face_count; f++) {
-        if (!shells[topology->component[f]].turn)
+        const mesh_shell *own = &shells[topology->component[f]];
+        if (!(facing == SHELLS_OUTWARD ? own->volume < 0 : own->turn))
             continue;
         uint32_t *corner = mesh->faces + 3 * f, swap = corner[1];
         corner[1] = corner[2];
@@ -119,26 +150,29 @@ void solid_tell(starg_context *context, const char *whose, const starg_check *ch
                   flat == 1 ? "it" : "them");
 }
 
-static starg_status make(starg_context *context, const starg_mesh *mesh, bool turns,
-                         starg_solid **out) {
+starg_status solid_make_facing(starg_context *context, const starg_mesh *mesh, shell_facing facing,
+                               starg_solid **out) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     mesh_examination all = {0};
     *out = NULL;
     STARG_NEW_ZERO(context, "solid", solid, 1);
     solid->context = context;
+    solid->model_vertices = mesh->vertex_count;
     STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
                                 mesh->face_count, &solid->mesh));
     STARG_TRY(mesh_check_extent(context, mesh, "solid"));
     STARG_TRY(mesh_examine(context, solid->mesh, &all));
-    if (!all.check->usable && all.check->findings[STARG_FINDING_DUPLICATE_VERTEX].count > 0)
-        STARG_TRY(weld_if_closed(context, solid, &all));
+    if (!all.check->usable)
+        STARG_TRY(mend_vertices(context, solid, &all));
     if (!all.check->usable) {
         status = fail_unusable(context, all.check);
         goto done;
     }
-    if (turns)
-        turn_shells(solid->mesh, all.topology, all.shells);
+    if (facing != SHELLS_AS_GIVEN)
+        turn_shells(solid->mesh, all.topology, all.shells, facing);
+    if (facing != SHELLS_AS_GIVEN && solid->shared != NULL)
+        turn_shells(solid->shared, all.topology, all.shells, facing);
     solid->check = all.check;
     solid->tree = all.tree;
     all.check = NULL;
@@ -152,12 +186,7 @@ done:
 }
 
 starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
-    return make(context, mesh, true, out);
-}
-
-starg_status solid_make_as_given(starg_context *context, const starg_mesh *mesh,
-                                 starg_solid **out) {
-    return make(context, mesh, false, out);
+    return solid_make_facing(context, mesh, SHELLS_NESTED, out);
 }
 
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
@@ -174,6 +203,16 @@ starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, 
     return status;
 }
 
+starg_status solid_must_not_share(starg_context *context, const starg_solid *solid,
+                                  const char *stage) {
+    if (solid->shared == NULL)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_MESH, stage,
+                      "parts of the surface share %zu vertices where they touch; give each part its "
+                      "own by 'starguard repair'",
+                      solid->mesh->vertex_count - solid->shared->vertex_count);
+}
+
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,
                             const uint32_t *faces, size_t face_count, const starg_check *check,
                             starg_solid **out) {
@@ -182,6 +221,7 @@ starg_status solid_of_parts(starg_context *context, const double *vertices, size
     *out = NULL;
     STARG_NEW_ZERO(context, "solid", solid, 1);
     solid->context = context;
+    solid->model_vertices = vertex_count;
     STARG_TRY(starg_mesh_create(context, vertices, vertex_count, faces, face_count, &solid->mesh));
     STARG_NEW(context, "solid", solid->check, 1);
     *solid->check = *check;
@@ -217,6 +257,7 @@ void starg_solid_free(starg_solid *solid) {
         return;
     starg_context *context = solid->context;
     starg_mesh_free(solid->mesh);
+    starg_mesh_free(solid->shared);
     starg_check_free(context, solid->check);
     bvh_free(solid->tree);
     starg_release(context, solid->obstacle_sizes);
@@ -234,7 +275,7 @@ void starg_solid_free(starg_solid *solid) {
 }
 
 const starg_mesh *starg_solid_mesh(const starg_solid *solid) {
-    return solid->mesh;
+    return solid->shared != NULL ? solid->shared : solid->mesh;
 }
 
 const starg_check *starg_solid_check(const starg_solid *solid) {

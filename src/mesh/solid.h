@@ -18,10 +18,13 @@ struct starg_solid {
     starg_check *check; /* `embedded` promises that no face has free space outside */
     bvh *tree;
 
+    starg_mesh *shared;    /* the same without copies of vertices where parts share some, or NULL */
+    size_t model_vertices; /* as given; others follow: copies, those of obstacles */
+
     /* Scenes (mesh/space.c); all zero in a plain solid. */
     bool scene;
     int ambient;
-    size_t model_vertices, model_faces; /* those of obstacles follow */
+    size_t model_faces; /* those of obstacles follow */
     size_t obstacle_count;
     size_t *obstacle_sizes; /* vertices and faces of each, as given */
     uint32_t *other_side;   /* by face: of a triangle that stands twice, front and back, the other
@@ -76,8 +79,11 @@ void solid_tell(starg_context *context, const char *whose, const starg_check *ch
  * at the time limit; solid_make leaves the caller's time rule in force. */
 starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out)
     STARG_PRIVATE(solid_make);
-/* Same without reorienting shells. */
-starg_status solid_make_as_given(starg_context *context, const starg_mesh *mesh, starg_solid **out);
+/* Same, with shells that face out of the solid, or all outward: then the outside is what is outside
+ * of all of them, without cavities. */
+typedef enum shell_facing { SHELLS_NESTED, SHELLS_OUTWARD, SHELLS_AS_GIVEN } shell_facing;
+starg_status solid_make_facing(starg_context *context, const starg_mesh *mesh, shell_facing facing,
+                               starg_solid **out);
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out)
     STARG_PRIVATE(solid_make_in_time);
 
@@ -86,6 +92,10 @@ starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, 
  * looked for again. Errors: those of solid_make_in_time. */
 starg_status solid_of_level(starg_context *context, const starg_solid *fine,
                             const starg_mesh *level, starg_solid **out);
+
+/* Errors: MESH (parts of the surface share vertices, which maps of vertices do not allow). */
+starg_status solid_must_not_share(starg_context *context, const starg_solid *solid,
+                                  const char *stage);
 
 /* Rebuilds a solid that another process examined: its mesh after examination, and the needed part
  * of the check. Copies everything. Errors: those of starg_mesh_create. */

@@ -4,7 +4,7 @@
  * One representation serves all: a closed, oriented mesh, and a number, `ambient`, that is added to
  * its winding number. Where the sum is at least 1, space is free.
  *   - A solid as it is: ambient 0.
- *   - Its outside: ambient 1 and all faces reversed.
+ *   - Its outside: ambient 1 and all faces reversed, of cavities too, which are no part of it.
  *   - A closed obstacle: its faces, reversed, follow those of the model; the winding number within
  *     it is one less.
  *   - An open obstacle, or a soup: each triangle twice, front and back. Such a pair is a closed
@@ -181,7 +181,8 @@ done:
 
 /* ---- the model ---- */
 
-/* A solid's faces face out of it, or as given; those of the scene face out of the free space. */
+/* A solid's faces face out of it, of its shells if the outside is free, or as given; those of the
+ * scene face out of the free space. */
 static starg_status push_model(parts *p, const starg_mesh *model, const starg_space_options *o) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
@@ -189,8 +190,11 @@ static starg_status push_model(parts *p, const starg_mesh *model, const starg_sp
     if (o->soup) /* guards see the inner side of a face: of a soup that is its front */
         return push_sheet(p, model, true);
     starg_time_rule former = starg_time_begin(p->context, STARG_TIME_FAILS);
-    STARG_TRY(keeps ? solid_make_as_given(p->context, model, &solid)
-                    : solid_make(p->context, model, &solid));
+    STARG_TRY(solid_make_facing(p->context, model,
+                                keeps        ? SHELLS_AS_GIVEN
+                                : o->outside ? SHELLS_OUTWARD
+                                             : SHELLS_NESTED,
+                                &solid));
     bool inward = keeps && starg_mesh_volume(solid->mesh) < 0;
     status = push_closed(p, solid->mesh, inward != o->outside);
 done:
@@ -415,7 +419,7 @@ done:
 /* ---- questions ---- */
 
 size_t starg_space_model_vertices(const starg_solid *scene) {
-    return scene->scene ? scene->model_vertices : scene->mesh->vertex_count;
+    return scene->model_vertices;
 }
 
 size_t starg_space_model_faces(const starg_solid *scene) {

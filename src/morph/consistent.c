@@ -47,6 +47,12 @@ starg_status morph_solid(const starg_morph *m, int end, starg_solid **out) {
                           m->mesh->faces, m->mesh->face_count, &mesh);
     if (status == STARG_OK)
         status = solid_make(m->context, mesh, out);
+    if (status == STARG_OK)
+        status = solid_must_not_share(m->context, *out, STAGE);
+    if (status != STARG_OK) {
+        starg_solid_free(*out);
+        *out = NULL;
+    }
     starg_mesh_free(mesh);
     return status;
 }

@@ -212,6 +212,7 @@ static starg_status spread_surface(starg_context *context, const starg_mesh *mes
     starg_solid *solid = NULL;
     /* it may touch itself: only shared topology counts */
     STARG_TRY(solid_make_in_time(context, mesh, &solid));
+    STARG_TRY(solid_must_not_share(context, solid, STAGE));
     STARG_TRY(check_surface(context, starg_solid_check(solid), name));
     STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
     STARG_TRY(sphere_create(context, out->unit, &out->sphere));

@@ -65,6 +65,7 @@ starg_status solid_map_shape(starg_context *context, const starg_mesh *a, starg_
     starg_mesh *unit = NULL;
     sphere *s = NULL;
     STARG_TRY(solid_make_in_time(context, a, &solid));
+    STARG_TRY(solid_must_not_share(context, solid, STAGE));
     STARG_TRY(check_topology(context, starg_solid_check(solid)));
     STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &unit));
     STARG_TRY(sphere_create(context, unit, &s));

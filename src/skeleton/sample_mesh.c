@@ -5,6 +5,8 @@
  * faces change become dirty. */
 #include "skeleton/sample_mesh.h"
 
+#include "mesh/wings.h"
+
 static const char STAGE[] = "surface samples";
 
 enum { MAX_DEPTH = 12 };
@@ -29,7 +31,7 @@ starg_status sample_mesh_take(starg_context *context, surface_samples *samples, 
     m->points.data = samples->points;
     m->points.count = m->points.capacity = 3 * samples->point_count;
     *samples = (surface_samples){0};
-    STARG_TRY(topology_create(context, &mesh, &topology));
+    STARG_TRY(wings_create(context, &mesh, &topology));
     STARG_TRY(halfedges_create(topology, &mesh, STAGE, &m->net));
     for (size_t v = 0; v < mesh.vertex_count; v++) {
         STARG_PUSH(context, STAGE, &m->depth, 0);

@@ -323,7 +323,7 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     if (*out == NULL)
         STARG_TRY(decompose_filled(context, solid, surface, options, out));
     const starg_mesh *model = solid != NULL ? solid->mesh : surface;
-    (*out)->model_vertices = model->vertex_count;
+    (*out)->model_vertices = solid != NULL ? solid->model_vertices : model->vertex_count;
     (*out)->model_faces = model->face_count;
     (*out)->model_tetrahedra = 0;
     STARG_TRY(complete(context, options, *out));

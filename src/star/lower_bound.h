@@ -7,13 +7,15 @@
 
 /* The bound of the guards holds for star-shaped pieces that make up the solid; 0: the time was over
  * before there was any. `work` is that of starg_guard_options.prove_work. Errors: those of
- * starg_guard but TIME, and MESH (the surface is not embedded). */
+ * starg_guard but TIME, and MESH (the surface intersects itself, or touches otherwise than in
+ * vertices and edges). */
 starg_status piece_bound_find(starg_context *context, const starg_solid *solid, uint64_t work,
                               bool certified, corner_guards *out);
 
-/* If two points see all corners, and a partition has more pieces than two: tries to prove that two
- * are not enough (star/two_pieces.h), with as much work and in the time that is left; `bound` and
- * its certificate are then of that. Errors: MEMORY, CANCELLED. */
+/* If two points see all corners, and a partition has more pieces than two: and the surface is
+ * embedded: tries to prove that two are not enough (star/two_pieces.h), with as much work and in
+ * the time that is left; `bound` and its certificate are then of that. Errors: MEMORY, CANCELLED.
+ */
 starg_status piece_bound_raise(starg_context *context, const starg_solid *solid, uint64_t work,
                                bool certified, size_t pieces, corner_guards *bound);
 

@@ -5,7 +5,8 @@
  * same positions. Cuts of pieces can go across such edges if they are edges of all their faces.
  *
  * Method: vertices at equal positions become one; then every pair of faces must meet in what they
- * share. Exact. Cost: that of finding the pairs again, where the check has found contacts. */
+ * share. No face then meets another inside, so that the winding number is the same everywhere just
+ * behind it. Exact. Cost: that of finding the pairs again, where the check has found contacts. */
 #include "star/touching.h"
 
 #include "core/memory.h"
@@ -47,5 +48,19 @@ starg_status touching_weld(starg_context *context, const starg_solid *solid, uin
     *faces = NULL;
 done:
     starg_release(context, first);
+    return status;
+}
+
+starg_status touching_bounds(starg_context *context, const starg_solid *solid, bool *bounds) {
+    uint32_t *faces = NULL;
+    starg_status status = STARG_OK;
+    *bounds = solid->check->embedded;
+    if (*bounds)
+        return STARG_OK;
+    status = touching_weld(context, solid, &faces);
+    *bounds = faces != NULL;
+    for (uint32_t f = 0; f < solid->mesh->face_count && *bounds; f++)
+        *bounds = bvh_winding_behind(solid->tree, f, 0) == 1;
+    starg_release(context, faces);
     return status;
 }

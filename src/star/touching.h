@@ -10,4 +10,9 @@
  * edges. Errors: MEMORY, CANCELLED. */
 starg_status touching_weld(starg_context *context, const starg_solid *solid, uint32_t **faces);
 
+/* Does the surface have the outside just before every point of its faces, as an embedded one does?
+ * If it touches itself, that is known where touching_weld has a result. Errors: MEMORY, CANCELLED.
+ */
+starg_status touching_bounds(starg_context *context, const starg_solid *solid, bool *bounds);
+
 #endif

@@ -7,9 +7,10 @@
  * v and points of f as near to v as you like. Its guard g is strictly on the inner side of all of
  * its walls, and so is a ball about g; P holds all segments between the ball and any point x of it,
  * and these hold a neighbourhood of each point between g and x. So none of these points is on the
- * surface, which is embedded. With x = v: the segment to v meets the surface in v only. With x
- * inside f: the segment reaches f from the inner side. Hence the guards of any partition into
- * star-shaped pieces see all corners, and are as many as the bound says.
+ * surface, which has the outside just before every point of its faces. With x = v: the segment to v
+ * meets the surface in v only. With x inside f: the segment reaches f from the inner side. Hence
+ * the guards of any partition into star-shaped pieces see all corners, and are as many as the bound
+ * says.
  *
  * Cost: that of the certificate (verify/everywhere.c), and of pairs of faces near each other. */
 #include <math.h>
@@ -42,6 +43,7 @@ static starg_status claim_question(const verify_context *own, const verify_facts
     const starg_certificate *c = own->certificate;
     verify_scene scene = {0};
     const char *difference = NULL;
+    bool bounds = true;
     if (own->report->approximated)
         difference = ": pieces that approximate the model say nothing about it";
     else if (!verify_certificate_is_of(c, own->model))
@@ -52,7 +54,9 @@ static starg_status claim_question(const verify_context *own, const verify_facts
         difference = ": some of its witnesses are no corners of the faces that they name";
     else {
         STARG_TRY(verify_scene_create(own->model, known->tree, true, &scene));
-        if (!scene.embedded)
+        if (!scene.embedded && !c->pairs)
+            STARG_TRY(verify_find_bounding(&scene, &bounds));
+        if (!bounds || (!scene.embedded && c->pairs))
             difference = ": the surface touches or intersects itself";
     }
     *good = difference == NULL;

@@ -10,7 +10,11 @@
  *
  * The winding number beside such faces is the same on both sides of an edge between two of them,
  * since nothing else meets the edge. So it is found for one face of each connected part, by a short
- * segment across it that meets no other face. Cost: O(n log n) for ordinary surfaces. */
+ * segment across it that meets no other face. Cost: O(n log n) for ordinary surfaces.
+ *
+ * A surface that touches itself in vertices and edges, at equal positions, may still bound: where
+ * no face meets another elsewhere, the winding number just before it is the same everywhere, and is
+ * found for each by such a segment. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -32,13 +36,21 @@ static int broad_axis(const double *const t[3]) {
     return -1;
 }
 
-/* Number of corners of s shared with t: *own and *other are the opposite corners if two are shared,
- * or the shared ones if one is. */
-static int shared_corners(const uint32_t *s, const uint32_t *t, int *own, int *other) {
+static bool at_one_place(const double *p, const double *q) {
+    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+}
+
+/* Number of corners of f shared with g, by_place: or at the same position: *own and *other are the
+ * opposite corners if two are shared, or the shared ones if one is. */
+static int shared_corners(const verify_surface *surface, uint32_t f, uint32_t g, bool by_place,
+                          int *own, int *other) {
     int count = 0, own_sum = 0, other_sum = 0;
+    const uint32_t *s = surface->faces + 3 * (size_t)f, *t = surface->faces + 3 * (size_t)g;
+    const double *v = surface->vertices;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            if (s[i] == t[j]) {
+            if (s[i] == t[j] ||
+                (by_place && at_one_place(v + 3 * (size_t)s[i], v + 3 * (size_t)t[j]))) {
                 count++;
                 own_sum += i;
                 other_sum += j;
@@ -48,11 +60,10 @@ static int shared_corners(const uint32_t *s, const uint32_t *t, int *own, int *o
     return count;
 }
 
-static bool is_contact(const verify_surface *surface, uint32_t f, uint32_t g) {
+static bool is_contact(const verify_surface *surface, uint32_t f, uint32_t g, bool by_place) {
     const double *s[3], *t[3];
     int own, other;
-    int shared = shared_corners(surface->faces + 3 * (size_t)f, surface->faces + 3 * (size_t)g,
-                                &own, &other);
+    int shared = shared_corners(surface, f, g, by_place, &own, &other);
     verify_corners(surface, f, s);
     verify_corners(surface, g, t);
     if (shared == 1)
@@ -71,32 +82,36 @@ static bool is_contact(const verify_surface *surface, uint32_t f, uint32_t g) {
 }
 
 bool verify_faces_touch(const verify_surface *surface, uint32_t f, uint32_t g) {
+    return is_contact(surface, f, g, true);
+}
+
+bool verify_faces_share(const verify_surface *surface, uint32_t f, uint32_t g) {
     int own, other;
-    return shared_corners(surface->faces + 3 * (size_t)f, surface->faces + 3 * (size_t)g, &own,
-                          &other) > 0 ||
-           is_contact(surface, f, g);
+    return shared_corners(surface, f, g, true, &own, &other) > 0;
 }
 
 typedef struct search {
     const verify_scene *scene;
+    bool by_place;
     uint8_t *sound; /* by face */
 } search;
 
 typedef struct one_face {
     const verify_surface *surface;
     uint32_t face;
+    bool by_place;
 } one_face;
 
 static bool is_clear_of(void *data, uint32_t other) {
     const one_face *own = data;
-    return other == own->face || !is_contact(own->surface, own->face, other);
+    return other == own->face || !is_contact(own->surface, own->face, other, own->by_place);
 }
 
 static starg_status examine_face(starg_context *context, void *shared, void *scratch, size_t f) {
     const search *own = shared;
     const double *t[3];
     double lower[3], upper[3];
-    one_face one = {own->scene->surface, (uint32_t)f};
+    one_face one = {own->scene->surface, (uint32_t)f, own->by_place};
     (void)context;
     (void)scratch;
     verify_corners(one.surface, f, t);
@@ -148,8 +163,8 @@ static bool is_missed(void *data, uint32_t other) {
     return other == own->face || !segment_meets(own->inner, own->outer, t);
 }
 
-/* A segment across the face that meets no other one. */
-static bool find_needle(const verify_scene *scene, uint32_t face, needle *out) {
+/* A segment across the face, as long as a share of it, that meets no other one. */
+static bool find_needle(const verify_scene *scene, uint32_t face, double share, needle *out) {
     const double *t[3];
     double u[3], v[3], normal[3], length = 0, size = 0;
     verify_corners(scene->surface, face, t);
@@ -164,7 +179,7 @@ static bool find_needle(const verify_scene *scene, uint32_t face, needle *out) {
         length = fmax(length, fabs(normal[k]));
     }
     for (int k = 0; k < 3; k++) {
-        double middle = (t[0][k] + t[1][k] + t[2][k]) / 3, step = size / 512 * normal[k] / length;
+        double middle = (t[0][k] + t[1][k] + t[2][k]) / 3, step = share * size * normal[k] / length;
         out->inner[k] = middle - step;
         out->outer[k] = middle + step;
         if (!(fabs(out->inner[k]) < 1e100 && fabs(out->outer[k]) < 1e100))
@@ -196,7 +211,7 @@ static void drop_inner(const verify_scene *scene, uint8_t *seen, uint32_t *part,
                 }
             }
         for (size_t i = 0; i < count; i++)
-            if (find_needle(scene, part[i], &found)) {
+            if (find_needle(scene, part[i], 0x1p-9, &found)) {
                 outside = verify_tree_winding(scene->tree, found.outer, &on_surface) < 1;
                 break;
             }
@@ -209,7 +224,7 @@ starg_status verify_find_sound(const verify_scene *scene, uint8_t *sound, bool *
     starg_status status = STARG_OK;
     const verify_surface *surface = scene->surface;
     starg_context *context = surface->context;
-    search own = {scene, sound};
+    search own = {scene, false, sound};
     uint32_t *count = NULL, *part = NULL;
     uint8_t *seen = NULL;
     size_t faces = surface->face_count;
@@ -228,5 +243,43 @@ done:
     starg_release(context, count);
     starg_release(context, part);
     starg_release(context, seen);
+    return status;
+}
+
+/* ---- surfaces that touch themselves ---- */
+
+/* Is the outer side of the face surely outside of the solid, at its middle? */
+static bool is_outside_before(const verify_scene *scene, uint32_t face) {
+    needle found;
+    bool on_surface;
+    for (double share = 0x1p-9; share > 0x1p-40; share /= 16)
+        if (find_needle(scene, face, share, &found))
+            return verify_tree_winding(scene->tree, found.outer, &on_surface) < 1 && !on_surface;
+    return false;
+}
+
+static starg_status judge_face(starg_context *context, void *shared, void *scratch, size_t f) {
+    const search *own = shared;
+    starg_status status = examine_face(context, shared, scratch, f);
+    own->sound[f] = own->sound[f] && is_outside_before(own->scene, (uint32_t)f);
+    return status;
+}
+
+starg_status verify_find_bounding(const verify_scene *scene, bool *bounding) {
+    starg_status status = STARG_OK;
+    starg_context *context = scene->surface->context;
+    search own = {scene, true, NULL};
+    STARG_NEW_ZERO(context, STAGE, own.sound, scene->surface->face_count);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = scene->surface->face_count,
+                                      .shared = &own,
+                                      .item = judge_face,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    *bounding = true;
+    for (size_t f = 0; f < scene->surface->face_count; f++)
+        *bounding = *bounding && own.sound[f];
+done:
+    starg_release(context, own.sound);
     return status;
 }

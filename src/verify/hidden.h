@@ -68,11 +68,17 @@ bool verify_box_behind(const verify_watch *watch, const verify_box *box, uint32_
 bool verify_box_shades(verify_watch *watch, const verify_box *box, const double x[3], uint32_t seed,
                        const verify_box *other);
 
-/* Do two faces have a point in common (verify/embedded.c)? Exact. */
+/* Do two faces have more in common than corners and edges at the same places (verify/embedded.c)?
+ * Have they such a corner? Exact. */
 bool verify_faces_touch(const verify_surface *surface, uint32_t f, uint32_t g);
+bool verify_faces_share(const verify_surface *surface, uint32_t f, uint32_t g);
 
 /* Which faces are sound, and is the surface embedded (verify/embedded.c)? `sound` is by face.
  * Errors: MEMORY, CANCELLED. */
 starg_status verify_find_sound(const verify_scene *scene, uint8_t *sound, bool *embedded);
+
+/* Do faces meet only in corners and edges at equal positions, and is the outside surely just before
+ * each? Errors: MEMORY, CANCELLED. */
+starg_status verify_find_bounding(const verify_scene *scene, bool *bounding);
 
 #endif

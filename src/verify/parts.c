@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Parts of a model that do not see each other: an outer shell and the cavities in it, with all
- * shells that touch these.
+ * shells that touch these otherwise than in common vertices and edges.
  *
- * A point sees a face from the face's inner side, with nothing in between. So all shells that do
- * not touch the face's own wind as often around the point as around any vertex of that, and which
- * of them hold the point tells the part: shells that lie in an odd number of others are cavities,
- * and belong to the innermost of these.
+ * A point sees a face from the face's inner side, with nothing in between. So a shell that does not
+ * cross the face's own winds as often around the point as around that, and which of them hold the
+ * point tells the part: shells that lie in an odd number of others are cavities, and belong to the
+ * innermost of these. Shells with common vertices do not cross if each face of one has a vertex off
+ * the other, and all of these vertices are on the same side: nothing else of the face meets it.
  *
- * Exact. Cost: for each pair of shells whose boxes meet, the faces of one of them. */
+ * Exact. Cost: for each pair of shells whose boxes meet, the faces of one of them; of both, times
+ * each other, if they have vertices in common. */
 #include "verify/parts.h"
 
 #include "core/memory.h"
@@ -26,15 +28,20 @@ typedef struct part_search {
     size_t *first;       /* by shell: where its faces begin */
     double (*bounds)[6]; /* by shell */
     size_t *depth;       /* by shell: the number of others that it lies in */
+    uint8_t *sharing;    /* by face: has a vertex in common with another shell */
+    uint8_t *shares;     /* by shell: one of its faces has */
     size_t count;        /* of shells */
     uint32_t face;       /* whose neighbours are visited */
 } part_search;
 
 static bool join_touching(void *data, uint32_t other) {
     part_search *own = data;
-    if (own->shell[other] != own->shell[own->face] &&
-        verify_faces_touch(own->surface, own->face, other))
+    if (own->shell[other] == own->shell[own->face])
+        return true;
+    if (verify_faces_touch(own->surface, own->face, other))
         verify_join(own->part, own->face, other);
+    if (verify_faces_share(own->surface, own->face, other))
+        own->sharing[other] = own->sharing[own->face] = 1;
     return true;
 }
 
@@ -84,17 +91,39 @@ done:
     return status;
 }
 
-/* Does shell `outer` wind around shell `inner`, which it does not touch? */
-static bool holds(const part_search *own, size_t outer, size_t inner) {
-    const verify_surface *surface = own->surface;
-    const double *p = surface->vertices + 3 * (size_t)surface->faces[3 * (size_t)own->roots[inner]];
-    bool on_surface;
+/* Does the box of a shell meet that of another? */
+static bool boxes_meet(const part_search *own, size_t s, size_t t) {
     for (int k = 0; k < 3; k++)
-        if (own->bounds[inner][k] < own->bounds[outer][k] ||
-            own->bounds[inner][k + 3] > own->bounds[outer][k + 3])
+        if (own->bounds[s][k] > own->bounds[t][k + 3] || own->bounds[t][k] > own->bounds[s][k + 3])
             return false;
-    return verify_winding(surface, own->list + own->first[outer],
-                          own->first[outer + 1] - own->first[outer], p, &on_surface) != 0;
+    return true;
+}
+
+/* Does shell t wind around shell s? *crossing: that is not so for all of s, or not known. */
+static bool holds(const part_search *own, size_t t, size_t s, bool *crossing) {
+    const verify_surface *surface = own->surface;
+    const uint32_t *others = own->list + own->first[t];
+    size_t count = own->first[t + 1] - own->first[t];
+    int known = 0;
+    bool any = false;
+    *crossing = false;
+    for (size_t i = own->first[s]; i < own->first[s + 1]; i++) {
+        const double *corners[3];
+        bool off = false, on_surface;
+        verify_corners(surface, own->list[i], corners);
+        for (int k = 0; k < 3; k++) {
+            int winding = verify_winding(surface, others, count, corners[k], &on_surface);
+            if (on_surface)
+                continue;
+            *crossing = *crossing || (any && winding != known);
+            known = winding;
+            any = off = true;
+            if (!own->shares[s])
+                return known != 0;
+        }
+        *crossing = *crossing || !off;
+    }
+    return known != 0;
 }
 
 static bool are_joined(part_search *own, size_t a, size_t b) {
@@ -108,12 +137,19 @@ static starg_status join_cavities(part_search *own) {
     STARG_ARRAY(uint32_t) around = {0}; /* pairs: a shell, and one that holds it */
     for (uint32_t s = 0; s < own->count; s++) {
         STARG_TRY(starg_check_cancel(context, STAGE));
-        for (uint32_t t = 0; t < own->count; t++)
-            if (!are_joined(own, s, t) && holds(own, t, s)) {
-                STARG_PUSH(context, STAGE, &around, s);
-                STARG_PUSH(context, STAGE, &around, t);
-                own->depth[s]++;
-            }
+        for (uint32_t t = 0; t < own->count; t++) {
+            bool crossing = false;
+            if (are_joined(own, s, t) || !boxes_meet(own, s, t))
+                continue;
+            bool within = holds(own, t, s, &crossing);
+            if (crossing)
+                verify_join(own->part, own->roots[s], own->roots[t]);
+            if (crossing || !within)
+                continue;
+            STARG_PUSH(context, STAGE, &around, s);
+            STARG_PUSH(context, STAGE, &around, t);
+            own->depth[s]++;
+        }
     }
     for (size_t i = 0, end; i < around.count; i = end) {
         uint32_t s = around.data[i], innermost = around.data[i + 1];
@@ -147,7 +183,9 @@ starg_status verify_find_parts(const verify_surface *surface, const verify_tree 
     STARG_NEW(context, STAGE, own.part, faces);
     STARG_NEW(context, STAGE, own.roots, faces);
     STARG_NEW(context, STAGE, own.list, faces);
+    STARG_NEW_ZERO(context, STAGE, own.sharing, faces);
     STARG_TRY(list_shells(&own));
+    STARG_NEW_ZERO(context, STAGE, own.shares, own.count);
     for (own.face = 0; own.face < faces && own.count > 1; own.face++) {
         double bounds[6];
         for (int k = 0; k < 6; k++)
@@ -156,6 +194,9 @@ starg_status verify_find_parts(const verify_surface *surface, const verify_tree 
         find_bounds(surface, own.face, bounds);
         verify_tree_visit(tree, bounds, bounds + 3, join_touching, &own);
     }
+    for (size_t s = 0; s < own.count; s++)
+        for (size_t i = own.first[s]; i < own.first[s + 1]; i++)
+            own.shares[s] = own.shares[s] || own.sharing[own.list[i]];
     STARG_TRY(join_cavities(&own));
     number_parts(&own);
     *part = own.part;
@@ -168,5 +209,7 @@ done:
     starg_release(context, own.first);
     starg_release(context, own.bounds);
     starg_release(context, own.depth);
+    starg_release(context, own.sharing);
+    starg_release(context, own.shares);
     return status;
 }

@@ -20,11 +20,11 @@ typedef struct gathering {
     size_t backs; /* of a soup: the other side of its first face */
 } gathering;
 
-static starg_status add_vertices(gathering *g, const starg_mesh *mesh, uint32_t *first) {
+static starg_status add_vertices(gathering *g, const verify_surface *surface, uint32_t *first) {
     starg_status status = STARG_OK;
     *first = (uint32_t)(g->vertices.count / 3);
-    for (size_t i = 0; i < 3 * starg_mesh_vertex_count(mesh); i++)
-        STARG_PUSH(g->context, STAGE, &g->vertices, starg_mesh_vertices(mesh)[i]);
+    for (size_t i = 0; i < 3 * surface->vertex_count; i++)
+        STARG_PUSH(g->context, STAGE, &g->vertices, surface->vertices[i]);
 done:
     return status;
 }
@@ -47,7 +47,7 @@ static starg_status add_sheet(gathering *g, const starg_mesh *mesh, sheet_side s
     verify_surface *surface = NULL;
     uint32_t first;
     STARG_TRY(verify_surface_welded(g->context, mesh, &surface));
-    STARG_TRY(add_vertices(g, mesh, &first));
+    STARG_TRY(add_vertices(g, surface, &first));
     status = add_faces(g, surface->faces, surface->face_count, first, side == BACK);
 done:
     verify_surface_free(surface);
@@ -72,10 +72,13 @@ static starg_status add_model(gathering *g, const starg_mesh *mesh, const starg_
     bool keeps = guards->space.orientation == STARG_ORIENTATION_KEEP;
     if (guards->space.soup)
         return add_sheet(g, mesh, BACK); /* what faces out of the free space */
-    STARG_TRY(keeps ? verify_surface_as_given(g->context, mesh, &surface)
-                    : verify_surface_create(g->context, mesh, &surface));
+    STARG_TRY(verify_surface_facing(g->context, mesh,
+                                    keeps                   ? VERIFY_AS_GIVEN
+                                    : guards->space.outside ? VERIFY_OUTWARD
+                                                            : VERIFY_NESTED,
+                                    &surface));
     bool inward = keeps && volume_sign(surface) < 0;
-    STARG_TRY(add_vertices(g, mesh, &first));
+    STARG_TRY(add_vertices(g, surface, &first));
     status =
         add_faces(g, surface->faces, surface->face_count, first, inward != guards->space.outside);
 done:
@@ -92,7 +95,7 @@ static starg_status add_closed(gathering *g, const starg_mesh *mesh, bool *close
     if (!*closed)
         return STARG_OK;
     STARG_TRY(status);
-    STARG_TRY(add_vertices(g, mesh, &first));
+    STARG_TRY(add_vertices(g, surface, &first));
     STARG_TRY(add_faces(g, surface->faces, surface->face_count, first, true));
 done:
     verify_surface_free(surface);

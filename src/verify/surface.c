@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shells are components of faces that share edges. They are oriented by the rule of the library's
- * solids, reimplemented: a shell inside an even number of others bounds the solid from outside and
- * must have positive volume; inside an odd number it bounds a cavity and must have negative volume;
- * "inside" means that the other shell has a nonzero winding number about a corner. A shell that
- * crosses another gets positive volume. Signs of volumes are exact.
+/* Shells are components of faces that share edges; of more than two faces at an edge, those with
+ * solid between them belong together. They are oriented by the rule of the library's solids,
+ * reimplemented: a shell inside an even number of others bounds the solid from outside and must
+ * have positive volume; inside an odd number it bounds a cavity and must have negative volume;
+ * "inside" means that the other shell has a nonzero winding number about points that are not on it.
+ * A shell that crosses another gets positive volume. Signs of volumes are exact.
  *
- * Cost: a hash table of directed edges, O(n); with several shells one winding number for each pair
- * whose bounds allow nesting, and all pairs of faces for each cavity and a shell around it. */
+ * Cost: sorted edges, O(n log n); with several shells one winding number for each pair whose bounds
+ * allow nesting, and all pairs of faces for each cavity and a shell around it. */
 #include "verify/surface.h"
 
 #include <math.h>
@@ -14,7 +15,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/rng.h"
 #include "verify/exact_sum.h"
 #include "verify/sets.h"
 #include "verify/signs.h"
@@ -23,70 +23,128 @@ static const char STAGE[] = "verify";
 
 /* ---- edges ---- */
 
-/* Directed edge e runs from corner e % 3 of face e / 3 to the next corner. The table holds e + 1 at
- * the first free slot after the hash of its ends. */
-typedef struct edge_table {
-    const uint32_t *faces;
-    uint64_t *slots;
-    size_t mask;
-} edge_table;
+/* Edge e of a face runs from corner e % 3 of face e / 3 to the next corner. */
+typedef struct side {
+    uint32_t low, high, edge; /* the lower and the higher end */
+} side;
 
-static uint32_t edge_from(const uint32_t *faces, uint64_t e) {
-    return faces[e];
+static uint32_t edge_from(const verify_surface *surface, uint32_t e) {
+    return surface->faces[e];
 }
 
-static uint32_t edge_to(const uint32_t *faces, uint64_t e) {
-    return faces[e % 3 == 2 ? e - 2 : e + 1];
+static uint32_t edge_to(const verify_surface *surface, uint32_t e) {
+    return surface->faces[e % 3 == 2 ? e - 2 : e + 1];
 }
 
-/* The slot of the edge from a to b, or the free slot for it. */
-static uint64_t *find_edge(const edge_table *table, uint32_t a, uint32_t b) {
-    size_t i = (size_t)starg_hash64((uint64_t)a << 32 | b) & table->mask;
-    for (;; i = (i + 1) & table->mask) {
-        uint64_t *slot = &table->slots[i];
-        if (*slot == 0 ||
-            (edge_from(table->faces, *slot - 1) == a && edge_to(table->faces, *slot - 1) == b))
-            return slot;
+static const double *tip_of(const verify_surface *surface, uint32_t e) {
+    return surface->vertices + 3 * (size_t)surface->faces[e % 3 == 0 ? e + 2 : e - 1];
+}
+
+static int compare_sides(const void *left, const void *right) {
+    const side *a = left, *b = right;
+    if (a->low != b->low)
+        return a->low < b->low ? -1 : 1;
+    if (a->high != b->high)
+        return a->high < b->high ? -1 : 1;
+    return (a->edge > b->edge) - (a->edge < b->edge);
+}
+
+/* In which quarter about the line a b is p, as seen from `first`: 0 the same half plane, 1 before
+ * the opposite one, 2 that, 3 beyond it. */
+static int quarter(const double a[3], const double b[3], const double first[3], const double p[3]) {
+    int sign = verify_side(a, b, first, p);
+    for (int axis = 0; sign == 0 && axis < 3; axis++) {
+        int turn = verify_turn(a, b, first, axis);
+        if (turn != 0)
+            return verify_turn(a, b, p, axis) == -turn ? 2 : 0;
     }
+    return sign > 0 ? 1 : sign < 0 ? 3 : 0;
 }
 
-static starg_status insert_edges(starg_context *context, edge_table *table, size_t edge_count) {
-    for (uint64_t e = 0; e < edge_count; e++) {
-        uint32_t a = edge_from(table->faces, e), b = edge_to(table->faces, e);
-        uint64_t *slot = find_edge(table, a, b);
-        if (a == b || *slot != 0) {
-            const uint64_t ends[2] = {a, b};
-            return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
-                                 "the surface is not oriented: face %zu runs along edge %u-%u %s",
-                                 (size_t)(e / 3), a, b,
-                                 a == b ? "that has no length" : "like another face");
+/* Does the face of edge e come before that of f, turning about the line from that of `first`? */
+static bool turns_before(const verify_surface *surface, const side *s, uint32_t first, uint32_t e,
+                         uint32_t f) {
+    const double *a = surface->vertices + 3 * (size_t)s->low;
+    const double *b = surface->vertices + 3 * (size_t)s->high;
+    int own = quarter(a, b, tip_of(surface, first), tip_of(surface, e));
+    int other = quarter(a, b, tip_of(surface, first), tip_of(surface, f));
+    if (own != other)
+        return own < other;
+    return own % 2 == 1 && verify_side(a, b, tip_of(surface, e), tip_of(surface, f)) > 0;
+}
+
+/* The faces at one edge, in order about it: each that runs from the lower end with the next one
+ * that runs back, past pairs between them. Solid is between the two. */
+static void pair_about(const verify_surface *surface, side *s, size_t count, uint32_t *twin) {
+    for (size_t i = 1; i < count; i++)
+        for (size_t k = i;
+             k > 0 && turns_before(surface, s, s[0].edge, s[k].edge, s[k - 1].edge) && k > 1; k--) {
+            side other = s[k];
+            s[k] = s[k - 1];
+            s[k - 1] = other;
         }
-        *slot = e + 1;
+    for (size_t i = 0; i < count; i++) {
+        size_t depth = 1, k = i;
+        if (edge_from(surface, s[i].edge) != s[i].low)
+            continue;
+        while (depth > 0) {
+            k = (k + 1) % count;
+            depth = edge_from(surface, s[k].edge) == s[k].low ? depth + 1 : depth - 1;
+        }
+        twin[s[i].edge] = s[k].edge;
+        twin[s[k].edge] = s[i].edge;
     }
+}
+
+static starg_status pair_sides(const verify_surface *surface, side *s, size_t count,
+                               uint32_t *twin) {
+    size_t forward = 0;
+    const uint64_t ends[2] = {s->low, s->high};
+    for (size_t i = 0; i < count; i++)
+        forward += edge_from(surface, s[i].edge) == s->low;
+    if (s->low == s->high || (2 * forward != count && count % 2 == 0))
+        return starg_fail_at(surface->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
+                             "the surface is not oriented: face %u runs along edge %u-%u %s",
+                             s[count - 1].edge / 3, s->low, s->high,
+                             s->low == s->high ? "that has no length" : "like another face");
+    if (2 * forward != count)
+        return starg_fail_at(surface->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
+                             "the surface is not closed: edge %u-%u of face %u has no face on its "
+                             "other side",
+                             s->low, s->high, s->edge / 3);
+    pair_about(surface, s, count, twin);
     return STARG_OK;
+}
+
+starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin) {
+    starg_context *context = surface->context;
+    starg_status status = STARG_OK;
+    size_t edges = 3 * surface->face_count, count;
+    side *sides = NULL;
+    *twin = NULL;
+    STARG_NEW(context, STAGE, sides, edges);
+    STARG_NEW(context, STAGE, *twin, edges);
+    for (uint32_t e = 0; e < edges; e++) {
+        uint32_t a = edge_from(surface, e), b = edge_to(surface, e);
+        sides[e] = (side){a < b ? a : b, a < b ? b : a, e};
+    }
+    qsort(sides, edges, sizeof *sides, compare_sides);
+    for (size_t i = 0; i < edges; i += count) {
+        for (count = 1; i + count < edges && sides[i + count].low == sides[i].low &&
+                        sides[i + count].high == sides[i].high;)
+            count++;
+        STARG_TRY(pair_sides(surface, sides + i, count, *twin));
+    }
+done:
+    starg_release(context, sides);
+    if (status != STARG_OK) {
+        starg_release(context, *twin);
+        *twin = NULL;
+    }
+    return status;
 }
 
 /* ---- shells ---- */
-
-/* Joins faces that share an edge; the root of a shell is its lowest face. */
-static starg_status join_faces(starg_context *context, const edge_table *table, size_t edge_count,
-                               uint32_t *parent) {
-    for (uint32_t f = 0; f < edge_count / 3; f++)
-        parent[f] = f;
-    for (uint64_t e = 0; e < edge_count; e++) {
-        uint32_t a = edge_from(table->faces, e), b = edge_to(table->faces, e);
-        uint64_t twin = *find_edge(table, b, a);
-        if (twin == 0) {
-            const uint64_t ends[2] = {a, b};
-            return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
-                                 "the surface is not closed: edge %u-%u of face %zu has no face "
-                                 "on its other side",
-                                 a, b, (size_t)(e / 3));
-        }
-        verify_join(parent, (uint32_t)(e / 3), (uint32_t)((twin - 1) / 3));
-    }
-    return STARG_OK;
-}
 
 typedef struct shell {
     const uint32_t *faces;
@@ -158,20 +216,29 @@ static bool bounds_meet(const shell *a, const shell *b) {
     return true;
 }
 
-/* Does `other` have a nonzero winding number about the first corner of `own` that is not on it? */
+/* Place number `which` of a face: its corners, then points within, which are rounded. */
+static void place_on(const double *const t[3], int which, double out[3]) {
+    const double *a = t[which % 3], *b = t[(which + 1) % 3], *c = t[(which + 2) % 3];
+    for (int k = 0; k < 3; k++)
+        out[k] = which < 3 ? a[k] : 0.5 * a[k] + (0.25 * b[k] + 0.25 * c[k]);
+}
+
+/* Does `other` have a nonzero winding number about the first place of `own` that is not on it?
+ * Corners come first, which are exact. */
 static bool lies_in(const verify_surface *surface, const shell *own, const shell *other) {
     if (!bounds_meet(own, other))
         return false;
-    for (size_t i = 0; i < own->count; i++) {
-        const double *t[3];
-        verify_corners(surface, own->faces[i], t);
-        for (int j = 0; j < 3; j++) {
+    for (int first = 0; first < 6; first += 3)
+        for (size_t i = 0; i < 3 * own->count; i++) {
+            const double *t[3];
+            double p[3];
             bool on_surface;
-            int winding = verify_winding(surface, other->faces, other->count, t[j], &on_surface);
+            verify_corners(surface, own->faces[i / 3], t);
+            place_on(t, first + (int)(i % 3), p);
+            int winding = verify_winding(surface, other->faces, other->count, p, &on_surface);
             if (!on_surface)
                 return winding != 0;
         }
-    }
     return false;
 }
 
@@ -184,22 +251,53 @@ static void face_bounds(const verify_surface *surface, uint32_t face, shell *bou
     widen(bounds, t[2]);
 }
 
-static bool shells_cross(const verify_surface *surface, const shell *own, const shell *other) {
+/* Does an edge of s pass through the inside of t? */
+static bool passes_through(const double *const s[3], const double *const t[3]) {
+    for (int i = 0; i < 3; i++) {
+        const double *p = s[i], *q = s[(i + 1) % 3];
+        int turn = verify_side(p, q, t[0], t[1]);
+        if (turn != 0 && verify_side(p, q, t[1], t[2]) == turn &&
+            verify_side(p, q, t[2], t[0]) == turn &&
+            verify_side(t[0], t[1], t[2], p) * verify_side(t[0], t[1], t[2], q) < 0)
+            return true;
+    }
+    return false;
+}
+
+/* Is a corner of a face elsewhere than the shell, beside or in the other? */
+static bool strays(const verify_surface *surface, const double *const t[3], const shell *other,
+                   bool in) {
+    for (int k = 0; k < 3; k++) {
+        bool on_surface;
+        int winding = verify_winding(surface, other->faces, other->count, t[k], &on_surface);
+        if (!on_surface && (winding != 0) != in)
+            return true;
+    }
+    return false;
+}
+
+/* Faces that overlap in a plane touch. */
+static bool shells_cross(const verify_surface *surface, const shell *own, const shell *other,
+                         bool in) {
     if (!bounds_meet(own, other))
         return false;
-    for (size_t j = 0; j < other->count; j++) {
+    for (size_t i = 0; i < own->count; i++) {
         shell far_face, near_face;
-        face_bounds(surface, other->faces[j], &far_face);
-        if (!bounds_meet(own, &far_face))
-            continue;
         const double *s[3], *t[3];
-        verify_corners(surface, other->faces[j], t);
-        for (size_t i = 0; i < own->count; i++) {
-            face_bounds(surface, own->faces[i], &near_face);
-            verify_corners(surface, own->faces[i], s);
-            if (bounds_meet(&near_face, &far_face) && verify_cross(s, t))
+        bool near = false;
+        face_bounds(surface, own->faces[i], &near_face);
+        verify_corners(surface, own->faces[i], s);
+        for (size_t j = 0; j < other->count && bounds_meet(&near_face, other); j++) {
+            face_bounds(surface, other->faces[j], &far_face);
+            if (!bounds_meet(&near_face, &far_face))
+                continue;
+            near = true;
+            verify_corners(surface, other->faces[j], t);
+            if (passes_through(s, t) || passes_through(t, s))
                 return true;
         }
+        if (near && strays(surface, s, other, in))
+            return true;
     }
     return false;
 }
@@ -210,13 +308,16 @@ static bool is_cavity(const verify_surface *surface, const shell_list *shells, c
         depth += own != &shells->list.data[s] && lies_in(surface, own, &shells->list.data[s]);
     if (depth % 2 == 0)
         return false;
-    for (size_t s = 0; s < shells->list.count; s++)
-        if (own != &shells->list.data[s] && shells_cross(surface, own, &shells->list.data[s]))
+    for (size_t s = 0; s < shells->list.count; s++) {
+        const shell *other = &shells->list.data[s];
+        if (own != other && shells_cross(surface, own, other, lies_in(surface, own, other)))
             return false;
+    }
     return true;
 }
 
-static starg_status turn_shells(verify_surface *surface, const shell_list *shells) {
+static starg_status turn_shells(verify_surface *surface, const shell_list *shells,
+                                verify_facing facing) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
     uint8_t *turn = NULL;
@@ -224,7 +325,8 @@ static starg_status turn_shells(verify_surface *surface, const shell_list *shell
     for (size_t s = 0; s < shells->list.count; s++) {
         const shell *own = &shells->list.data[s];
         STARG_TRY(starg_check_cancel(context, STAGE));
-        turn[s] = volume_sign(surface, own) == (is_cavity(surface, shells, own) ? 1 : -1);
+        bool cavity = facing == VERIFY_NESTED && is_cavity(surface, shells, own);
+        turn[s] = volume_sign(surface, own) == (cavity ? 1 : -1);
     }
     for (size_t s = 0; s < shells->list.count; s++)
         for (size_t i = 0; turn[s] && i < shells->list.data[s].count; i++) {
@@ -240,46 +342,66 @@ done:
 
 /* ---- public function ---- */
 
-static starg_status orient(verify_surface *surface, bool turns) {
-    starg_context *context = surface->context;
+/* The corners at each vertex that follow each other across edges keep it, or get a copy, in the
+ * order of the lowest corners, behind the other vertices. */
+static starg_status part_vertices(verify_surface *surface, const uint32_t *twin) {
     starg_status status = STARG_OK;
-    edge_table table = {.faces = surface->faces, .mask = 1};
-    size_t edge_count = 3 * surface->face_count;
-    uint32_t *parent = NULL;
-    shell_list shells = {0};
-    while (table.mask < 2 * edge_count)
-        table.mask = 2 * table.mask + 1;
-    STARG_NEW_ZERO(context, STAGE, table.slots, table.mask + 1);
-    STARG_NEW(context, STAGE, parent, surface->face_count);
-    STARG_TRY(insert_edges(context, &table, edge_count));
-    STARG_TRY(join_faces(context, &table, edge_count, parent));
-    STARG_TRY(gather_shells(surface, parent, &shells));
-    if (turns)
-        STARG_TRY(turn_shells(surface, &shells));
+    starg_context *context = surface->context;
+    STARG_ARRAY(double) vertices = {0};
+    uint8_t *met = NULL, *used = NULL;
+    size_t given = surface->vertex_count;
+    STARG_NEW_ZERO(context, STAGE, met, 3 * surface->face_count);
+    STARG_NEW_ZERO(context, STAGE, used, given);
+    for (size_t i = 0; i < 3 * given; i++)
+        STARG_PUSH(context, STAGE, &vertices, surface->vertices[i]);
+    for (uint32_t e = 0; e < 3 * surface->face_count; e++) {
+        uint32_t vertex = surface->faces[e], own = vertex;
+        if (met[e])
+            continue;
+        if (used[vertex]) {
+            own = (uint32_t)(vertices.count / 3);
+            for (size_t k = 0; k < 3; k++)
+                STARG_PUSH(context, STAGE, &vertices, surface->vertices[3 * (size_t)vertex + k]);
+        }
+        used[vertex] = 1;
+        for (uint32_t c = e; !met[c]; c = twin[c % 3 == 0 ? c + 2 : c - 1]) {
+            met[c] = 1;
+            surface->faces[c] = own;
+        }
+    }
+    surface->vertex_count = vertices.count / 3;
+    if (surface->vertex_count > given) {
+        starg_release(context, surface->own_vertices);
+        surface->vertices = surface->own_vertices = vertices.data;
+        vertices.data = NULL;
+    }
 done:
-    starg_release(context, table.slots);
-    starg_release(context, parent);
-    starg_release(context, shells.faces);
-    STARG_ARRAY_FREE(context, &shells.list);
+    STARG_ARRAY_FREE(context, &vertices);
+    starg_release(context, met);
+    starg_release(context, used);
     return status;
 }
 
-starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin) {
-    starg_status status = STARG_OK;
+static starg_status orient(verify_surface *surface, verify_facing facing) {
     starg_context *context = surface->context;
-    const uint32_t *faces = surface->faces;
-    edge_table table = {.faces = faces, .mask = 1};
-    size_t edge_count = 3 * surface->face_count;
-    *twin = NULL;
-    while (table.mask < 2 * edge_count)
-        table.mask = 2 * table.mask + 1;
-    STARG_NEW_ZERO(context, STAGE, table.slots, table.mask + 1);
-    STARG_NEW(context, STAGE, *twin, edge_count);
-    STARG_TRY(insert_edges(context, &table, edge_count));
-    for (uint64_t e = 0; e < edge_count; e++)
-        (*twin)[e] = (uint32_t)(*find_edge(&table, edge_to(faces, e), edge_from(faces, e)) - 1);
+    starg_status status = STARG_OK;
+    uint32_t *parent = NULL, *twin = NULL;
+    shell_list shells = {0};
+    STARG_NEW(context, STAGE, parent, surface->face_count);
+    STARG_TRY(verify_find_twins(surface, &twin));
+    for (uint32_t f = 0; f < surface->face_count; f++) /* the root of a shell is its lowest face */
+        parent[f] = f;
+    for (size_t e = 0; e < 3 * surface->face_count; e++)
+        verify_join(parent, (uint32_t)(e / 3), twin[e] / 3);
+    STARG_TRY(part_vertices(surface, twin));
+    STARG_TRY(gather_shells(surface, parent, &shells));
+    if (facing != VERIFY_AS_GIVEN)
+        STARG_TRY(turn_shells(surface, &shells, facing));
 done:
-    starg_release(context, table.slots);
+    starg_release(context, twin);
+    starg_release(context, parent);
+    starg_release(context, shells.faces);
+    STARG_ARRAY_FREE(context, &shells.list);
     return status;
 }
 
@@ -363,16 +485,16 @@ done:
     return status;
 }
 
-static starg_status create(starg_context *context, const starg_mesh *mesh, bool turns,
-                           verify_surface **out) {
+starg_status verify_surface_facing(starg_context *context, const starg_mesh *mesh,
+                                   verify_facing facing, verify_surface **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     *out = NULL;
     STARG_TRY(copy_faces(context, mesh, &surface));
-    status = orient(surface, turns);
+    status = orient(surface, facing);
     if (status == STARG_ERROR_MESH) { /* nothing has been reversed yet */
         STARG_TRY(weld(surface));
-        STARG_TRY(orient(surface, turns));
+        STARG_TRY(orient(surface, facing));
     }
     *out = status == STARG_OK ? surface : NULL;
 done:
@@ -383,12 +505,7 @@ done:
 
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out) {
-    return create(context, mesh, true, out);
-}
-
-starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
-                                     verify_surface **out) {
-    return create(context, mesh, false, out);
+    return verify_surface_facing(context, mesh, VERIFY_NESTED, out);
 }
 
 starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,

@@ -13,13 +13,13 @@
 typedef struct verify_surface {
     starg_context *context;
     size_t vertex_count, face_count;
-    const double *vertices;    /* of the mesh, which must outlive the surface */
+    const double *vertices;    /* of the mesh, which must outlive the surface, or own_vertices */
     uint32_t *faces;           /* counter-clockwise seen from outside of the solid */
     double lower[3], upper[3]; /* bounds of the vertices in use */
 
     /* of scenes (verify/space.h) */
     int ambient;                        /* the winding number far away */
-    size_t model_vertices, model_faces; /* those of obstacles follow   */
+    size_t model_vertices, model_faces; /* copies, and those of obstacles, follow */
     double *importance;                 /* by face: how much its area counts; NULL: 1 each */
     size_t backs; /* above 0: face f of the model counts from either side, and face backs + f is its
                      back */
@@ -31,13 +31,15 @@ static inline bool verify_is_target(const verify_surface *surface, size_t face) 
     return surface->importance == NULL || surface->importance[face] > 0;
 }
 
-/* Checks that every edge has two faces of opposite directions (after welding coincident vertices if
- * necessary), and orients shells. Errors: MESH, MEMORY, CANCELLED. */
+/* Checks that every edge has as many faces in both directions (after welding coincident vertices if
+ * necessary), gives vertices at which faces are not all connected across edges a copy for each
+ * further group, and orients shells. Errors: MESH, MEMORY, CANCELLED. */
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
-/* Same without reorienting shells. */
-starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
-                                     verify_surface **out);
+/* Same with all shells facing outward, also those of cavities, or as given. */
+typedef enum verify_facing { VERIFY_NESTED, VERIFY_OUTWARD, VERIFY_AS_GIVEN } verify_facing;
+starg_status verify_surface_facing(starg_context *context, const starg_mesh *mesh,
+                                   verify_facing facing, verify_surface **out);
 /* The faces of any mesh, with coincident vertices welded; without checks or reorientation. */
 starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);

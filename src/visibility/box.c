@@ -12,7 +12,7 @@
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/topology.h"
+#include "mesh/wings.h"
 #include "visibility/box_parts.h"
 
 static const char STAGE[] = "visibility";
@@ -59,7 +59,7 @@ starg_status box_scene_create(starg_context *context, const starg_solid *solid, 
     box_scene *scene = NULL;
     mesh_topology *topology = NULL;
     *out = NULL;
-    STARG_TRY(topology_create(context, solid->mesh, &topology));
+    STARG_TRY(wings_create(context, solid->mesh, &topology));
     STARG_NEW_ZERO(context, STAGE, scene, 1);
     scene->context = context;
     scene->solid = solid;

@@ -16,6 +16,8 @@
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "mesh/contact.h"
+#include "mesh/examine.h"
+#include "mesh/pairs.h"
 #include "mesh/shells.h"
 #include "visibility/kernel.h"
 
@@ -24,31 +26,63 @@ static const char STAGE[] = "kernel";
 typedef struct joining {
     const starg_mesh *mesh;
     const mesh_topology *topology;
-    uint32_t *parent; /* by shell: those of one part */
+    uint32_t *parent;  /* by shell: those of one part */
+    uint8_t *touching; /* by face: meets another shell */
+    uint32_t *welded;  /* faces with one vertex at each position */
 } joining;
 
+/* What shells have in common beside vertices and edges may let one be seen from within another. */
 static bool join_touching(void *user, uint32_t a, uint32_t b) {
     joining *j = user;
     uint32_t first = j->topology->component[a], second = j->topology->component[b];
-    if (first != second && faces_contact(j->mesh->vertices, j->mesh->faces + 3 * (size_t)a,
-                                         j->mesh->faces + 3 * (size_t)b) != TRIANGLES_APART)
+    if (first == second)
+        return true;
+    triangle_contact contact =
+        faces_contact(j->mesh->vertices, j->welded + 3 * (size_t)a, j->welded + 3 * (size_t)b);
+    if (contact == TRIANGLES_APART)
+        return true;
+    j->touching[a] = j->touching[b] = 1;
+    if (contact != TRIANGLES_SHARE)
         sets_join(j->parent, first, second);
     return true;
+}
+
+static starg_status join_contacts(starg_context *context, const starg_solid *solid, joining *j) {
+    starg_status status = STARG_OK;
+    uint32_t *first = NULL;
+    size_t moved;
+    STARG_TRY(mesh_find_coincident(context, solid->mesh, &first, &moved));
+    STARG_NEW(context, STAGE, j->welded, 3 * solid->mesh->face_count);
+    for (size_t i = 0; i < 3 * solid->mesh->face_count; i++)
+        j->welded[i] = first[solid->mesh->faces[i]];
+    STARG_TRY(face_pairs_visit(context, solid->mesh, solid->tree, join_touching, j));
+done:
+    starg_release(context, first);
+    return status;
 }
 
 static starg_status join_shells(starg_context *context, const starg_solid *solid, joining *j) {
     starg_status status = STARG_OK;
     mesh_shell *shells = NULL;
+    uint32_t crossed = UINT32_MAX;
     size_t count = j->topology->component_count;
     const starg_finding *found = solid->check->findings;
     STARG_NEW_ZERO(context, STAGE, shells, count);
-    STARG_TRY(shells_classify(context, solid->mesh, j->topology, solid->tree, shells));
-    for (uint32_t c = 0; c < count; c++)
-        if (shells[c].cavity)
-            sets_join(j->parent, c, shells[c].within);
+    STARG_NEW_ZERO(context, STAGE, j->touching, solid->mesh->face_count);
     if (found[STARG_FINDING_SELF_INTERSECTION].count + found[STARG_FINDING_SELF_CONTACT].count > 0)
-        bvh_query_pairs(solid->tree, join_touching, j);
+        STARG_TRY(join_contacts(context, solid, j));
+    STARG_TRY(shells_classify(context, solid->mesh, j->topology, solid->tree, j->touching, shells));
+    for (uint32_t c = 0; c < count; c++) {
+        if (shells[c].within != UINT32_MAX)
+            sets_join(j->parent, c, shells[c].within);
+        if (shells[c].crossed && crossed == UINT32_MAX)
+            crossed = c;
+        if (shells[c].crossed)
+            sets_join(j->parent, c, crossed);
+    }
 done:
+    starg_release(context, j->touching);
+    starg_release(context, j->welded);
     starg_release(context, shells);
     return status;
 }

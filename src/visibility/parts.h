@@ -11,8 +11,9 @@ typedef struct solid_parts {
     uint32_t *of; /* by face: the part that it bounds; parts are numbered by their lowest faces */
 } solid_parts;
 
-/* Shells that touch or intersect count as one part, and so does a scene. Release with
- * solid_parts_free, whatever the status. Errors: MEMORY. */
+/* Shells that intersect, or touch otherwise than in common vertices and edges, count as one part,
+ * and so does a scene. Release with
+ * solid_parts_free, whatever the status. Errors: MEMORY, CANCELLED, TIME. */
 starg_status solid_parts_find(starg_context *context, const starg_solid *solid, solid_parts *out);
 void solid_parts_free(starg_context *context, solid_parts *parts);
 

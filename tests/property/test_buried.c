@@ -87,13 +87,16 @@ static void compare(const crowd *c, const starg_solid *scene, bool room, size_t 
         }
 }
 
-/* No face that is called hidden is seen from any of many places around it. */
+/* No face that is called hidden is seen whole from any of many places around it. */
 static size_t look_around(starg_context *context, const starg_solid *scene, starg_rng *rng,
                           double width) {
     enum { PLACES = 60 };
     double places[3 * PLACES];
     size_t count = 0, hidden = 0;
     starg_bits *seen = NULL;
+    starg_visibility_options whole;
+    starg_visibility_options_default(&whole);
+    whole.face_rule = STARG_FACES_WHOLE;
     for (int i = 0; i < PLACES; i++) {
         double *p = places + 3 * count;
         for (int k = 0; k < 3; k++)
@@ -101,7 +104,7 @@ static size_t look_around(starg_context *context, const starg_solid *scene, star
         count += starg_space_admits(scene, p);
     }
     if (count > 0)
-        test_ok(context, starg_visibility(context, scene, places, count, NULL, &seen));
+        test_ok(context, starg_visibility(context, scene, places, count, &whole, &seen));
     for (uint32_t f = 0; f < starg_space_model_faces(scene); f++) {
         if (!solid_hides(scene, f))
             continue;

@@ -188,6 +188,33 @@ static void test_odd_sets(void **state) {
     test_context_free(context);
 }
 
+/* All witnesses and sets at the highest prices, for the most redundancy: the sum is exact. */
+static void test_highest(void **state) {
+    (void)state;
+    witness_prices *prices = calloc(1, sizeof *prices);
+    odd_sets *sets = calloc(1, sizeof *sets);
+    whole_prices *whole = calloc(1, sizeof *whole);
+    assert_true(prices != NULL && sets != NULL && whole != NULL);
+    const double highest = nextafter(BOUND_HIGHEST, 0);
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        prices->price[j] = highest;
+    for (sets->count = 0; sets->count < MOST_ODD_SETS; sets->count++) {
+        prices->odd[sets->count] = highest;
+        sets->set[sets->count].count = ODD_SET_SIZE;
+    }
+    bound_round(prices, sets, whole);
+    const uint64_t one = BOUND_HIGHEST * BOUND_ONE - 1, half = BOUND_MOST_TIMES * ODD_SET_SIZE / 2;
+    const long double all = (long double)MOST_WITNESSES * BOUND_MOST_TIMES * one +
+                            (long double)MOST_ODD_SETS * half * one;
+    assert_true((long double)bound_worth_of_all(whole, BOUND_MOST_TIMES) == all);
+    prices->price[0] = BOUND_HIGHEST;
+    bound_round(prices, sets, whole);
+    assert_true(whole->price[0] == 0 && whole->price[1] == one);
+    free(prices);
+    free(sets);
+    free(whole);
+}
+
 /* Three witnesses of which any two are seen together need two. */
 static void test_three(void **state) {
     (void)state;
@@ -251,6 +278,7 @@ int main(void) {
         cmocka_unit_test(test_prices_meet_their_cover),
         cmocka_unit_test(test_bounds_against_enumeration),
         cmocka_unit_test(test_odd_sets),
+        cmocka_unit_test(test_highest),
         cmocka_unit_test(test_three),
         cmocka_unit_test(test_corrupted_row_is_noticed),
     };

@@ -648,7 +648,7 @@ static void test_other_meshes_are_refused(void **state) {
     shape cube = shape_cube(2), touching = shape_cells("#..#", 2, 2, 1);
     /* two cells that share one corner */
     shape corner = shape_cells("#......#", 2, 2, 2), empty = {0};
-    assert_refused(context, &touching, "two faces");
+    assert_refused(context, &touching, "fan");
     assert_refused(context, &corner, "fan");
     assert_refused(context, &empty, "no faces");
     uint32_t *face = cube.faces + 3 * (cube.face_count - 1), first = face[0];

@@ -2,6 +2,7 @@
 /* The solid: rejections with their messages, shell orientation, order, containment and distance. */
 
 #include "starguard/solid.h"
+#include "starguard/space.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -72,13 +73,16 @@ static void test_refuses_inconsistent(void **state) {
     expect_refusal(&s, "inconsistent edges: 3", STARG_ELEMENT_EDGE, 6, 1);
 }
 
+/* A wall without thickness in a room: its edges have three faces. */
 static void test_refuses_nonmanifold(void **state) {
     (void)state;
-    shape s = shape_cells("#..#", 2, 2, 1); /* two cells that touch along the edge over (1, 1) */
-    uint64_t first = 0;
-    while (s.vertices[3 * first] != 1 || s.vertices[3 * first + 1] != 1)
-        first++;
-    expect_refusal(&s, "non-manifold edges: 1", STARG_ELEMENT_EDGE, 2, first);
+    shape s = shape_tetrahedron();
+    s.faces = realloc(s.faces, sizeof(uint32_t[18]));
+    assert_non_null(s.faces);
+    memcpy(s.faces + 12, s.faces, sizeof(uint32_t[3]));
+    memcpy(s.faces + 15, s.faces + 3, sizeof(uint32_t[3]));
+    s.face_count = 6;
+    expect_refusal(&s, "non-manifold edges: 5", STARG_ELEMENT_EDGE, STARG_ERROR_INDICES, 0);
 }
 
 static void test_refuses_flat(void **state) {
@@ -96,6 +100,34 @@ static void test_refuses_nothing(void **state) {
 }
 
 /* ---- accepted input ---- */
+
+/* Two cells that touch along the edge over (1, 1) share its vertices: one gets copies of them, but
+ * for the mesh that the solid shows. */
+static void test_parts_cells(void **state) {
+    (void)state;
+    messages m = {0};
+    shape s = shape_cells("#..#", 2, 2, 1);
+    starg_context *context = listening_context(&m);
+    starg_mesh *mesh = test_mesh_of(context, &s);
+    starg_solid *solid = NULL;
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    assert_true(m.notices == 1 && m.warnings == 0);
+    assert_non_null(strstr(m.last, "share 2 vertices"));
+    const starg_mesh *own = starg_solid_mesh(solid);
+    assert_int_equal(starg_mesh_vertex_count(own), s.vertex_count);
+    assert_int_equal(starg_solid_check(solid)->vertices, s.vertex_count + 2);
+    assert_int_equal(starg_mesh_face_count(own), s.face_count);
+    assert_int_equal(starg_space_model_vertices(solid), s.vertex_count);
+    for (size_t i = 0; i < 3 * s.face_count; i++)
+        assert_memory_equal(starg_mesh_vertices(own) + 3 * (size_t)starg_mesh_faces(own)[i],
+                            s.vertices + 3 * (size_t)s.faces[i], sizeof(double[3]));
+    assert_int_equal(starg_solid_check(solid)->components, 2);
+    assert_true(fabs(starg_solid_check(solid)->volume - 2) < 1e-12);
+    starg_solid_free(solid);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+    shape_free(&s);
+}
 
 static void test_keeps_order(void **state) {
     (void)state;
@@ -272,6 +304,7 @@ int main(void) {
         cmocka_unit_test(test_refuses_nonmanifold),
         cmocka_unit_test(test_refuses_flat),
         cmocka_unit_test(test_refuses_nothing),
+        cmocka_unit_test(test_parts_cells),
         cmocka_unit_test(test_keeps_order),
         cmocka_unit_test(test_turns_shells_with_a_notice),
         cmocka_unit_test(test_warns_of_intersections),

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
+#include "mesh/wings.h"
 
 static starg_status fail_edge(starg_context *context, uint32_t a, uint32_t b, const char *what) {
     const uint64_t ends[2] = {a, b};
@@ -103,7 +104,7 @@ static starg_status fill(mesh_surface *s, const starg_mesh *mesh, mesh_topology 
     starg_context *context = s->context;
     s->vertex_count = mesh->vertex_count;
     s->face_count = s->faces_left = mesh->face_count;
-    s->edge_count = topology->edge_count;
+    s->edge_count = 3 * mesh->face_count / 2; /* two of an edge that four faces share */
     s->component_count = topology->component_count;
     s->scale = scale_of(mesh);
     STARG_NEW(context, "simplify", s->vertices, 3 * s->vertex_count);
@@ -128,7 +129,7 @@ starg_status surface_create(starg_context *context, const starg_mesh *mesh, mesh
     mesh_surface *surface = NULL;
     mesh_topology *topology = NULL;
     *out = NULL;
-    STARG_TRY(topology_create(context, mesh, &topology));
+    STARG_TRY(wings_create(context, mesh, &topology));
     STARG_TRY(check_edges(context, mesh, topology));
     STARG_NEW_ZERO(context, "simplify", surface, 1);
     surface->context = context;

@@ -67,7 +67,7 @@ static size_t found(const starg_check *check, starg_finding_kind kind) {
 /* Contacts and coincident vertices are not faults of a solid: shells may touch. But surfaces may
  * cross where faces only touch, so a union inspects them. */
 static bool needs_nothing(const starg_check *check, const starg_repair_options *options) {
-    return check->usable && options->merge_distance == 0 &&
+    return check->usable && check->manifold && options->merge_distance == 0 &&
            found(check, STARG_FINDING_INWARD_COMPONENT) == 0 &&
            found(check, STARG_FINDING_DEGENERATE_FACE) == 0 &&
            found(check, STARG_FINDING_ISOLATED_VERTEX) == 0 &&
