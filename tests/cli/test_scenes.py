@@ -270,8 +270,8 @@ class Scenes(Case):
         self.write("pair.off", off(box((0, 0, 0), (2, 10, 10)), box((2, 0, 0), (4, 10, 10))))
         found = self.run_json("visible", "pair.off", "--outside", "--unseen")
         lines = self.read("pair.off").splitlines()
-        points = [line.split()[0] for line in lines[2:18]]
-        wall = [f for f, line in enumerate(lines[18:]) if {points[int(v)] for v in line.split()[1:]} == {"2.0"}]
+        across = [float(line.split()[0]) for line in lines[2:18]]
+        wall = [f for f, line in enumerate(lines[18:]) if {across[int(v)] for v in line.split()[1:]} == {2}]
         self.assertEqual((found["unseen"], found["undecided"], len(wall)), (wall, [], 4))
         self.write("hollow.off", off(box((0, 0, 0), (4, 4, 4)), box((1, 1, 1), (3, 3, 3))))
         found = self.run_json("visible", "hollow.off", "--outside", "--unseen")
