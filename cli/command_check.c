@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "commands.h"
-#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/check.h"
@@ -196,7 +195,7 @@ static void judge(cli_session *session, const starg_check *check) {
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    return cli_announce_with_extension(session, "--marks", v->marks, ".ply");
+    return cli_announce(session, v->marks);
 }
 
 static starg_status run(cli_session *session, void *data) {

@@ -21,24 +21,20 @@ static const cli_option options[] = {
                      "current folder or to the result."),
 };
 
-static starg_status choose_format(cli_session *session, const char *name,
-                                  starg_scene_format *format) {
+static starg_scene_format format_of(const char *name) {
     static const cli_extension known[] = {{".glb", STARG_SCENE_GLB},
                                           {".vtu", STARG_SCENE_VTU},
                                           {".ply", STARG_SCENE_PLY},
                                           {".obj", STARG_SCENE_OBJ}};
-    int found;
-    starg_status status = cli_format_by_extension(
-        session, name, known, sizeof known / sizeof *known, STARG_SCENE_GLB, &found);
-    *format = (starg_scene_format)found;
-    return status;
+    return (starg_scene_format)cli_format_of(name, known, sizeof known / sizeof *known,
+                                             STARG_SCENE_GLB);
 }
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply or .obj"));
-    CLI_TRY(choose_format(session, v->output, &v->format));
+    v->format = format_of(v->output);
 done:
     return status;
 }

@@ -52,6 +52,9 @@ static const cli_option options[] = {
                     "(quaternions) and points to look at."),
     CLI_SCENE_OPTIONS,
     CLI_PLACE_OPTIONS,
+    CLI_TEXT_OPTION("leak", scene.leak, "FILE.obj|.vtk",
+                    "--soup --from: way from that point out of the model's box, or to space behind "
+                    "gaps about as wide as a cube, as a line; no file if there is none."),
 };
 
 /* ---- options ---- */
@@ -235,13 +238,6 @@ done:
     return status;
 }
 
-static starg_status announce_poses(cli_session *session, const char *name) {
-    if (name != NULL && !cli_has_extension(name, ".csv") && !cli_has_extension(name, ".json"))
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "--poses needs a name that ends in .csv or .json, not '%.200s'", name);
-    return cli_announce(session, name);
-}
-
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
@@ -250,9 +246,9 @@ static starg_status prepare(cli_session *session, void *data) {
     if (v->certificate != NULL && !v->wanted.prove)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate says why the bound of --prove holds; add --prove");
-    CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-    CLI_TRY(announce_poses(session, v->poses_file));
+    CLI_TRY(cli_announce(session, v->marks));
+    CLI_TRY(cli_announce(session, v->picture));
+    CLI_TRY(cli_announce(session, v->poses_file));
     v->scene.clearance = v->wanted.clearance;
     memcpy(v->scene.up, v->wanted.visibility.up, sizeof v->scene.up);
     CLI_TRY(cli_scene_prepare(session, &v->scene));

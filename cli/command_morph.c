@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/animation.h"
@@ -122,9 +121,9 @@ static starg_status prepare(cli_session *session, void *data) {
         v->wanted.method != STARG_MORPH_SPHERICAL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--guards: method %s has no guards; use star or spherical", method_word(v));
-    CLI_TRY(cli_announce_with_extension(session, "--glb", v->glb, ".glb"));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-    CLI_TRY(cli_announce_with_extension(session, "--certificate", v->certificate, ".vtu"));
+    CLI_TRY(cli_announce(session, v->glb));
+    CLI_TRY(cli_announce(session, v->picture));
+    CLI_TRY(cli_announce(session, v->certificate));
     if (v->certificate != NULL && v->wanted.method != STARG_MORPH_SOLID)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate: only method solid has one, and this is %s", method_word(v));

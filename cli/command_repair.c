@@ -12,8 +12,8 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION(
-        "FILE", "Repaired mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard output."),
+    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl",
+                      "Repaired mesh; '-' writes OFF to standard output."),
 };
 
 /* Reports what was done, as text and JSON. */
@@ -57,7 +57,7 @@ static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE"));
-    CLI_TRY(cli_mesh_format(session, v->output, &v->format));
+    v->format = cli_mesh_format(v->output);
 done:
     return status;
 }

@@ -13,7 +13,7 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE", "Mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard output."),
+    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl", "Mesh; '-' writes OFF to standard output."),
     CLI_FLAG_OPTION("list", list, "List the samples and their poses."),
 };
 
@@ -57,7 +57,6 @@ static starg_status check_name(cli_session *session, const char *name) {
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    starg_mesh_format format;
     starg_mesh *mesh = NULL;
     if (v->list)
         return list_samples(session);
@@ -67,10 +66,9 @@ static starg_status run(cli_session *session, void *data) {
             "give a sample and an output: starguard sample NAME -o FILE; --list lists the names");
     const char *name = session->operands[0];
     CLI_TRY(check_name(session, name));
-    CLI_TRY(cli_mesh_format(session, v->output, &format));
     CLI_TRY(cli_announce(session, v->output));
     CLI_TRY(starg_sample_create(session->context, name, &v->wanted, &mesh));
-    CLI_TRY(cli_mesh_write(session, mesh, format, NULL, v->output));
+    CLI_TRY(cli_mesh_write(session, mesh, cli_mesh_format(v->output), NULL, v->output));
     cli_say(session, "%s, pose %d: %zu vertices, %zu faces\n", name, v->wanted.pose,
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh));
     cli_report_head(session, "starguard-sample", v->output, mesh);

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
@@ -219,6 +218,10 @@ static starg_status check_viewpoints(cli_session *session, const values *v) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--unseen asks about the whole free space; leave out --box, or say where "
                         "guards may stand by --within");
+    if (v->unseen && v->from.count > 1)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "with --unseen, --from is the one point from which the free space is "
+                        "reached; leave out the others");
     if (v->unseen)
         return STARG_OK;
     if (v->scene.cell > 0 || v->scene.standoff.count > 0 || v->scene.within.count > 0)
@@ -241,7 +244,7 @@ static starg_status prepare(cli_session *session, void *data) {
     if (v->unseen) /* lent: freed where it comes from */
         v->scene.from = v->from;
     CLI_TRY(cli_scene_prepare(session, &v->scene));
-    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".ply"));
+    CLI_TRY(cli_announce(session, v->output));
 done:
     return status;
 }

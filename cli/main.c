@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "help.h"
 #include "manual.h"
 #include "model.h"
@@ -169,10 +170,18 @@ static starg_status name_inputs(cli_session *session, const char *values) {
         CLI_TRY(cli_name_input(session, session->operands[i]));
     for (size_t i = 0; i < command->option_count; i++) {
         const cli_option *o = &command->options[i];
-        const char *value =
-            (o->flags & STARG_FIELD_INPUT) ? *(const char *const *)(values + o->offset) : NULL;
-        if (value != NULL && !is_word(o, value))
-            CLI_TRY(cli_name_input(session, value));
+        const void *member = values + o->offset;
+        const char *const *names = member;
+        size_t count = 1;
+        if (!(o->flags & STARG_FIELD_INPUT))
+            continue;
+        if (o->kind == STARG_FIELD_TEXTS) {
+            names = ((const starg_texts *)member)->values;
+            count = ((const starg_texts *)member)->count;
+        }
+        for (size_t k = 0; k < count; k++)
+            if (names[k] != NULL && !is_word(o, names[k]))
+                CLI_TRY(cli_name_input(session, names[k]));
     }
 done:
     return status;
@@ -187,6 +196,7 @@ static starg_status perform(cli_session *session, void *values) {
     CLI_TRY(name_inputs(session, values));
     if (command->prepare != NULL)
         CLI_TRY(command->prepare(session, values));
+    CLI_TRY(cli_check_names(session, values));
     CLI_TRY(cli_input_read(session));
     CLI_TRY(command->run(session, values));
 done:

@@ -17,12 +17,14 @@ typedef struct parser {
     int argc, next;
     char **argv;
     cli_parse_error *error;
+    size_t *times; /* how often each option was given, by its number over all groups */
 } parser;
 
 /* An option as given by the user. */
 typedef struct match {
     const cli_option *option;
     const cli_group *group;
+    size_t number;
     char shown[64]; /* "--name" or "-n" */
 } match;
 
@@ -139,6 +141,22 @@ static bool set_flag(const match *m) {
                                  strncmp(m->option->option, "no-", 3) != 0);
 }
 
+/* Occurrences of an option that add up: all but the first one of others are refused, so that none
+ * is lost without a word. Flags say the same however often. */
+static size_t occurrences(const cli_option *o) {
+    bool adds = o->kind == STARG_FIELD_PLACES || o->kind == STARG_FIELD_TEXTS;
+    if (adds && o->most > 0)
+        return o->most;
+    return adds || o->kind == STARG_FIELD_FLAG ? SIZE_MAX : 1;
+}
+
+static bool count_occurrence(parser *p, const match *m) {
+    if (++p->times[m->number] <= occurrences(m->option))
+        return true;
+    return fail_parse(p, "%s is given more than once, and takes one value; leave out all but one",
+                      m->shown);
+}
+
 static bool set_value(parser *p, const match *m, const char *word) {
     void *variable = (char *)m->group->values + m->option->offset;
     switch (m->option->kind) {
@@ -170,13 +188,14 @@ static bool find_long(parser *p, const char *name, size_t size, match *m) {
     if (size < sizeof word)
         memcpy(word, name, size);
     cli_suggest_begin(&near, word);
+    size_t number = 0;
     for (size_t g = 0; g < p->group_count; g++) {
-        for (size_t i = 0; i < p->groups[g].count; i++) {
+        for (size_t i = 0; i < p->groups[g].count; i++, number++) {
             const cli_option *o = &p->groups[g].options[i];
             if (o->option == NULL)
                 continue;
             if (strcmp(word, o->option) == 0) {
-                *m = (match){.option = o, .group = &p->groups[g]};
+                *m = (match){.option = o, .group = &p->groups[g], .number = number};
                 snprintf(m->shown, sizeof m->shown, "--%s", o->option);
                 return true;
             }
@@ -189,12 +208,13 @@ static bool find_long(parser *p, const char *name, size_t size, match *m) {
 }
 
 static bool find_short(parser *p, char letter, match *m) {
+    size_t number = 0;
     for (size_t g = 0; g < p->group_count; g++) {
-        for (size_t i = 0; i < p->groups[g].count; i++) {
+        for (size_t i = 0; i < p->groups[g].count; i++, number++) {
             const cli_option *o = &p->groups[g].options[i];
             if (o->option == NULL || o->letter != letter)
                 continue;
-            *m = (match){.option = o, .group = &p->groups[g]};
+            *m = (match){.option = o, .group = &p->groups[g], .number = number};
             snprintf(m->shown, sizeof m->shown, "-%c", letter);
             return true;
         }
@@ -223,7 +243,7 @@ static bool parse_long(parser *p, const char *text) {
     match m;
     const char *equals = strchr(text, '='), *word = NULL;
     size_t size = equals != NULL ? (size_t)(equals - text) : strlen(text);
-    if (!find_long(p, text, size, &m))
+    if (!find_long(p, text, size, &m) || !count_occurrence(p, &m))
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && equals != NULL)
         return fail_parse(p, "%s takes no value", m.shown);
@@ -241,7 +261,7 @@ static bool parse_long(parser *p, const char *text) {
 static bool parse_short(parser *p, const char *text) {
     match m;
     const char *word = NULL;
-    if (!find_short(p, *text, &m))
+    if (!find_short(p, *text, &m) || !count_occurrence(p, &m))
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && text[1] != '\0')
         return fail_parse(p, "unknown option '-%.100s'", text);
@@ -253,21 +273,34 @@ static bool parse_short(parser *p, const char *text) {
     return set_value(p, &m, word);
 }
 
+/* The number of operands, or -1. */
+static int parse_words(parser *p) {
+    int operands = 0;
+    bool options_end = false;
+    while (p->next < p->argc) {
+        char *word = p->argv[p->next++];
+        if (options_end || word[0] != '-' || word[1] == '\0')
+            p->argv[operands++] = word;
+        else if (strcmp(word, "--") == 0)
+            options_end = true;
+        else if (word[1] == '-' ? !parse_long(p, word + 2) : !parse_short(p, word + 1))
+            return -1;
+    }
+    return operands;
+}
+
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
                       cli_parse_error *error) {
     parser p = {
         .groups = groups, .group_count = group_count, .argc = argc, .argv = argv, .error = error};
-    int operands = 0;
-    bool options_end = false;
-    while (p.next < argc) {
-        char *word = argv[p.next++];
-        if (options_end || word[0] != '-' || word[1] == '\0')
-            argv[operands++] = word;
-        else if (strcmp(word, "--") == 0)
-            options_end = true;
-        else if (word[1] == '-' ? !parse_long(&p, word + 2) : !parse_short(&p, word + 1))
-            return -1;
-    }
+    size_t options = 1;
+    for (size_t g = 0; g < group_count; g++)
+        options += groups[g].count;
+    p.times = calloc(options, sizeof *p.times);
+    if (p.times == NULL)
+        fail_parse(&p, "out of memory");
+    int operands = p.times != NULL ? parse_words(&p) : -1;
+    free(p.times);
     return operands;
 }
 

@@ -69,7 +69,8 @@ typedef struct cli_parse_error {
 
 /* Parses `argc` words. Options and operands may be mixed; "--" ends the options. Option names
  * cannot be abbreviated. Moves operands to the front of argv and returns their number; -1 with a
- * message on the first error. Later occurrences of an option replace earlier ones. */
+ * message on the first error. Occurrences of an option add up (PLACES, TEXTS; at most `most` of
+ * them unless that is 0) or are flags; any other option that occurs twice is an error. */
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
                       cli_parse_error *error);
 

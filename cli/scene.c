@@ -5,46 +5,48 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include "commands.h"
+#include "extensions.h"
+#include "starguard/skeleton.h"
 
 const char *const cli_orientation_words[] = {"nested", "keep", NULL};
 
 starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene) {
-    starg_status status = STARG_OK;
-    for (size_t i = 0; i < scene->obstacles.count; i++)
-        CLI_TRY(cli_name_input(session, scene->obstacles.values[i]));
-    if ((scene->see != NULL) + (scene->ignore != NULL) + (scene->weights != NULL) > 1)
+    if ((scene->see.count > 0) + (scene->ignore.count > 0) + (scene->weights != NULL) > 1)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--see, --ignore and --weights exclude each other; weights say it all");
+    if (scene->leak != NULL && (!scene->soup || scene->from.count == 0))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--leak shows where space leaks that is reached in a soup; add --soup and "
+                        "--from X,Y,Z");
     if (scene->cell > 0 && scene->from.count == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--cell is the size of cubes for --from X,Y,Z; add that point");
-    if ((scene->over != NULL) != (scene->height > 0))
+    if ((scene->over.count > 0) != (scene->height > 0))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        scene->over != NULL
+                        scene->over.count > 0
                             ? "--over needs to know how high guards may stand above "
                               "the faces: add --height H"
                             : "--height is a height above faces: add --over FACES");
-    if (scene->mount != NULL && !(scene->clearance > 0))
+    if (scene->mount.count > 0 && !(scene->clearance > 0))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--mount needs to know how far from the faces guards hang: add --clearance "
                         "D");
     if (scene->outside && scene->standoff.count == 0 && scene->within.count == 0 &&
-        scene->over == NULL && scene->mount == NULL && session->command == &cli_command_guard)
+        scene->over.count == 0 && scene->mount.count == 0 && session->command == &cli_command_guard)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--outside needs to know how far guards may stand away: add --standoff "
                         "MIN,MAX or --within X0,Y0,Z0,X1,Y1,Z1");
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_plain(const cli_scene *s) {
     return s->obstacles.count == 0 && s->orientation == STARG_ORIENTATION_NESTED && !s->outside &&
-           s->standoff.count == 0 && s->within.count == 0 && s->see == NULL && s->ignore == NULL &&
-           s->weights == NULL && !s->soup && !s->two_sided && s->from.count == 0 &&
-           s->over == NULL && s->mount == NULL;
+           s->standoff.count == 0 && s->within.count == 0 && s->see.count == 0 &&
+           s->ignore.count == 0 && s->weights == NULL && !s->soup && !s->two_sided &&
+           s->from.count == 0 && s->over.count == 0 && s->mount.count == 0;
 }
 
 static double diagonal(const starg_mesh *mesh) {
@@ -60,22 +62,20 @@ static void take_options(const cli_scene *s, const starg_mesh *model, starg_spac
     out->soup = s->soup;
     out->two_sided = s->two_sided;
     if (s->from.count > 0) {
-        const double *last = s->from.values + 3 * (s->from.count - 1);
         out->cell = s->cell > 0 ? s->cell : 0.01 * diagonal(model);
         for (int k = 0; k < 3; k++)
-            out->from[k] = last[k];
+            out->from[k] = s->from.values[k];
     }
     out->height = s->height;
-    if (s->over != NULL)
+    if (s->over.count > 0)
         memcpy(out->up, s->up, sizeof out->up);
-    if (s->mount != NULL) /* room for rounding, and for refinement */
+    if (s->mount.count > 0) /* room for rounding, and for refinement */
         out->mount_distance = 1.001 * s->clearance;
     if (s->standoff.count > 0) {
-        const double *last = s->standoff.values + 2 * (s->standoff.count - 1);
-        out->standoff_least = last[0];
-        out->standoff_most = last[1];
+        out->standoff_least = s->standoff.values[0];
+        out->standoff_most = s->standoff.values[1];
     }
-    const double *box = s->within.count > 0 ? s->within.values + 6 * (s->within.count - 1) : NULL;
+    const double *box = s->within.count > 0 ? s->within.values : NULL;
     for (int k = 0; box != NULL && k < 3; k++) {
         out->within[k] = fmin(box[k], box[k + 3]);
         out->within[k + 3] = fmax(box[k], box[k + 3]);
@@ -122,10 +122,13 @@ static char *ranges_of(const uint32_t *list, size_t count) {
     return NULL;
 }
 
-static bool recall_faces(const uint32_t *list, size_t count, char **text, const char **word) {
+static bool recall_faces(const uint32_t *list, size_t count, char **text, starg_texts *words) {
     *text = count > 0 ? ranges_of(list, count) : NULL;
-    *word = *text;
-    return count == 0 || *text != NULL;
+    words->values = *text != NULL ? malloc(sizeof *words->values) : NULL;
+    words->count = words->values != NULL;
+    if (words->count > 0)
+        words->values[0] = *text;
+    return count == 0 || words->count > 0;
 }
 
 /* Are the faces to be seen alike? Then numbers tell them. */
@@ -184,6 +187,9 @@ void cli_scene_forget(cli_scene *scene) {
     free(scene->standoff.values);
     free(scene->within.values);
     free((void *)scene->obstacles.values);
+    free((void *)scene->see.values);
+    free((void *)scene->over.values);
+    free((void *)scene->mount.values);
     for (int i = 0; i < 3; i++)
         free(scene->recalled[i]);
     *scene = (cli_scene){0};
@@ -232,25 +238,68 @@ static starg_status keep_values(cli_session *session, double *values, size_t fac
     return *out != NULL ? STARG_OK : cli_fail_memory(session);
 }
 
-/* The values by face that a word says: a file, a list of numbers, or a name in the model. */
+/* Standard input, or a file: a folder that is called like a group is none. */
+static bool is_file(const char *word) {
+    struct stat info;
+    return strcmp(word, "-") == 0 || (stat(word, &info) == 0 && !S_ISDIR(info.st_mode));
+}
+
+/* Numbers come before names; an object that is called like some is not passed over in silence. */
+static void warn_of_name(cli_session *session, const char *word, size_t faces) {
+    double *values = NULL;
+    if (strcmp(session->operands[0], "-") != 0 &&
+        starg_faces_named(session->context, session->operands[0], word, faces, &values) == STARG_OK)
+        cli_log(
+            session, STARG_LOG_WARNING,
+            "%.100s is taken as numbers of faces; the model has a name like that: write '?%.100s' "
+            "to mean it",
+            word, word + 1);
+    starg_weights_free(session->context, values);
+}
+
+/* The values by face that a word says: a file, a list of numbers, or names in the model. */
 static starg_status
 read_values(cli_session *session, const char *word, size_t faces,
             starg_status (*read)(starg_context *, const char *, size_t, double **), double **out) {
     starg_status status = STARG_OK;
     double *values = NULL;
     const char *model = session->operands[0];
-    bool file = strcmp(word, "-") == 0 || access(word, F_OK) == 0 || strpbrk(word, "/.") != NULL;
+    bool file = is_file(word);
     *out = NULL;
-    if (!file && is_numbers(word))
-        return take_numbers(session, word, faces, out);
+    if (!file && is_numbers(word)) {
+        CLI_TRY(take_numbers(session, word, faces, out));
+        warn_of_name(session, word, faces);
+        goto done;
+    }
     if (!file && strcmp(model, "-") == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "there is no file '%.100s', and names in a model need its file, not "
                         "standard input",
                         word);
-    CLI_TRY(file ? read(session->context, word, faces, &values)
-                 : starg_faces_named(session->context, model, word, faces, &values));
+    status = file ? read(session->context, word, faces, &values)
+                  : starg_faces_named(session->context, model, word, faces, &values);
+    if (status == STARG_ERROR_ARGUMENT && strpbrk(word, "/.") != NULL) /* more likely a file */
+        status = cli_fail(session, STARG_ERROR_READ, "%s",
+                          starg_context_error(session->context)->message);
+    CLI_TRY(status);
     status = keep_values(session, values, faces, out);
+done:
+    return status;
+}
+
+/* What any of the words says; NULL: there are none. */
+static starg_status read_union(cli_session *session, const starg_texts *words, size_t faces,
+                               double **out) {
+    starg_status status = STARG_OK;
+    double *values = NULL;
+    *out = NULL;
+    for (size_t i = 0; i < words->count; i++) {
+        CLI_TRY(read_values(session, words->values[i], faces, starg_faces_read, &values));
+        for (size_t f = 0; f < faces && *out != NULL; f++)
+            values[f] = fmax(values[f], (*out)[f]);
+        free(*out);
+        *out = values;
+    }
 done:
     return status;
 }
@@ -258,29 +307,25 @@ done:
 /* The weights that were asked for; NULL: none. */
 static starg_status read_weights(cli_session *session, const cli_scene *s, size_t faces,
                                  double **out) {
-    starg_status status = STARG_OK;
-    const char *word = s->see != NULL ? s->see : s->ignore;
-    *out = NULL;
+    bool ignore = s->ignore.count > 0;
     if (s->weights != NULL)
         return read_values(session, s->weights, faces, starg_weights_read, out);
-    if (word == NULL)
-        return STARG_OK;
-    status = read_values(session, word, faces, starg_faces_read, out);
-    for (size_t f = 0; status == STARG_OK && f < faces; f++)
-        (*out)[f] = ((*out)[f] != 0) == (s->ignore == NULL);
+    starg_status status = read_union(session, ignore ? &s->ignore : &s->see, faces, out);
+    for (size_t f = 0; status == STARG_OK && *out != NULL && f < faces; f++)
+        (*out)[f] = ((*out)[f] != 0) != ignore;
     return status;
 }
 
-/* The faces that a word says, as an ascending list. */
-static starg_status read_list(cli_session *session, const char *option, const char *word,
+/* The faces that the words of an option say, as an ascending list. */
+static starg_status read_list(cli_session *session, const char *option, const starg_texts *words,
                               size_t faces, uint32_t **list, size_t *count) {
     starg_status status = STARG_OK;
     double *values = NULL;
     *list = NULL;
     *count = 0;
-    if (word == NULL)
+    if (words->count == 0)
         return STARG_OK;
-    CLI_TRY(read_values(session, word, faces, starg_faces_read, &values));
+    CLI_TRY(read_union(session, words, faces, &values));
     *list = calloc(faces + 1, sizeof **list);
     if (*list == NULL) {
         status = cli_fail_memory(session);
@@ -291,9 +336,39 @@ static starg_status read_list(cli_session *session, const char *option, const ch
             (*list)[(*count)++] = (uint32_t)f;
     if (*count == 0)
         status = cli_fail(session, STARG_ERROR_ARGUMENT, "%s %.100s are no faces of the model",
-                          option, word);
+                          option, words->values[0]);
 done:
     free(values);
+    return status;
+}
+
+/* A leak as a curve, for viewers of skeletons, too. */
+static starg_status write_leak(cli_session *session, const char *name) {
+    starg_status status = STARG_OK;
+    const double *points;
+    starg_skeleton line = {.node_count = starg_space_leak(session->solid, &points)};
+    size_t n = line.node_count;
+    if (n == 0) {
+        cli_log(session, STARG_LOG_NOTICE, "nothing leaks; '%.200s' is not written", name);
+        return STARG_OK;
+    }
+    line.edge_count = n - 1;
+    line.positions = malloc(3 * n * sizeof *points);
+    line.edges = malloc(2 * n * sizeof *line.edges);
+    if (line.positions == NULL || line.edges == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    memcpy(line.positions, points, 3 * n * sizeof *points);
+    for (size_t i = 0; i < 2 * n; i++)
+        line.edges[i] = (uint32_t)((i + 1) / 2);
+    CLI_TRY(cli_announce(session, name));
+    status = starg_skeleton_write(
+        session->context, &line, cli_outputs_place(&session->outputs, name),
+        cli_has_extension(name, ".vtk") ? STARG_SKELETON_VTK : STARG_SKELETON_OBJ);
+done:
+    free(line.positions);
+    free(line.edges);
     return status;
 }
 
@@ -311,8 +386,8 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
     }
     CLI_TRY(read_obstacles(session, s->obstacles.values, s->obstacles.count, &obstacles));
     CLI_TRY(read_weights(session, s, faces, &weights));
-    CLI_TRY(read_list(session, "--over", s->over, faces, &over, &options.over_count));
-    CLI_TRY(read_list(session, "--mount", s->mount, faces, &mount, &options.mount_count));
+    CLI_TRY(read_list(session, "--over", &s->over, faces, &over, &options.over_count));
+    CLI_TRY(read_list(session, "--mount", &s->mount, faces, &mount, &options.mount_count));
     options.over = over;
     options.mount = mount;
     CLI_TRY(starg_space_create(session->context, session->mesh,
@@ -320,6 +395,8 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
                                &session->solid));
     if (weights != NULL)
         CLI_TRY(starg_space_weigh(session->solid, weights));
+    if (s->leak != NULL)
+        status = write_leak(session, s->leak);
 done:
     free(weights);
     free(over);

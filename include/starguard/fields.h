@@ -76,7 +76,8 @@ typedef struct starg_field {
     size_t offset, size; /* of the member, in bytes                                             */
 
     uint64_t least, most, initial, none; /* COUNT: range, default, meaning of null. CHOICE and FLAG:
-                                            `initial` is the default. LIST: `least` items */
+                                            `initial` is the default. LIST: `least` items.
+                                            PLACES, TEXTS: `most` of them, 0: any number */
     double low, high, standard;          /* REAL, NUMBERS: range, default                       */
     const char *const *words;            /* CHOICE: by number, NULL-terminated */
 

@@ -92,6 +92,11 @@ STARG_API size_t starg_space_model_faces(const starg_solid *scene);
 /* Whether a guard may stand at p: starg_solid_contains, and within the distances and the box. */
 STARG_API bool starg_space_admits(const starg_solid *scene, const double p[3]);
 
+/* Where the space that is reached from `from` in a soup leaks (a warning tells, too): a way of
+ * `count` points x 3, which belong to the scene, out of the model's bounding box, or to space
+ * behind gaps about as wide as a cube. 0: it does not leak. */
+STARG_API size_t starg_space_leak(const starg_solid *scene, const double **points);
+
 #ifdef __cplusplus
 }
 #endif

@@ -75,6 +75,18 @@ class Data:
     def __int__(self) -> int:
         return self._address
 
+    # What the library made does not change, so a copy shares it; memory is of this process only.
+
+    def __copy__(self) -> Data:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Data:
+        return self
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError("this object of the library cannot be pickled: write it to a file and read that, or "
+                        "make it again from its model")
+
     def __add__(self, count: int) -> Data:
         kind = self._type
         if kind.kind == "array":

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays
+from . import _arrays, _others
 from ._choice import choose, renamed
 from ._fields import fill
 from ._library import ffi, lib, text
@@ -77,6 +77,9 @@ class Descriptor:
                     edges=_arrays.records(d, d.edges, d.edge_count),
                     distances=_arrays.view(d, d.distances, (d.guard_count, d.direction_count),
                                            np.float64))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Descriptor.from_bytes, (_others.written(self.write, "descriptor.json"), "pickle")
 
     @classmethod
     def read(cls, path: PathLike) -> Descriptor:
@@ -149,9 +152,9 @@ def describe(model: Any, *, threads: int | None = None, seed: int | None = None,
     >>> d.distances.shape, d.guards["position"].shape
     ((1, 256), (1, 3))
     """
-    mesh = as_mesh(model)
     session = Session(threads, seed)
     wanted = _OPTIONS.make(options)
+    mesh = as_mesh(model)
     return Descriptor._of(session.make(
         "starg_descriptor", lib.starg_descriptor_free, lib.starg_descriptor_create, session.context,
         mesh._handle, wanted.pointer, shared=True, progress=progress, time_limit=time_limit), mesh.file)

@@ -2,6 +2,8 @@
 """Exceptions, one per status of the library."""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ._library import ffi, lib, text
@@ -91,6 +93,24 @@ _CLASSES: dict[int, type[Error]] = {
 }
 
 
+# Messages of the library name commands and options of the command line.
+_CALLS = {"check": "Mesh.check", "repair": "Mesh.repair", "db": "Database"}
+
+
+def in_python(message: str) -> str:
+    """The same with the calls and keywords of this package.
+
+    >>> in_python("make one with 'starguard repair --union', or leave out --prove")
+    'make one with Mesh.repair(union=...), or leave out prove='
+    """
+    def call(found: re.Match[str]) -> str:
+        keywords = [word.replace("-", "_") for word in re.findall(r"--([a-z][a-z-]*)", found[2])]
+        return f"{_CALLS.get(found[1], found[1])}({', '.join(f'{word}=...' for word in keywords)})"
+
+    message = re.sub(r"'starguard ([a-z]+)([^']*)'", call, message)
+    return re.sub(r"(?<!\S)--([a-z][a-z-]*)", lambda m: m[1].replace("-", "_") + "=", message)
+
+
 def of_status(status: int, context: object) -> Error:
     """The exception for a failed call on a context (NULL: creation failed)."""
     kind = _CLASSES.get(status, Error)
@@ -100,5 +120,5 @@ def of_status(status: int, context: object) -> Error:
         return kind(phrase)
     element = _ELEMENTS[detail.element]
     indices = np.array(ffi.unpack(detail.indices, detail.index_count), np.uint64).astype(np.int64)
-    return kind(text(detail.message) or phrase, text(detail.stage), element,
+    return kind(in_python(text(detail.message)) or phrase, text(detail.stage), element,
                 indices.reshape(-1, 2) if element == "edge" else indices)

@@ -2,8 +2,6 @@
 """Star decomposition: few pieces, each entirely visible from its guard."""
 from __future__ import annotations
 
-import os
-import tempfile
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Iterator
 
@@ -91,15 +89,9 @@ class Decomposition:
         return iter(self.pieces)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        with tempfile.TemporaryDirectory(prefix="starguard-") as folder:
-            files = os.path.join(folder, "pieces.vtk"), os.path.join(folder, "pieces.json")
-            self.write(files[0], binary=True)
-            self.write_report(files[1])
-            contents = []
-            for name in files:
-                with open(name, "rb") as file:
-                    contents.append(file.read())
-        return _unpickled, (*contents, self.options)
+        pieces = _others.written(lambda path: self.write(path, binary=True), "pieces.vtk")
+        report = _others.written(self.write_report, "pieces.json")
+        return _unpickled, (pieces, report, self.options)
 
     def _repr_html_(self) -> str:
         from .pictures import distinct_colors
@@ -259,7 +251,6 @@ def decompose(model: Any, *, guards: ArrayLike | None = None,
     >>> pieces, pieces.guards.shape, bool(pieces.pieces["star"].all())
     (Decomposition(1 pieces, 1 proven star-shaped), (1, 3), True)
     """
-    shape = as_shape(model)
     session = Session(threads, seed)
     wanted = OPTIONS.make(options)
     if guards is not None:
@@ -267,6 +258,7 @@ def decompose(model: Any, *, guards: ArrayLike | None = None,
         points = _arrays.pointer("double[]", places)
         wanted.pointer.guards = points
         wanted.pointer.guard_count = len(places)
+    shape = as_shape(model)
     function, handle = _subject(shape)
     if certificate is not None:
         if function != lib.starg_decompose:

@@ -2,6 +2,7 @@
 """Solids: checked meshes with search structures."""
 from __future__ import annotations
 
+import functools
 import weakref
 from typing import Any, Sequence
 
@@ -44,6 +45,9 @@ class Solid:
 
     def __repr__(self) -> str:
         return f"Solid({len(self.mesh.vertices)} vertices, {len(self.mesh.faces)} faces)"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Solid, (self.mesh,)
 
     @property
     def check(self) -> Check:
@@ -101,6 +105,9 @@ class Scene(Solid):
         #: What is to be seen, and what stands in the way.
         self.model: Mesh = as_mesh(model)
         self.obstacles: list[Mesh] = [as_mesh(obstacle) for obstacle in obstacles]
+        self._given = {"orientation": orientation, "outside": outside, "soup": soup, "standoff": standoff,
+                       "within": within, "start": start, "cell": cell, "over": over, "up": up,
+                       "mount": mount, "weights": weights}
         session = Session(threads)
         options = ffi.new("starg_space_options *")
         lib.starg_space_options_default(options)
@@ -134,6 +141,9 @@ class Scene(Solid):
         self.mesh = Mesh._of(lib.starg_solid_mesh(self._handle), self.model.file,
                              owner=self._handle)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return functools.partial(Scene, self.model, obstacles=self.obstacles, **self._given), ()
+
     def _pointers(self) -> Any:
         return ffi.new("starg_mesh *[]", [o._handle for o in self.obstacles] or [ffi.NULL])
 
@@ -152,6 +162,13 @@ class Scene(Solid):
         rows = _arrays.points(points, "points")
         return np.array([lib.starg_space_admits(self._handle, ffi.from_buffer("double[3]", row))
                          for row in rows], bool)
+
+    def leak(self) -> Array:
+        """Of a soup with a `start`: the way from there out of the model's box, or to space behind gaps
+        about as wide as a cube, (n, 3); empty if there is none. A warning tells of it, too."""
+        out = ffi.new("double **")
+        count = lib.starg_space_leak(self._handle, out)
+        return np.array(ffi.unpack(out[0], 3 * count) if count else [], float).reshape(-1, 3)
 
 
 def as_solid(model: Any) -> Solid:

@@ -108,9 +108,32 @@ starg_status starg_weights_read(starg_context *context, const char *path, size_t
 
 /* ---- names in the model ---- */
 
+/* Does the text fit a pattern, in which * stands for any characters, and ? for any one? */
+static bool fits(const char *pattern, size_t pattern_length, const char *text, size_t length) {
+    size_t p = 0, t = 0, star = SIZE_MAX, resume = 0;
+    while (t < length) {
+        if (p < pattern_length && pattern[p] == '*') {
+            star = p++;
+            resume = t;
+        } else if (p < pattern_length && (pattern[p] == '?' || pattern[p] == text[t])) {
+            p++;
+            t++;
+        } else if (star != SIZE_MAX) {
+            p = star + 1;
+            t = ++resume;
+        } else {
+            return false;
+        }
+    }
+    while (p < pattern_length && pattern[p] == '*')
+        p++;
+    return p == pattern_length;
+}
+
 bool starg_values_know(starg_face_values *values, const char *name, size_t length) {
     size_t used = strlen(values->others);
-    if (length == values->length && memcmp(name, values->name, length) == 0)
+    if (values->pattern ? fits(values->name, values->length, name, length)
+                        : length == values->length && memcmp(name, values->name, length) == 0)
         return values->found = true;
     if (used + length + 3 < sizeof values->others) {
         char quoted[sizeof values->others];
@@ -141,9 +164,10 @@ static starg_status compare(starg_context *context, starg_face_values *values) {
     if (values->equals == NULL)
         return STARG_OK;
     STARG_TRY(starg_c_locale_enter(context, &locale));
-    if (!starg_parse_real(values->equals, strlen(values->equals), &wanted))
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "'%.100s' is not a number that a property can have", values->equals);
+    if (!starg_parse_real(values->equals, values->equals_length, &wanted))
+        status = starg_fail(
+            context, STARG_ERROR_ARGUMENT, STAGE, "'%.*s' is not a number that a property can have",
+            (int)(values->equals_length < 100 ? values->equals_length : 100), values->equals);
     for (size_t i = 0; status == STARG_OK && i < values->data.count; i++)
         values->data.data[i] = values->data.data[i] == wanted;
 done:
@@ -151,33 +175,74 @@ done:
     return status;
 }
 
+/* A model's file, read once. */
+typedef struct named_file {
+    starg_context *context;
+    const char *path;
+    char *bytes;
+    size_t size, faces;
+} named_file;
+
+/* Raises the values of faces to those by a name; `found` is false if the file does not have it. */
+static starg_status raise_values(const named_file *file, starg_face_values *values, double *out) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    STARG_TRY(
+        starg_mesh_read_with(file->context, file->bytes, file->size, file->path, values, &mesh));
+    if (values->found && values->data.count != file->faces)
+        status = starg_fail(file->context, STARG_ERROR_ARGUMENT, STAGE,
+                            "'%.200s' has %zu faces, and the model %zu", file->path,
+                            values->data.count, file->faces);
+    STARG_TRY(status);
+    if (values->found)
+        STARG_TRY(compare(file->context, values));
+    for (size_t f = 0; f < file->faces && values->found; f++)
+        if (out[f] == 0 || values->data.data[f] > out[f])
+            out[f] = values->data.data[f];
+done:
+    STARG_ARRAY_FREE(file->context, &values->data);
+    starg_mesh_free(mesh);
+    return status;
+}
+
+/* A name with a list's other names left out: NAME or NAME=VALUE, either a pattern. */
+static starg_face_values part_of(const char *text, size_t length) {
+    const char *equals = memchr(text, '=', length);
+    starg_face_values part = {.name = text, .length = length, .pattern = true};
+    if (equals == NULL)
+        return part;
+    part.length = (size_t)(equals - text);
+    part.equals = equals + 1;
+    part.equals_length = length - part.length - 1;
+    return part;
+}
+
+/* The name as it stands first, as names may hold any characters; else it is a list. */
 starg_status starg_faces_named(starg_context *context, const char *model_file, const char *name,
                                size_t face_count, double **weights) {
     starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    char *bytes = NULL;
-    size_t size = 0;
-    const char *equals = strchr(name, '=');
-    starg_face_values values = {.name = name,
-                                .length = equals != NULL ? (size_t)(equals - name) : strlen(name),
-                                .equals = equals != NULL ? equals + 1 : NULL};
+    named_file file = {.context = context, .path = model_file, .faces = face_count};
+    starg_face_values values = {.name = name, .length = strlen(name)};
+    double *out = NULL;
     *weights = NULL;
-    STARG_TRY(starg_file_read(context, STAGE, model_file, &bytes, &size));
-    STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
-    if (!values.found)
-        status = fail_unknown(context, &values, model_file);
-    else if (values.data.count != face_count)
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "'%.200s' has %zu faces, and the model %zu", model_file,
-                            values.data.count, face_count);
-    STARG_TRY(status);
-    STARG_TRY(compare(context, &values));
-    *weights = values.data.data;
-    values.data.data = NULL;
+    STARG_TRY(starg_file_read(context, STAGE, model_file, &file.bytes, &file.size));
+    STARG_NEW_ZERO(context, STAGE, out, face_count);
+    STARG_TRY(raise_values(&file, &values, out));
+    for (const char *at = name; !values.found && at != NULL;) {
+        const char *comma = strchr(at, ',');
+        starg_face_values part = part_of(at, comma != NULL ? (size_t)(comma - at) : strlen(at));
+        STARG_TRY(raise_values(&file, &part, out));
+        if (!part.found) {
+            status = fail_unknown(context, &part, model_file);
+            goto done;
+        }
+        at = comma != NULL ? comma + 1 : NULL;
+    }
+    *weights = out;
+    out = NULL;
 done:
-    STARG_ARRAY_FREE(context, &values.data);
-    starg_mesh_free(mesh);
-    starg_release(context, bytes);
+    starg_release(context, out);
+    starg_release(context, file.bytes);
     return status;
 }
 

@@ -25,13 +25,6 @@ static const double MOST_CELLS = 0x1p30;
 
 enum { FACES_PER_CLOCK = 1024, MOST_ASKED = 4096 };
 
-struct flood_cells {
-    starg_context *context;
-    double origin[3], size;
-    size_t count[3], reached;
-    uint64_t *taken, *bits; /* met by a face; reached */
-};
-
 static size_t cell_at(const flood_cells *f, const size_t at[3]) {
     return at[0] + f->count[0] * (at[1] + f->count[1] * at[2]);
 }

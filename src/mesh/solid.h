@@ -11,6 +11,18 @@
 #include "starguard/solid.h"
 #include "starguard/space.h"
 
+typedef struct flood_cells flood_cells;
+
+/* Where space that is reached from a point leaks. */
+typedef struct flood_leak {
+    double *points;         /* count x 3: the way */
+    size_t count;           /* 0: it does not leak */
+    double place[3], width; /* of the narrowest gap on the way */
+    double end[3];
+    bool outside; /* out of the model's box; else behind narrow gaps: */
+    double share; /* of the space that is reached */
+} flood_leak;
+
 /* Free space: winding number of the mesh plus `ambient` at least 1. */
 struct starg_solid {
     starg_context *context;
@@ -32,10 +44,11 @@ struct starg_solid {
     size_t once_faces;      /* those before the backs, and their halfedges across edges of two
                                of them; NULL: there are no backs */
     uint32_t *once_twin;
-    struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
-    near_faces over, mount;      /* faces that guards are bound to */
-    double *importance;          /* by face; NULL: 1 each */
-    uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */
+    flood_cells *reached;   /* where guards may stand; NULL: anywhere */
+    flood_leak leak;        /* of a soup */
+    near_faces over, mount; /* faces that guards are bound to */
+    double *importance;     /* by face; NULL: 1 each */
+    uint64_t *targets[2];   /* bits of the faces, and of the vertices, to be seen; NULL: all */
     starg_space_options space;
     starg_mesh *model; /* the model that distances are measured from, and its tree; NULL: `mesh` */
     bvh *model_tree;

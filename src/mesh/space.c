@@ -371,6 +371,45 @@ done:
     return status;
 }
 
+/* ---- leaks ---- */
+
+static void tell_leak(starg_context *context, const flood_leak *l, const double from[3]) {
+    const double *p = l->place, *e = l->end;
+    if (l->count == 0)
+        return;
+    if (l->outside)
+        starg_log(
+            context, STARG_LOG_WARNING,
+            "the space that is reached from (%g, %g, %g) leaks: it leaves the model's box at "
+            "(%g, %g, %g), through a gap about %.3g wide at (%g, %g, %g). Close the gap, take "
+            "larger cubes, or bound the space by a box",
+            from[0], from[1], from[2], e[0], e[1], e[2], l->width, p[0], p[1], p[2]);
+    else
+        starg_log(context, STARG_LOG_WARNING,
+                  "%.3g %% of the space that is reached from (%g, %g, %g) lies behind gaps about "
+                  "as wide as a cube, as at (%g, %g, %g): other cubes may not pass. Take smaller "
+                  "cubes to be sure to get there, larger ones to stay out",
+                  100 * l->share, from[0], from[1], from[2], p[0], p[1], p[2]);
+}
+
+/* Only a soup: the surface of a solid has no gaps. */
+static starg_status reach_space(starg_context *context, starg_solid *scene) {
+    starg_status status = STARG_OK;
+    const starg_space_options *o = &scene->space;
+    STARG_TRY(flood_create(context, scene, o->from, o->cell, &scene->reached));
+    if (!o->soup)
+        goto done;
+    STARG_TRY(flood_find_leak(context, scene, o->from, scene->reached, &scene->leak));
+    tell_leak(context, &scene->leak, o->from);
+done:
+    return status;
+}
+
+size_t starg_space_leak(const starg_solid *scene, const double **points) {
+    *points = scene->leak.points;
+    return scene->leak.count;
+}
+
 /* ---- the call ---- */
 
 starg_status starg_space_create(starg_context *context, const starg_mesh *model,
@@ -407,7 +446,7 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     if (scene->mesh->face_count > scene->model_faces)
         STARG_TRY(starg_space_weigh(scene, NULL));
     if (o->cell > 0)
-        STARG_TRY(flood_create(context, scene, o->from, o->cell, &scene->reached));
+        STARG_TRY(reach_space(context, scene));
     *out = scene;
     scene = NULL;
 done:

@@ -52,7 +52,9 @@ starg_status starg_source_fail(const starg_source *source, starg_place place, co
 typedef struct starg_face_values {
     const char *name; /* wanted, `length` characters */
     size_t length;
-    const char *equals;       /* text after "name=", or NULL */
+    bool pattern;       /* * and ? in it stand for other characters */
+    const char *equals; /* text after "name=", `equals_length` characters, or NULL */
+    size_t equals_length;
     bool found;               /* the name occurs in the file */
     double current;           /* of the next face */
     STARG_ARRAY(double) data; /* by triangle so far */

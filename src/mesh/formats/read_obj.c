@@ -117,19 +117,27 @@ done:
     return status;
 }
 
-/* Which of group, object and material have the wanted name at this line? */
+/* Which of group, object and material have the wanted name at this line? A line names one object or
+ * material, blanks and all, but several groups; many programs write one with blanks there, too. */
 enum { GROUP, OBJECT, MATERIAL, KEYWORDS };
 
 static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *values,
                        bool held[KEYWORDS]) {
     static const char *const keywords[KEYWORDS] = {"g", "o", "usemtl"};
     for (int k = 0; k < KEYWORDS; k++) {
-        starg_word name;
+        starg_word name, line = {0};
         if (!starg_word_is(keyword, keywords[k]))
             continue;
         held[k] = false;
-        while (starg_scan_word_here(scan, &name))
-            held[k] = starg_values_know(values, name.text, name.length) || held[k];
+        while (starg_scan_word_here(scan, &name)) {
+            if (k == GROUP)
+                held[k] = starg_values_know(values, name.text, name.length) || held[k];
+            if (line.text == NULL)
+                line = name;
+            line.length = (size_t)(name.text + name.length - line.text);
+        }
+        if (line.text != NULL)
+            held[k] = starg_values_know(values, line.text, line.length) || held[k];
     }
     values->current = held[GROUP] || held[OBJECT] || held[MATERIAL];
 }
