@@ -113,7 +113,7 @@ static starg_status check_name(cli_session *session, const cli_option *o, const 
     if (extension == NULL || extension == base)
         extension = "";
     if (strcmp(name, "-") == 0 || form_has(o->value, extension) ||
-        (*extension == '\0' && o->letter == 'o' && (count == 1 || strchr(o->value, '[') != NULL)) ||
+        (*extension == '\0' && *base != '.' && (count == 1 || strchr(o->value, '[') != NULL)) ||
         (count == 0 &&
          (strcmp(o->value, "DIR") != 0 || find_output(session->command, extension) == NULL)))
         return STARG_OK;
