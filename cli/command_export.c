@@ -63,6 +63,8 @@ static void tell(cli_session *session, const values *v, const cli_show *show) {
         size_t count;
     } parts[] = {{"model faces", "model_faces",
                   page->model != NULL ? starg_mesh_face_count(page->model) : 0},
+                 {"obstacle faces", "obstacle_faces",
+                  page->obstacles != NULL ? starg_mesh_face_count(page->obstacles) : 0},
                  {"guards", "guards", page->guards != NULL ? page->guards->count : 0},
                  {"tetrahedra", "tetrahedra", page->pieces != NULL ? page->pieces->count : 0},
                  {"skeleton nodes", "skeleton_nodes",
@@ -91,6 +93,7 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(cli_show_read(session, v->model, STARG_SIGNATURE_DEFAULT, &show));
     CLI_TRY(check_kinds(session, page));
     const starg_scene scene = {.model = page->model,
+                               .obstacles = page->obstacles,
                                .guards = page->guards,
                                .seen = page->seen,
                                .pieces = page->pieces,

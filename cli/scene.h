@@ -64,7 +64,7 @@ extern const char *const cli_orientation_words[];
      .length = 2, .most = 1},                                                                      \
         {CLI_OPTION("within", STARG_FIELD_PLACES, scene.within, "X0,Y0,Z0,X1,Y1,Z1",               \
                     "Guards stand in this box."),                                                  \
-         .length = 6},                                                                             \
+         .length = 6, .most = 1},                                                                  \
         CLI_POSITIVE_OPTION("cell", scene.cell, "D", 1e100, 0, "a hundredth of the diagonal",      \
                             "--from: size of the cubes.")
 
@@ -101,6 +101,9 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *scene);
 /* Reads the obstacles of a result, which names their files. */
 starg_status cli_scene_read_obstacles(cli_session *session, const starg_guards *guards,
                                       starg_mesh ***obstacles);
+/* All of them in one mesh; NULL: there are none. */
+starg_status cli_scene_join(cli_session *session, starg_mesh *const *obstacles, size_t count,
+                            starg_mesh **out);
 void cli_scene_free_obstacles(starg_mesh **obstacles, size_t count);
 
 #endif

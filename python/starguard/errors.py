@@ -105,6 +105,8 @@ def in_python(message: str) -> str:
     """
     def call(found: re.Match[str]) -> str:
         keywords = [word.replace("-", "_") for word in re.findall(r"--([a-z][a-z-]*)", found[2])]
+        if "soup" in keywords:
+            return "Scene(model, soup=True)"
         return f"{_CALLS.get(found[1], found[1])}({', '.join(f'{word}=...' for word in keywords)})"
 
     message = re.sub(r"'starguard ([a-z]+)([^']*)'", call, message)

@@ -143,6 +143,7 @@ done:
 /* Candidates that see nothing prove nothing. Says which limits may be the reason. */
 static starg_status fail_unseen(const guard_problem *problem, const guard_pool *pool) {
     const starg_guard_options *o = problem->options;
+    const starg_space_options *space = &problem->solid->space;
     double diagonal = problem->solid->check->diagonal, range = o->visibility.range;
     const struct {
         const char *text;
@@ -153,7 +154,11 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
         {"a wider view", sensor_is_directed(&o->visibility)},
         {"a larger incidence", o->visibility.incidence > 0 && o->visibility.incidence < 90},
         {"other faces to see", problem->solid->importance != NULL},
-        {"wider limits of where guards may stand (box, distances, faces)", problem->solid->scene},
+        {"a larger box for guards", space_is_bounded(space)},
+        {"other distances from the model", space->standoff_least > 0 || space->standoff_most > 0},
+        {"other faces to stand over", space->over_count > 0},
+        {"other faces to hang from", space->mount_count > 0},
+        {"another point to start from", space->cell > 0},
         {"other candidates", o->candidates == STARG_CANDIDATES_GIVEN},
     };
     char advice[256] = "";

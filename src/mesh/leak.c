@@ -189,7 +189,8 @@ static starg_status keep_path(leak_search *s, size_t goal, const double from[3],
     }
     cell_centre(s, narrow, leak->place);
     cell_centre(s, goal, leak->end);
-    leak->width = (double)narrowest * s->flood->size;
+    if (2 * narrowest < width_at(s, s->start)) /* else the space is open */
+        leak->width = (double)narrowest * s->flood->size;
 done:
     return status;
 }

@@ -14,7 +14,8 @@ static const starg_finding_kind FATAL[] = {
     STARG_FINDING_REPEATED_CORNER, STARG_FINDING_OPEN_EDGE, STARG_FINDING_NONMANIFOLD_EDGE,
     STARG_FINDING_NONMANIFOLD_VERTEX, STARG_FINDING_INCONSISTENT_EDGE};
 
-static starg_status fail_unusable(starg_context *context, const starg_check *check) {
+static starg_status fail_unusable(starg_context *context, const starg_mesh *mesh,
+                                  const starg_check *check) {
     char list[256] = "";
     size_t used = 0;
     const starg_finding *first = NULL;
@@ -31,9 +32,7 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
         return starg_fail_at(
             context, STARG_ERROR_MESH, "solid", first->element, first->first, first->shown,
             "the mesh does not bound a solid (%s); 'starguard check' shows where; %s", list,
-            check->one_sided_faces == check->faces
-                ? "its surfaces are one-sided, which cannot be repaired"
-                : "try 'starguard repair'");
+            starg_check_advice(mesh, check));
     if (check->faces == 0)
         return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh has no faces");
     return starg_fail(context, STARG_ERROR_MESH, "solid",
@@ -168,7 +167,7 @@ starg_status solid_make_facing(starg_context *context, const starg_mesh *mesh, s
     if (!all.check->usable)
         STARG_TRY(mend_vertices(context, solid, &all));
     if (!all.check->usable) {
-        status = fail_unusable(context, all.check);
+        status = fail_unusable(context, mesh, all.check);
         goto done;
     }
     if (facing != SHELLS_AS_GIVEN)

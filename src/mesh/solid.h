@@ -17,7 +17,7 @@ typedef struct flood_cells flood_cells;
 typedef struct flood_leak {
     double *points;         /* count x 3: the way */
     size_t count;           /* 0: it does not leak */
-    double place[3], width; /* of the narrowest gap on the way */
+    double place[3], width; /* of the narrowest gap on the way, 0: none */
     double end[3];
     bool outside; /* out of the model's box; else behind narrow gaps: */
     double share; /* of the space that is reached */
@@ -67,6 +67,9 @@ static inline bool solid_is_two_sided(const starg_solid *solid) {
 /* Gives faces that count from either side the bits of their other sides, and clears the bits of a
  * row, by face or by vertex, that are no targets. */
 void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row);
+
+/* Is a box set in which guards stand? */
+bool space_is_bounded(const starg_space_options *options);
 
 /* Bounding box of all places where guards may stand. */
 void solid_reach(const starg_solid *solid, bvh_box *out);

@@ -14,6 +14,7 @@
  *
  * Cost: that of the examinations. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/bits.h"
@@ -29,7 +30,7 @@ void starg_space_options_default(starg_space_options *options) {
     *options = (starg_space_options){0};
 }
 
-static bool is_bounded(const starg_space_options *o) {
+bool space_is_bounded(const starg_space_options *o) {
     bool any = false;
     for (int k = 0; k < 6; k++)
         any = any || o->within[k] != 0;
@@ -60,7 +61,7 @@ static starg_status check_options(starg_context *context, const starg_space_opti
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "faces of a solid have the free space on one side; only a soup is seen "
                           "from both");
-    for (int k = 0; is_bounded(o) && k < 3; k++)
+    for (int k = 0; space_is_bounded(o) && k < 3; k++)
         if (!(fabs(o->within[k]) < 1e100 && fabs(o->within[k + 3]) < 1e100 &&
               o->within[k] < o->within[k + 3]))
             return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
@@ -375,20 +376,24 @@ done:
 
 static void tell_leak(starg_context *context, const flood_leak *l, const double from[3]) {
     const double *p = l->place, *e = l->end;
+    char gap[160] = "";
     if (l->count == 0)
         return;
+    if (l->width > 0)
+        snprintf(gap, sizeof gap, " through a gap about %.3g wide at (%g, %g, %g)", l->width, p[0],
+                 p[1], p[2]);
     if (l->outside)
         starg_log(
             context, STARG_LOG_WARNING,
-            "the space that is reached from (%g, %g, %g) leaks: it leaves the model's box at "
-            "(%g, %g, %g), through a gap about %.3g wide at (%g, %g, %g). Close the gap, take "
-            "larger cubes, or bound the space by a box",
-            from[0], from[1], from[2], e[0], e[1], e[2], l->width, p[0], p[1], p[2]);
+            "the space that is reached from (%g, %g, %g) leaks out of the model's box at (%g, "
+            "%g, %g)%s; close the gap, take cubes that do not pass, or bound the space by a "
+            "box",
+            from[0], from[1], from[2], e[0], e[1], e[2], gap);
     else
         starg_log(context, STARG_LOG_WARNING,
                   "%.3g %% of the space that is reached from (%g, %g, %g) lies behind gaps about "
-                  "as wide as a cube, as at (%g, %g, %g): other cubes may not pass. Take smaller "
-                  "cubes to be sure to get there, larger ones to stay out",
+                  "as wide as a cube, as at (%g, %g, %g); take smaller cubes to be sure to get "
+                  "there, or larger ones to stay out",
                   100 * l->share, from[0], from[1], from[2], p[0], p[1], p[2]);
 }
 
@@ -469,7 +474,7 @@ bool starg_space_admits(const starg_solid *scene, const double p[3]) {
     const starg_space_options *o = &scene->space;
     if (!scene->scene)
         return starg_solid_contains(scene, p);
-    for (int k = 0; is_bounded(o) && k < 3; k++)
+    for (int k = 0; space_is_bounded(o) && k < 3; k++)
         if (p[k] < o->within[k] || p[k] > o->within[k + 3])
             return false;
     if (scene->reached != NULL && !flood_reaches(scene->reached, p))
@@ -527,12 +532,12 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
     for (int k = 0; k < 3; k++) {
         out->lower[k] -= grow;
         out->upper[k] += grow;
-        if (is_bounded(o)) {
+        if (space_is_bounded(o)) {
             out->lower[k] = open ? o->within[k] : fmax(out->lower[k], o->within[k]);
             out->upper[k] = open ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
         }
         if (near) { /* beside a soup's own box, too */
-            bool own = open && grow == 0 && !is_bounded(o);
+            bool own = open && grow == 0 && !space_is_bounded(o);
             out->lower[k] = own ? bound.lower[k] : fmax(out->lower[k], bound.lower[k]);
             out->upper[k] = own ? bound.upper[k] : fmin(out->upper[k], bound.upper[k]);
         }

@@ -6,6 +6,7 @@
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
+#include "mesh/topology.h"
 #include "star/angles.h"
 #include "star/balls.h"
 #include "star/decomposition.h"
@@ -223,19 +224,40 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
     return status;
 }
 
+static starg_status count_open_edges(starg_context *context, const starg_mesh *mesh,
+                                     size_t *count) {
+    starg_status status = STARG_OK;
+    mesh_topology *topology = NULL;
+    *count = 0;
+    STARG_TRY(topology_create(context, mesh, &topology));
+    for (uint32_t h = 0; h < 3 * mesh->face_count; h++)
+        *count += topology->ring[h] == h;
+done:
+    topology_free(topology);
+    return status;
+}
+
 /* Where a surface is more hole than surface, what it winds around has little to do with it. */
 static starg_status check_filling(starg_context *context, const starg_mesh *surface,
                                   const starg_tetra_report *report) {
+    starg_status status = STARG_OK;
+    size_t open;
     double lower[3], upper[3], off = fmax(report->to_surface, report->from_surface) + report->step;
     starg_mesh_bounds(surface, lower, upper);
     double share = off / vec3_distance(lower, upper);
     if (share <= STARG_DECOMPOSE_FILL_MOST)
         return STARG_OK;
-    return starg_fail(
+    STARG_TRY(count_open_edges(context, surface, &open));
+    status = starg_fail(
         context, STARG_ERROR_MESH, STAGE,
         "the volume that fills the surface is up to %.2g of its diagonal away from it, more than "
-        "%g: its holes are too large; close them with 'starguard repair', or set --fill",
-        share, STARG_DECOMPOSE_FILL_MOST);
+        "%g: %s, or set --fill",
+        share, STARG_DECOMPOSE_FILL_MOST,
+        open > 0 ? "its holes are too large; close them with 'starguard repair'"
+                 : "its faces are not turned alike, or meet where they should not; try 'starguard "
+                   "repair --union'");
+done:
+    return status;
 }
 
 static starg_status decompose_filled(starg_context *context, const starg_solid *solid,
@@ -255,8 +277,8 @@ done:
     return status;
 }
 
-/* What is known without a search: each part of the solid needs a piece, and two if its kernel has no
- * interior. */
+/* What is known without a search: each part of the solid needs a piece, and two if its kernel has
+ * no interior. */
 static starg_status bound_by_parts(starg_context *context, const starg_solid *solid,
                                    starg_decomposition *d) {
     starg_status status = STARG_OK;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: obstacles, shells as given, outsides, soups, targets; and what is wrong with them."""
 import json
+import os
 import struct
 
 from support import Case, main
@@ -355,6 +356,91 @@ class Scenes(Case):
             self.assertIn(name, err)
         self.assertNotIn("n.json", self.names())
 
+    def test_names_of_any_kind(self):
+        """Names with dots, slashes, blanks and commas, lists, patterns; several options are a union."""
+        vertices, faces = box((0, 0, 0), (4, 5, 3))
+        names = "Floor.001", "IfcSlab/Ceiling", "Wall, north", "0-3", "wall a", "wall b"
+        lines = [f"v {x} {y} {z}" for x, y, z in vertices]
+        for f, face in enumerate(faces):
+            lines += [f"o {names[f // 2]}", "f " + " ".join(str(v + 1) for v in face)]
+        self.write("room.obj", "\n".join(lines) + "\n")
+        for words, groups in [(["Floor.001"], [0]), (["IfcSlab/Ceiling"], [1]), (["Wall, north"], [2]),
+                              (["wall b"], [5]), (["wall*"], [4, 5]), (["?all*"], [2, 4, 5]),
+                              (["?-3"], [3]), (["0-3"], [0, 1]), (["Floor.001,*/*"], [0, 1]),
+                              (["Floor.001", "wall a", "wall a"], [0, 4])]:
+            see = [word for name in words for word in ("--see", name)]
+            result = self.guards("room.obj", *see)
+            wanted = [f for group in groups for f in (2 * group, 2 * group + 1)]
+            self.assertEqual([face for face, _ in result["scene"]["targets"]], wanted, words)
+        result = self.guards("room.obj", "--mount", "Floor.001", "--mount", "8-9", "--clearance", "0.1")
+        self.assertEqual(result["scene"]["mount"], [0, 1, 8, 9])
+        for name, status in ("flor", 1), ("Floor.1", 2), ("wall*,flor", 1):
+            _, err = self.run_text("guard", "room.obj", "-o", "n.json", "--see", name, status=status)
+            self.assertIn("there are Floor.001", err)
+        _, err = self.run_text("guard", "room.obj", "-o", "n.json", "--see", "0-3")
+        self.assertIn("'?-3'", err)
+
+    def test_leak(self):
+        """A gap in a wall is found, a closed room has none, and the way there goes through the gap."""
+        def room(low, high):  # a wall at x = 4 with a gap in y from low to high, over all of z
+            vertices, faces = box((0, 0, 0), (4, 4, 2), inward=True)
+            faces = [f for f in faces if any(vertices[v][0] < 4 for v in f)]
+            ends = [(4, 0, 0), (4, low, 0), (4, low, 2), (4, 0, 2), (4, high, 0), (4, 4, 0), (4, 4, 2),
+                    (4, high, 2)]
+            walls = [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)]
+            return off((vertices, faces), (ends, walls), box((6, 1, 0), (7, 2, 1)))
+
+        words = "room.off", "--soup", "--two-sided", "--from", "1,1,1", "--cell", "0.1", "--leak", "leak.obj"
+        for low, high in (1.5, 2.5), (2, 2.4):
+            self.write("room.off", room(low, high))
+            report = self.run_json("guard", *words, "-o", "g.json")
+            said = [entry["message"] for entry in report["log"] if "leaks out" in entry["message"]]
+            self.assertEqual(len(said), 1)
+            gap = [float(x) for x in said[0].split("wide at (")[1].split(")")[0].split(",")]
+            self.assertAlmostEqual(gap[0], 4, delta=0.2)
+            self.assertTrue(low < gap[1] < high, gap)
+            lines = self.read("leak.obj").decode().split("\n")
+            way = [tuple(map(float, line.split()[1:])) for line in lines if line.startswith("v ")]
+            self.assertEqual(way[0], (1, 1, 1))
+            crossing = [(a, b) for a, b in zip(way, way[1:]) if (a[0] < 4) != (b[0] < 4)]
+            self.assertEqual(len(crossing) % 2, 1)
+            self.assertTrue(all(low < p[1] < high for pair in crossing for p in pair), crossing)
+            os.remove(self.path("leak.obj"))
+        for low, high in (2, 2), (2, 2.08):  # closed, and a gap that no cube passes
+            self.write("room.off", room(low, high))
+            report = self.run_json("guard", *words, "-o", "g.json")
+            self.assertFalse([entry for entry in report["log"] if "leaks out" in entry["message"]])
+            self.assertNotIn("leak.obj", self.names())
+        self.usage_error("guard", "room.off", "--leak", "l.obj", "-o", "g.json", says="--from")
+
+    def test_narrow_gap(self):
+        """Half of what is reached lies behind a gap two cubes wide; behind one of eight it is plain space."""
+        for width, said in (0.2, 1), (0.8, 0):
+            vertices, faces = box((0, 0, 0), (4, 4, 2), inward=True)
+            ends = [(2, 0, 0), (2, 2, 0), (2, 2, 2), (2, 0, 2), (2, 2 + width, 0), (2, 4, 0), (2, 4, 2),
+                    (2, 2 + width, 2)]
+            self.write("two.off", off((vertices, faces), (ends, [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)])))
+            report = self.run_json("guard", "two.off", "--soup", "--two-sided", "--from", "1,1,1", "--cell",
+                                   "0.09", "-o", "g.json")
+            found = [e["message"] for e in report["log"] if "as wide as a cube" in e["message"]]
+            self.assertEqual(len(found), said, report["log"])
+
+    def test_obstacles_in_exports(self):
+        """Scenes show what stands in the way, as a part of its own."""
+        self.guards("room.off", "--obstacles", "crate.off")
+        crate = box(*CRATE, 2)
+        for name in ("g.vtu", "g.glb"):
+            self.run_text("export", "g.json", "-o", name)
+        vtu = self.read("g.vtu")
+        self.assertEqual(self.appended(vtu, b"part", "B").count(5), len(crate[1]))
+        points = self.appended(vtu, b"Points")
+        self.assertEqual(points[-3 * len(crate[0]):], tuple(x for p in crate[0] for x in p))
+        glb = self.read("g.glb")
+        head = json.loads(glb[20:20 + int.from_bytes(glb[12:16], "little")])
+        node = next(node for node in head["nodes"] if node["name"] == "obstacles")
+        indices = head["meshes"][node["mesh"]]["primitives"][0]["indices"]
+        self.assertEqual(head["accessors"][indices]["count"], 3 * len(crate[1]))
+
     def test_properties(self):
         """Weights are a property of the faces of a PLY file, also where these are polygons."""
         vertices, faces = box((0, 0, 0), (8, 6, 3))
@@ -400,12 +486,12 @@ class Scenes(Case):
                     self.assertGreater(ahead, 0)
                     self.assertAlmostEqual(sum(a * a for a in way) ** 0.5, 0.8, 6)
 
-    def appended(self, vtu, name):
-        """The doubles of an appended array."""
+    def appended(self, vtu, name, kind="d"):
+        """The numbers of an appended array."""
         place = int(vtu.split(b'Name="' + name + b'"')[1].split(b'offset="')[1].split(b'"')[0])
         data = vtu[vtu.index(b"_", vtu.index(b"<AppendedData")) + 1 + place:]
         size, = struct.unpack("<Q", data[:8])
-        return struct.unpack(f"<{size // 8}d", data[8:8 + size])
+        return struct.unpack(f"<{size // struct.calcsize(kind)}{kind}", data[8:8 + size])
 
     def test_bad_questions(self):
         for words, says in [

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Help, version, and every way to get the command line wrong."""
+import json
+
 import support
 from support import COMMANDS, TETRAHEDRON
 
@@ -154,6 +156,39 @@ class Mistakes(support.Case):
         self.usage_error("sample", "horse", says="-o FILE")
         self.usage_error("sample", "hors", "-o", "h.off", says="did you mean 'horse'?")
         self.usage_error("sample", "zzzzzz", "-o", "h.off", says="--list")
+
+    def test_repeated_options(self):
+        """Each option of each command adds up, and says so, is a flag, or is refused when given twice."""
+        table = json.loads(self.run_text("help", "--json")[0])
+        values = ["7", "0.5", "80", "1,2", "1,2,3", "1,2,3,4,5,6", "name.json", "600"]
+        for command in table["commands"]:
+            for option in command["options"] + table["common_options"]:
+                name, kind = option["name"], option["kind"]
+                if command["group"] or kind == "flag" or "Repeatable" in option["help"]:
+                    self.assertIn(kind, ("flag", "points", "texts"))
+                    continue
+                said = []
+                for value in option.get("choices", values):
+                    twice = [f"--{name}={value}"] * 2
+                    said.append(self.run_text(*command["name"].split(), *twice, status=1)[1])
+                    if "more than once" in said[-1]:
+                        break
+                self.assertIn(f"--{name} is given more than once", said[-1], (command["name"], said))
+
+    def test_endings_of_other_formats(self):
+        """Files of one format are not written under the name of another."""
+        for words, says in [
+                (("guard", "m.off", "-o", "g.glb"), "'starguard export GUARDS.json -o g.glb'"),
+                (("guard", "m.off", "-o", "g.html"), "'starguard view GUARDS.json -o g.html'"),
+                (("guard", "m.off", "-o", "g.csv"), "--poses g.csv"),
+                (("guard", "m.off", "-o", "g.xyz"), "not 'g.xyz'\n"),
+                (("decompose", "m.off", "-o", "p.ply"), "'starguard export PIECES.vtk -o p.ply'"),
+                (("decompose", "m.off", "-o", "p.json"), "--report p.json"),
+                (("morph", "m.off", "m.off", "-o", "m.glb"), "--glb m.glb"),
+                (("map", "m.off", "m.off", "-o", "m.vtu"), "--solid"),
+                (("check", "m.off", "--marks", "m.json"), "--json")]:
+            self.usage_error(*words, says=says)
+            self.assertNotIn(words[-1], self.names())
 
     def test_endings(self):
         self.usage_error("sample", "horse", "-o", "h.xyz", says=".off, .obj, .ply or .stl")

@@ -41,7 +41,10 @@ static starg_status detect(const starg_source *source, const char *name,
             return STARG_OK;
         }
     }
-    return starg_source_fail(source, starg_at_file(), "unknown format; use OFF, OBJ, PLY or STL");
+    return starg_source_fail(
+        source, starg_at_file(),
+        "unknown format; use OFF, OBJ, PLY or STL, and convert other formats by Blender, "
+        "MeshLab or assimp ('assimp export MODEL model.ply')");
 }
 
 /* Skips a byte order mark. */
