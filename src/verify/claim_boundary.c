@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Claims about boundary and volume. If the boundary is the model's surface, it is matched with it
  * (verify/boundary.c), and the volumes agree; if it only approximates the surface, the distance is
- * measured (verify/nearness.c) and volumes are not compared. */
+ * measured (verify/nearness.c), and so is how much of what the model winds around is in no piece,
+ * or the other way round. */
 #include <math.h>
 
 #include "verify/context.h"
@@ -11,6 +12,10 @@ static const double TOLERANCE = 1e-9; /* relative */
 /* Relative to the diagonal: larger distances do not count as near. A surface winds only around
  * points of its convex hull, which are hardly farther from it. */
 static const double FARTHEST = 0.5;
+
+/* Of the volume that the model encloses: how much may change, and how much of it far from the
+ * surface, where thin parts are lost. */
+static const double MOST_CHANGED = 0.5, MOST_DIFFERING = 0.001;
 
 /* ---- the boundary ---- */
 
@@ -64,7 +69,6 @@ static void claim_near(const verify_context *own, const verify_nearness *nearnes
                  "are at most %.17g, half of it",
                  limit, told ? report->distance_back : nearness->from.farthest, most);
     verify_leave(own->verdict, "points of either surface between those that were measured");
-    verify_leave(own->verdict, "the volume: the boundary is not the model's surface");
     if (!told)
         return;
     limit = report->distance_back;
@@ -119,6 +123,30 @@ static void claim_volume(const verify_context *own) {
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
 }
 
+/* What is enclosed by a surface that is only approximated, at points drawn in its bounding box. If
+ * the boundary is near the model's surface, then whatever is farther from that is in both or in
+ * none, and the volumes are about the same. */
+static starg_status claim_enclosed(const verify_context *own) {
+    verify_enclosed found;
+    double limit = own->report->distance * (1 + TOLERANCE) + verify_rounding(own->model);
+    if (own->solid == NULL) {
+        verify_leave(own->verdict, "the volume: the model is not closed");
+        return STARG_OK;
+    }
+    starg_status status = verify_measure_enclosed(own->pieces, own->solid, limit, &found);
+    if (status != STARG_OK)
+        return status;
+    double all = (double)found.inside;
+    bool same = fabs((double)found.held - all) <= MOST_CHANGED * all;
+    verify_claim(
+        own->verdict, all > 0 && same && (double)found.differing <= MOST_DIFFERING * all,
+        "the pieces hold what the model encloses (of %zu points inside; %zu are in pieces, "
+        "and %zu in one of both alone although far from the surface)",
+        found.inside, found.held, found.differing);
+    verify_leave(own->verdict, "volumes closer than that: the boundary is not the model's surface");
+    return STARG_OK;
+}
+
 /* ---- public function ---- */
 
 static starg_status claim_nearness(const verify_context *own) {
@@ -128,7 +156,7 @@ static starg_status claim_nearness(const verify_context *own) {
         return status;
     claim_near(own, &nearness);
     claim_simple(own, &nearness);
-    return STARG_OK;
+    return claim_enclosed(own);
 }
 
 static starg_status claim_match(const verify_context *own) {

@@ -14,6 +14,23 @@ static void claim_size(const verify_context *own) {
                  own->mesh->count);
 }
 
+/* Numbers that are not told are no claim; a report read from a file tells them. */
+static void claim_model(const verify_context *own) {
+    const starg_pieces_report *report = own->report;
+    const verify_surface *model = own->model;
+    if (report->model_vertices == 0) {
+        verify_leave(own->verdict, "of which model the pieces are: the report does not tell it");
+        return;
+    }
+    bool solid = own->model_tetrahedra > 0;
+    size_t told = solid ? report->model_tetrahedra : report->model_faces;
+    size_t found = solid ? own->model_tetrahedra : model->model_faces;
+    verify_claim(own->verdict, report->model_vertices == model->model_vertices && told == found,
+                 "the model has %zu vertices and %zu %s (the mesh: %zu and %zu)",
+                 report->model_vertices, told, solid ? "tetrahedra" : "faces",
+                 model->model_vertices, found);
+}
+
 static void claim_counts(const verify_context *own) {
     const starg_pieces_report *report = own->report;
     size_t bad = 0, first = 0;
@@ -225,6 +242,7 @@ static void claim_flattest(const verify_context *own) {
 
 starg_status verify_claim_numbers(const verify_context *own) {
     starg_status status = STARG_OK;
+    claim_model(own);
     claim_size(own);
     claim_flattest(own);
     if (!own->pieces->labels.good)

@@ -21,6 +21,7 @@ done:
 }
 
 void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {
+    verdict->passed = verdict->passed && holds;
     if (verdict->count == VERIFY_CLAIMS)
         return;
     starg_claim *claim = &verdict->claims[verdict->count++];
@@ -29,7 +30,6 @@ void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {
     vsnprintf(claim->text, sizeof claim->text, format, arguments);
     va_end(arguments);
     claim->holds = holds;
-    verdict->passed = verdict->passed && holds;
 }
 
 void verify_claim_all(starg_verdict *verdict, size_t bad, size_t first, const char *format, ...) {

@@ -7,7 +7,7 @@
 #include "starguard/verify.h"
 
 /* Limits on the claims of a verdict, and on those left unchecked. */
-enum { VERIFY_CLAIMS = 32, VERIFY_UNCHECKED = 16 };
+enum { VERIFY_CLAIMS = 64, VERIFY_UNCHECKED = 32 };
 
 starg_status verify_verdict_create(starg_context *context, starg_verdict **out);
 

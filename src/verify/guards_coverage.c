@@ -197,20 +197,47 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
     return STARG_OK;
 }
 
+/* How many faces at least 1, 2, ... guards see; files before 0.2 do not tell. */
+static starg_status claim_often(starg_verdict *verdict, const verify_facts *known) {
+    starg_status status = STARG_OK;
+    starg_context *context = known->surface->context;
+    const starg_guards *guards = known->guards;
+    bool told = guards->redundant_count > 0;
+    bool same = !told || guards->redundant_count == guards->options.redundancy;
+    size_t *often = NULL, most = guards->count + 1;
+    if (told || guards->options.redundancy < most)
+        most = told ? guards->redundant_count : guards->options.redundancy;
+    char list[96] = "";
+    STARG_NEW(context, STAGE, often, most);
+    STARG_TRY(verify_count_often(known, most, often));
+    for (size_t k = 0, length = 0; k < most; k++) {
+        same = same && (!told || guards->redundant_faces[k] == often[k]);
+        if (length < sizeof list)
+            length += (size_t)snprintf(list + length, sizeof list - length, "%s%zu",
+                                       k > 0 ? ", " : "", often[k]);
+    }
+    verify_claim(verdict, same, "at least 1, 2, ... %zu guards see as many faces as told: %s%s",
+                 most, list, told ? "" : " (the file does not tell)");
+done:
+    starg_release(context, often);
+    return status;
+}
+
 static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
-    verify_lack found;
-    starg_status status = verify_find_lack(known, &found);
+    verify_lack found = {0};
+    starg_status status = guards->options.redundancy > 1 ? claim_often(verdict, known) : STARG_OK;
+    if (status == STARG_OK)
+        status = verify_find_lack(known, &found);
     if (status != STARG_OK || found.lacking == 0)
         return status;
     const char *name = verify_target_of(known).name;
-    bool anywhere = !verify_space_is_narrow(&guards->space);
-    if (anywhere && 4 * found.meeting >= 3 * found.points && 2 * found.points > VERIFY_PLACES)
+    if (found.shown != VERIFY_NO_COLUMN)
         verify_claim(verdict, false,
-                     "what fewer than %u guards see, %zu %s, no other of %zu candidates sees: "
-                     "%zu of %zu points drawn inside see some",
-                     guards->options.redundancy, found.lacking, name, guards->candidate_count,
-                     found.meeting, found.points);
+                     "what fewer than %u guards see, %zu %s, no other place would see: number %zu "
+                     "is seen from many places beside a guard, one is (%.6g, %.6g, %.6g)",
+                     guards->options.redundancy, found.lacking, name, found.shown, found.place[0],
+                     found.place[1], found.place[2]);
     else
         verify_leave(verdict,
                      "that no other candidate sees the %zu %s that fewer than %u guards see",

@@ -58,10 +58,8 @@ static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
                      wanted, bad.count, bad.first, known->distance[bad.first]);
 }
 
-static bool stands_within(const verify_facts *known, size_t g) {
+static bool is_within(const verify_facts *known, const double p[3], double distance) {
     const starg_space_options *o = &known->guards->space;
-    const double *p = known->guards->positions + 3 * g;
-    double distance = known->standoff[g];
     bool in = distance >= o->standoff_least * (1 - VERIFY_TOLERANCE) &&
               (o->standoff_most == 0 || distance <= o->standoff_most * (1 + VERIFY_TOLERANCE));
     bool boxed = false;
@@ -70,6 +68,10 @@ static bool stands_within(const verify_facts *known, size_t g) {
     for (int k = 0; boxed && k < 3; k++)
         in = in && p[k] >= o->within[k] && p[k] <= o->within[k + 3];
     return in;
+}
+
+static bool stands_within(const verify_facts *known, size_t g) {
+    return is_within(known, known->guards->positions + 3 * g, known->standoff[g]);
 }
 
 static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
@@ -85,10 +87,9 @@ static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
                      bad.count, bad.first, known->standoff[bad.first]);
 }
 
-/* Is the guard straight above a listed face, and near one? Lists are searched one by one. */
-static bool stands_by_faces(const verify_facts *known, size_t g) {
+/* Is p straight above a listed face, and near one? Lists are searched one by one. */
+static bool is_by_faces(const verify_facts *known, const double p[3]) {
     const starg_space_options *o = &known->guards->space;
-    const double *p = known->guards->positions + 3 * g;
     double foot[3], up[3] = {0, 1, 0}, length = 0, least = INFINITY;
     bool over = o->over_count == 0;
     for (int k = 0; k < 3; k++)
@@ -106,6 +107,22 @@ static bool stands_by_faces(const verify_facts *known, size_t g) {
         least = fmin(least, verify_squared_distance(known->surface, o->mount[i], p, known->scale));
     return over && (o->mount_count == 0 || ldexp(sqrt(least), -known->scale) <=
                                                o->mount_distance * (1 + VERIFY_TOLERANCE));
+}
+
+static bool stands_by_faces(const verify_facts *known, size_t g) {
+    return is_by_faces(known, known->guards->positions + 3 * g);
+}
+
+bool verify_admits(const verify_facts *known, const double p[3]) {
+    const verify_surface *surface = known->surface;
+    bool on_surface;
+    int winding = verify_tree_winding(known->tree, p, &on_surface);
+    if (on_surface || winding + surface->ambient < 1 ||
+        verify_tree_distance(known->tree, p, known->scale) < known->guards->options.clearance)
+        return false;
+    return !verify_space_is_narrow(&known->guards->space) ||
+           (is_within(known, p, verify_distance(surface, p, surface->model_faces, known->scale)) &&
+            is_by_faces(known, p));
 }
 
 static starg_status claim_reached(starg_verdict *verdict, const verify_facts *known) {

@@ -90,10 +90,8 @@ static void read_pieces(reader *r, const json_t *list, starg_pieces_report *repo
         piece->tetrahedra = read_count(r, object, "tetrahedra");
         piece->volume = read_real(r, object, "volume");
         piece->star = read_bool(r, object, "star");
-        piece->radius =
-            json_object_get(object, "radius") != NULL ? read_real(r, object, "radius") : NAN;
-        piece->margin =
-            json_object_get(object, "margin") != NULL ? read_real(r, object, "margin") : NAN;
+        piece->radius = read_real(r, object, "radius");
+        piece->margin = read_real(r, object, "margin");
     }
 done:
     if (status != STARG_OK)
@@ -142,6 +140,11 @@ static void read_surface(reader *r, const json_t *root, starg_pieces_report *rep
 static void read_model(reader *r, const json_t *model, starg_pieces_report *report) {
     starg_status status = STARG_OK;
     const char *file = json_string_value(json_object_get(model, "file"));
+    report->model_vertices = read_count(r, model, "vertices");
+    if (json_object_get(model, "tetrahedra") != NULL)
+        report->model_tetrahedra = read_count(r, model, "tetrahedra");
+    else
+        report->model_faces = read_count(r, model, "faces");
     if (file == NULL)
         return;
     size_t size = strlen(file) + 1;
@@ -177,12 +180,9 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     read_contacts(r, json_object_get(root, "adjacency"), report);
     report->strictly_star = read_count(r, root, "strictly_star");
     report->visible_vertices = read_real(r, root, "visible_vertices");
-    if (json_object_get(root, "flattest") != NULL)
-        report->flattest = read_real(r, root, "flattest");
-    if (json_object_get(root, "smallest_angle") != NULL) {
-        report->smallest_angle = read_real(r, root, "smallest_angle");
-        report->median_angle = read_real(r, root, "median_angle");
-    }
+    report->flattest = read_real(r, root, "flattest");
+    report->smallest_angle = read_real(r, root, "smallest_angle");
+    report->median_angle = read_real(r, root, "median_angle");
     if (json_object_get(root, "smallest_angle_made") != NULL)
         report->smallest_angle_made = read_real(r, root, "smallest_angle_made");
     read_surface(r, root, report);
