@@ -26,6 +26,7 @@ typedef struct starg_claim {
 /* Something that a result says and that its verdict does not answer for. */
 typedef struct starg_unchecked {
     char text[256]; /* what, and why */
+    bool asked;     /* the result was made to have it: a verdict that leaves it open says so */
 } starg_unchecked;
 
 typedef struct starg_verdict {

@@ -170,8 +170,7 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
         if (limits[i].set)
             used += (size_t)snprintf(advice + used, sizeof advice - used, "%s%s",
                                      used > 0 ? ", or " : "; try ", limits[i].text);
-    return starg_fail(problem->context, STARG_ERROR_MESH, STAGE,
-                      "no candidate sees any target%s",
+    return starg_fail(problem->context, STARG_ERROR_MESH, STAGE, "no candidate sees any target%s",
                       used > 0 ? advice : ": the solid is too thin for the candidates");
 }
 
@@ -318,6 +317,7 @@ static starg_status find_star_guard(const guard_problem *problem, guard_outcome 
         STARG_PUSH(problem->context, STAGE, &out->selection.chosen, 0);
         STARG_PUSH(problem->context, STAGE, &out->selection.levels, 0);
         out->selection.lower_bound = out->search.bound = 1;
+        out->selection.weight_bound = problem->weights.total;
     } else
         pool_free(pool);
 done:

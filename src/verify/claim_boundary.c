@@ -38,12 +38,12 @@ static void claim_covered(const verify_context *own, const verify_match *match) 
     int scale = own->pieces->scale;
     if (match->uneven == 0)
         verify_claim(own->verdict, true,
-                     "the boundary covers each of the model's %zu shells once (area %.17g)",
+                     "the boundary covers each of the model's %zu shells once (area %.9g)",
                      match->shells, ldexp(match->area, -2 * scale));
     else
         verify_claim(own->verdict, false,
                      "the boundary covers each of the model's %zu shells once: not so for %zu, "
-                     "first that of face %zu, of area %.17g, covered %.17g",
+                     "first that of face %zu, of area %.9g, covered %.9g",
                      match->shells, match->uneven, match->shell,
                      ldexp(match->shell_area, -2 * scale), ldexp(match->shell_covered, -2 * scale));
 }
@@ -56,24 +56,24 @@ static void claim_near(const verify_context *own, const verify_nearness *nearnes
     bool told = report->distance_back != INFINITY;
     if (nearness->to.farthest <= limit * (1 + TOLERANCE) + rounding)
         verify_claim(own->verdict, true,
-                     "the boundary is at most %.17g from the model's surface (%.17g at %zu points)",
+                     "the boundary is at most %.9g from the model's surface (%.9g at %zu points)",
                      limit, nearness->to.farthest, nearness->to.points);
     else
         verify_claim(own->verdict, false,
-                     "the boundary is at most %.17g from the model's surface: %s is %.17g away",
+                     "the boundary is at most %.9g from the model's surface: %s is %.9g away",
                      limit, verify_outer_words(own, nearness->to.face).text, nearness->to.farthest);
     verify_claim(own->verdict,
                  !(limit > most) && nearness->from.farthest <= most &&
                      !(told && report->distance_back > most),
-                 "boundary and model are the same but for a part of the diagonal: %.17g and %.17g "
-                 "are at most %.17g, half of it",
+                 "boundary and model are the same but for a part of the diagonal: %.9g and %.9g "
+                 "are at most %.9g, half of it",
                  limit, told ? report->distance_back : nearness->from.farthest, most);
     verify_leave(own->verdict, "points of either surface between those that were measured");
     if (!told)
         return;
     limit = report->distance_back;
     verify_claim(own->verdict, nearness->from.farthest <= limit * (1 + TOLERANCE) + rounding,
-                 "the model's surface is at most %.17g from the boundary (%.17g at %zu points, in "
+                 "the model's surface is at most %.9g from the boundary (%.9g at %zu points, in "
                  "face %zu)",
                  limit, nearness->from.farthest, nearness->from.points, nearness->from.face);
 }
@@ -119,7 +119,7 @@ static void claim_volume(const verify_context *own) {
     double expected = verify_volume_value(&solid);
     double slack = solid.slack + area * ldexp(verify_rounding(model), scale);
     verify_claim(own->verdict, verify_same_volume(&tetrahedra, expected, slack),
-                 "the tetrahedra have the volume of the model (%.17g and %.17g)",
+                 "the tetrahedra have the volume of the model (%.9g and %.9g)",
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
 }
 

@@ -71,7 +71,7 @@ static starg_status claim_volumes(const verify_context *own) {
     else
         verify_claim(own->verdict, false,
                      "each piece has the volume that is claimed: %zu have not, first piece %zu, "
-                     "claimed %.17g, found %.17g",
+                     "claimed %.9g, found %.9g",
                      bad, first, report->pieces[first].volume,
                      ldexp(verify_volume_value(&volumes[first]), -3 * scale));
 done:
@@ -89,7 +89,7 @@ static starg_status claim_contacts(const verify_context *own) {
     else
         verify_claim(own->verdict, false,
                      "the %zu contacts of pieces and their areas are right: %zu are wrong, twice "
-                     "or missing, first %u-%u, claimed %.17g, found %.17g",
+                     "or missing, first %u-%u, claimed %.9g, found %.9g",
                      own->report->contact_count, contacts.wrong, contacts.first, contacts.second,
                      contacts.listed, contacts.found);
 done:
@@ -150,7 +150,7 @@ static void claim_radius(const verify_context *own) {
     if (bad > 0)
         verify_claim(own->verdict, false,
                      "guards are as far from the planes of their pieces' faces as claimed: %zu are "
-                     "not, first piece %zu, claimed %.17g, found %.17g",
+                     "not, first piece %zu, claimed %.9g, found %.9g",
                      bad, first, report->pieces[first].radius, found);
     else if (told > 0)
         verify_claim(own->verdict, true,
@@ -231,8 +231,8 @@ static void claim_flattest(const verify_context *own) {
         for (size_t t = 0; t < own->mesh->count; t++)
             found = fmin(found, flatness_of(own, t));
         verify_claim(own->verdict, fabs(claimed - found) <= 1e-9 * claimed + 1e-12,
-                     "the flattest tetrahedron has a height of %.17g of its longest edge (found: "
-                     "%.17g)",
+                     "the flattest tetrahedron has a height of %.9g of its longest edge (found: "
+                     "%.9g)",
                      claimed, found);
     } else {
         verify_leave(own->verdict, "the flattest tetrahedron: the report does not tell it");

@@ -65,8 +65,8 @@ static bool about_equal(double a, double b) {
 }
 
 static void claim_fraction(starg_verdict *verdict, const char *name, double claimed, double found) {
-    verify_claim(verdict, about_equal(claimed, found), "coverage by %s is %.17g (found: %.17g)",
-                 name, claimed, found);
+    verify_claim(verdict, about_equal(claimed, found), "coverage by %s is %.9g (found: %.9g)", name,
+                 claimed, found);
 }
 
 static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
@@ -186,7 +186,7 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
     if (found.proven > rest)
         verify_claim(verdict, false,
                      "%zu of %zu %s can be seen: more can, %zu of those that no guard sees, first "
-                     "%zu from (%.17g, %.17g, %.17g)",
+                     "%zu from (%.9g, %.9g, %.9g)",
                      goal.coverable, goal.all, goal.name, found.proven, found.first, found.place[0],
                      found.place[1], found.place[2]);
     else
@@ -239,9 +239,9 @@ static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts 
                      guards->options.redundancy, found.lacking, name, found.shown, found.place[0],
                      found.place[1], found.place[2]);
     else
-        verify_leave(verdict,
-                     "that no other candidate sees the %zu %s that fewer than %u guards see",
-                     found.lacking, name, guards->options.redundancy);
+        verify_leave_asked(verdict,
+                           "that no other candidate sees the %zu %s that fewer than %u guards see",
+                           found.lacking, name, guards->options.redundancy);
     return STARG_OK;
 }
 
@@ -285,7 +285,7 @@ static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
         wanted = options->coverage * (known->covered_area + least_unseen_area(known, rest));
     }
     verify_claim(verdict, reached >= wanted * (1 - VERIFY_TOLERANCE),
-                 "guards see a fraction of at least %.17g of what can be seen (%zu of %zu %s)",
+                 "guards see a fraction of at least %.9g of what can be seen (%zu of %zu %s)",
                  options->coverage, goal.covered, goal.coverable, goal.name);
 }
 

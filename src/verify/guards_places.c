@@ -36,7 +36,7 @@ static void claim_inside(starg_verdict *verdict, const verify_facts *known) {
     const double *p = guards->positions + 3 * bad.first;
     verify_claim(verdict, false,
                  "all %zu guards are strictly inside: %zu are not, first guard %zu at "
-                 "(%.17g, %.17g, %.17g)",
+                 "(%.9g, %.9g, %.9g)",
                  guards->count, bad.count, bad.first, p[0], p[1], p[2]);
 }
 
@@ -50,11 +50,11 @@ static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
         return;
     const exceptions bad = find_exceptions(known, keeps_clearance);
     if (bad.count == 0)
-        verify_claim(verdict, true, "guards keep a clearance of %.17g", wanted);
+        verify_claim(verdict, true, "guards keep a clearance of %.9g", wanted);
     else
         verify_claim(verdict, false,
-                     "guards keep a clearance of %.17g: %zu do not, first guard %zu at a distance "
-                     "of %.17g",
+                     "guards keep a clearance of %.9g: %zu do not, first guard %zu at a distance "
+                     "of %.9g",
                      wanted, bad.count, bad.first, known->distance[bad.first]);
 }
 
@@ -83,7 +83,7 @@ static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
     else
         verify_claim(verdict, false,
                      "guards keep their distances from the model, and to their box: %zu do not, "
-                     "first guard %zu at a distance of %.17g",
+                     "first guard %zu at a distance of %.9g",
                      bad.count, bad.first, known->standoff[bad.first]);
 }
 
@@ -136,17 +136,16 @@ static starg_status claim_reached(starg_verdict *verdict, const verify_facts *kn
         return status;
     if (!known_cubes)
         verify_leave(verdict,
-                     "that guards can be reached from (%.17g, %.17g, %.17g): the cubes are "
+                     "that guards can be reached from (%.9g, %.9g, %.9g): the cubes are "
                      "too small",
                      from[0], from[1], from[2]);
     else if (bad == 0)
-        verify_claim(verdict, true, "guards can be reached from (%.17g, %.17g, %.17g)", from[0],
+        verify_claim(verdict, true, "guards can be reached from (%.9g, %.9g, %.9g)", from[0],
                      from[1], from[2]);
     else
-        verify_claim(
-            verdict, false,
-            "guards can be reached from (%.17g, %.17g, %.17g): %zu cannot, first guard %zu",
-            from[0], from[1], from[2], bad, first);
+        verify_claim(verdict, false,
+                     "guards can be reached from (%.9g, %.9g, %.9g): %zu cannot, first guard %zu",
+                     from[0], from[1], from[2], bad, first);
     return STARG_OK;
 }
 

@@ -133,8 +133,7 @@ static void read_surface(reader *r, const json_t *root, starg_pieces_report *rep
     if (!report->approximated)
         return;
     report->distance = read_real(r, root, "distance");
-    if (json_object_get(root, "distance_back") != NULL)
-        report->distance_back = read_real(r, root, "distance_back");
+    report->distance_back = read_real(r, root, "distance_back");
 }
 
 static void read_model(reader *r, const json_t *model, starg_pieces_report *report) {
