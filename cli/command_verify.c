@@ -38,7 +38,8 @@ static void tell_claims(cli_session *session, const starg_verdict *verdict, bool
 
 /* What holds, and what is left open: of results that were made to have it each of it, else how
  * much. */
-static void tell_summary(cli_session *session, const starg_verdict *verdict, const char *holds) {
+static void tell_summary(cli_session *session, const starg_verdict *verdict, const char *holds,
+                         bool verbose) {
     size_t failed = 0, routine = 0;
     for (size_t i = 0; i < verdict->count; i++)
         failed += !verdict->claims[i].holds;
@@ -49,9 +50,9 @@ static void tell_summary(cli_session *session, const starg_verdict *verdict, con
     else
         cli_say(session, "  NOT verified: %zu of %zu claims do not hold\n", failed, verdict->count);
     for (size_t i = 0; i < verdict->not_checked_count; i++)
-        if (verdict->not_checked[i].asked)
-            cli_say(session, "  NOT checked: %s\n", verdict->not_checked[i].text);
-    if (routine > 0)
+        if (!verbose && verdict->not_checked[i].asked)
+            cli_say(session, "  not checked: %s\n", verdict->not_checked[i].text);
+    if (!verbose && routine > 0)
         cli_say(session, "  %s not checked in any such result (--verbose lists %s)\n",
                 cli_count_of(routine, "statement is", "statements are").text,
                 routine == 1 ? "it" : "them");
@@ -69,7 +70,7 @@ static void tell_verdict(cli_session *session, const char *file, const starg_ver
                          const char *holds, json_t *result, const telling *to) {
     cli_say(session, "%s\n", file);
     tell_claims(session, verdict, to->verbose);
-    tell_summary(session, verdict, holds);
+    tell_summary(session, verdict, holds, to->verbose);
     json_t *claims = json_array();
     for (size_t i = 0; i < verdict->count; i++)
         cli_append(session, claims,

@@ -170,6 +170,12 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
     verify_claim(verdict, goal.covered <= goal.coverable && goal.coverable <= goal.all,
                  "%zu of %zu %s can be seen (at least those %zu that are)", goal.coverable,
                  goal.all, goal.name, goal.covered);
+    if (verify_targets_vertices(known))
+        verify_claim(verdict,
+                     known->covered_faces <= known->guards->coverable_faces &&
+                         known->guards->coverable_faces <= known->wanted_faces,
+                     "%zu of %zu faces can be seen (at least those %zu that are)",
+                     known->guards->coverable_faces, known->wanted_faces, known->covered_faces);
     if (goal.coverable < goal.covered || goal.coverable >= goal.all)
         return STARG_OK;
     const char *excuse = reason_unchecked(known);

@@ -4,6 +4,7 @@
  *
  * Independent of starg_decomposition_read, which uses the same field table as the writer. The two
  * share only the JSON parser, so a mistake in the table shows here. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,6 +43,11 @@ static double read_real(reader *r, const json_t *object, const char *key) {
         return json_number_value(value);
     reject(r, key, "a number");
     return 0;
+}
+
+/* Of what is 0 if it is not given: a number that is told is above. */
+static double read_told(reader *r, const json_t *object, const char *key) {
+    return fmax(read_real(r, object, key), DBL_MIN);
 }
 
 static bool read_bool(reader *r, const json_t *object, const char *key) {
@@ -179,12 +185,12 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     read_contacts(r, json_object_get(root, "adjacency"), report);
     report->strictly_star = read_count(r, root, "strictly_star");
     report->visible_vertices = read_real(r, root, "visible_vertices");
-    report->flattest = read_real(r, root, "flattest");
-    report->smallest_angle = read_real(r, root, "smallest_angle");
-    report->median_angle = read_real(r, root, "median_angle");
-    if (json_object_get(root, "smallest_angle_made") != NULL)
-        report->smallest_angle_made = read_real(r, root, "smallest_angle_made");
+    report->flattest = read_told(r, root, "flattest");
+    report->smallest_angle = read_told(r, root, "smallest_angle");
+    report->median_angle = read_told(r, root, "median_angle");
     read_surface(r, root, report);
+    if (json_object_get(root, "smallest_angle_made") != NULL)
+        report->smallest_angle_made = read_told(r, root, "smallest_angle_made");
     if (json_object_get(root, "lower_bound") != NULL) {
         report->lower_bound = read_count(r, root, "lower_bound");
         report->optimal = read_bool(r, root, "optimal");

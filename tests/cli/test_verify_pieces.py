@@ -62,6 +62,15 @@ def smallest_angle(cell):
                for u, v in itertools.combinations(normals, 2))
 
 
+def corner(face):
+    """The smallest angle of a triangle."""
+    def angle(a, b, c):
+        u, v = ([q - p for p, q in zip(POINTS[a], POINTS[i])] for i in (b, c))
+        return math.degrees(math.acos(dot(u, v) / math.hypot(*u) / math.hypot(*v)))
+    a, b, c = face
+    return min(angle(a, b, c), angle(b, c, a), angle(c, a, b))
+
+
 def flatness(cell):
     a, b, c, d = cell
     volume = dot(normal(a, b, c), [q - p for p, q in zip(POINTS[a], POINTS[d])]) / 6
@@ -87,6 +96,7 @@ def report(**changes):
         "format": "starguard-pieces", "version": 1, "mode": "strict", "tetrahedra": 4,
         "model": {"vertices": 4, "faces": 4},
         "flattest": min(map(flatness, CELLS)), "smallest_angle": angles[0], "median_angle": angles[2],
+        "smallest_angle_made": min([180, *(smallest_angle(c) for c in CELLS if smallest_angle(c) < corner(c[:3]))]),
         "pieces": [
             {"guard": middle(0, 1, 4), "tetrahedra": 2, "volume": 1 / 12, "star": True,
              **room(middle(0, 1, 4), CELLS[:2])},

@@ -327,8 +327,10 @@ cut_file cut_write_report(const starg_pieces_report *report) {
     }
     fprintf(file, "],\n\"strictly_star\": %zu, \"visible_vertices\": %.17g, \"flattest\": %.17g,\n",
             report->strictly_star, report->visible_vertices, report->flattest);
-    fprintf(file, "\"smallest_angle\": %.17g, \"median_angle\": %.17g, \"adjacency\": [",
-            report->smallest_angle, report->median_angle);
+    fprintf(file,
+            "\"smallest_angle\": %.17g, \"median_angle\": %.17g, \"smallest_angle_made\": %.17g, "
+            "\"adjacency\": [",
+            report->smallest_angle, report->median_angle, report->smallest_angle_made);
     for (size_t i = 0; i < report->contact_count; i++)
         fprintf(file, "%s[%u, %u, %.17g]", i > 0 ? ", " : "", report->contacts[i].first,
                 report->contacts[i].second, report->contacts[i].area);
