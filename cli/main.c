@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "help.h"
 #include "manual.h"
 #include "model.h"
@@ -193,6 +194,7 @@ static starg_status perform(cli_session *session, void *values) {
     starg_status status = STARG_OK;
     CLI_TRY(check_operands(session));
     CLI_TRY(name_inputs(session, values));
+    CLI_TRY(cli_check_extensions(session, values));
     if (command->prepare != NULL)
         CLI_TRY(command->prepare(session, values));
     CLI_TRY(cli_input_read(session));

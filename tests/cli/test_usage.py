@@ -188,6 +188,19 @@ class Mistakes(support.Case):
         self.usage_error("guard", "m.off", "-o", "g.json", "--picture", "p.jpg", says=".png")
         self.usage_error("guard", "m.off", "-o", "g.json", "--marks", ".ply", says=".ply")
 
+    def test_endings_of_others(self):
+        """An output is never written under the extension of another kind: the message names what writes that."""
+        for words, says in [("guard m.off -o x.glb", "starguard export RESULT"), ("guard m.off -o x.CSV", "--poses"),
+                            ("guard m.off -o x.png", "--picture FILE.png"), ("guard m.off -o x.html", "starguard view"),
+                            ("decompose m.off -o p.ply", "starguard export"), ("decompose m.off -o p.json", "--report"),
+                            ("decompose m.off -o p.vtk --report r.off", "starguard repair"),
+                            ("describe m.off -o d.vtk", "starguard decompose"), ("view g.json -o v.glb", "export"),
+                            ("repair m.off -o r.vtu", "export"), ("map m.off m.off -o m.vtu", "--solid"),
+                            ("map --solid m.off m.off -o m.json", "--solid"), ("db matrix d -o m.html", "view"),
+                            ("morph m.off m.off --frames 2 -o m.glb", "--glb FILE.glb")]:
+            self.usage_error(*words.split(), says=says)
+        self.run_text("guard", "m.off", "-o", "guards.txt")
+
     def test_two_results_on_standard_output(self):
         self.usage_error("guard", "m.off", "-o", "-", "--marks", "-", says="only one output")
 
