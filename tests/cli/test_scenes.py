@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: obstacles, shells as given, outsides, soups, targets; and what is wrong with them."""
 import json
+import random
 import struct
 
-from support import Case, main
+from support import OPEN, TETRAHEDRON, Case, main
 
 
 def box(low, high, n=1, inward=False):
@@ -340,6 +341,33 @@ class Scenes(Case):
             self.assertIn(name, err)
         self.assertNotIn("n.json", self.names())
 
+    def test_advice(self):
+        """A refused mesh is told of what helps, and of nothing else."""
+        chance = random.Random(1)
+        loose = "".join("%g %g %g\n" % tuple(chance.random() for _ in range(3)) for _ in range(90))
+        self.write("loose.off", f"OFF\n90 30 0\n{loose}" + "".join(f"3 {i} {i + 1} {i + 2}\n" for i in range(0, 90, 3)))
+        self.write("open.off", OPEN)
+        self.write("mid.txt", "4 3 1.5\n")
+        triple = TETRAHEDRON.replace("4 4 6", "5 7 6").replace("0 0 1\n", "0 0 1\n0 0 -1\n")
+        self.write("triple.off", triple + "3 0 1 4\n3 0 4 2\n3 1 2 4\n")
+        for model, says, never in [("loose.off", "--soup", "try 'starguard repair'"), ("open.off", "repair", "--soup"),
+                                   ("triple.off", "repair", "--soup")]:
+            _, err = self.run_text("guard", model, "-o", "n.json", status=2)
+            self.assertIn(says, err)
+            self.assertNotIn(never, err)
+        self.run_text("guard", "loose.off", "--soup", "--two-sided", "-o", "n.json", "--no-refine", "--count", "50")
+        for model, holes in [("loose.off", True), ("triple.off", False)]:
+            _, err = self.run_text("decompose", model, "-o", "p.vtk", status=2)
+            self.assertIn("of its diagonal away", err)
+            self.assertEqual("its holes are too large" in err, holes, err)
+        _, err = self.run_text("guard", "room.off", "--soup", "--range", "0.5", "-o", "n.json", "--candidates", "mid.txt",
+                               status=2)
+        self.assertRegex(err, "try a larger range, or other candidates\n")
+        self.write("out.txt", "9 9 9\n1 1 1\n")
+        for words, says in [([], ": not inside\n"), (["--clearance", "0.1"], ": not inside, or nearer")]:
+            _, err = self.run_text("guard", "room.off", "--candidates", "out.txt", "-o", "n.json", *words)
+            self.assertIn(says, err)
+
     def test_many_names(self):
         """Lists, patterns and repeated options are unions; names may have dots, slashes, spaces and commas."""
         vertices, faces = box((0, 0, 0), (8, 6, 3))
@@ -451,7 +479,7 @@ class Scenes(Case):
                 (["room.off", "--standoff", "5,6"], 2, "no candidate"),
                 (["room.off", "--cell", "1"], 1, "--from"),
                 (["room.off", "--soup", "--from", "1,1,0", "--cell", "0.1"], 1, "a face meets"),
-                (["room.off", "--soup", "--from", "50,1,1"], 1, "not in the box"),
+                (["room.off", "--soup", "--from", "50,1,1"], 1, "from (0, 0, 0) to (8, 6, 3)"),
                 (["room.off", "--soup", "--from", "1,1,1", "--cell", "1e-5"], 1, "2^30"),
                 (["room.off", "--obstacles", "crate.off", "--from", "4,3,0.7", "--cell", "0.2"], 1,
                  "within matter"),
