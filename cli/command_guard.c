@@ -110,7 +110,15 @@ static void say_area_bound(cli_session *session, const starg_guards *g) {
             cli_percent(g->coverage_area),
             cli_percent(anywhere ? g->area_bound_everywhere : g->area_bound),
             cli_count_of(g->options.max_guards, "guard", "guards").text,
-            anywhere ? ", wherever they stand" : " of these candidates");
+            anywhere ? " wherever they stand" : " of these candidates");
+}
+
+/* Why there is no bound for guards anywhere. */
+static const char *why_unbound(const starg_guards *g) {
+    if (g->options.prove)
+        return "was not found in the time";
+    return g->options.coverage < 1 ? "is not sought for a part of the area (--prove does)"
+                                   : "was not sought (--prove does)";
 }
 
 static void say_count(cli_session *session, const starg_guards *g) {
@@ -118,19 +126,21 @@ static void say_count(cli_session *session, const starg_guards *g) {
     if (g->options.max_guards > 0)
         cli_say(session, " of at most %zu", (size_t)g->options.max_guards);
     else if (g->optimal_everywhere)
-        cli_say(session, ", the fewest possible, wherever they stand");
+        cli_say(session, ", the fewest possible wherever they stand");
     else if (g->lower_bound_everywhere > 0)
-        cli_say(session, "; at least %zu %s needed, wherever they stand", g->lower_bound_everywhere,
+        cli_say(session, "; at least %zu %s needed wherever they stand", g->lower_bound_everywhere,
                 g->lower_bound_everywhere == 1 ? "is" : "are");
+    else
+        cli_say(session, "; how many are needed wherever they stand %s", why_unbound(g));
     cli_say(session, "\n");
 }
 
 static void say_guards(cli_session *session, const starg_guards *g) {
     say_count(session, g);
-    if (g->options.max_guards == 0)
-        say_bound(session, g);
-    else
+    if (g->options.max_guards > 0)
         say_area_bound(session, g);
+    else if (session->common.verbose || g->options.candidates == STARG_CANDIDATES_GIVEN)
+        say_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
             cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
@@ -326,10 +336,9 @@ const cli_command cli_command_guard = {
     .description =
         "Generates candidate points inside the solid, computes exactly which faces each one sees, "
         "and chooses the fewest that together see every visible face. The result contains the "
-        "guards, their coverage, and a proven lower bound of these candidates: no fewer of them "
-        "cover "
-        "as much. With --prove every point of the solid is a candidate, and the bound holds "
-        "wherever guards stand. Faces that no candidate sees are listed; they are not an error.\n"
+        "guards, their coverage, and how many guards are needed at least: wherever they stand, as "
+        "far as that is known, and of these candidates (--verbose). With --prove every point of "
+        "the solid is a candidate. Faces that no candidate sees are listed; they are not an error.\n"
         "With --time-limit the best result so far is written with its bound.",
     .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"

@@ -26,8 +26,8 @@ static const double SQUARES = 16; /* of the checker along A's longest side */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("MAP", "Map (docs/formats.md): MAP.json, or MAP.vtu with --solid; '-' writes "
-                             "to standard output."),
+    CLI_OUTPUT_OPTION("MAP.json|.vtu", "Map (docs/formats.md): MAP.json, or MAP.vtu with --solid; "
+                                       "'-' writes to standard output."),
     CLI_INPUT_OPTION(
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "

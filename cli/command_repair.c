@@ -12,8 +12,8 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION(
-        "FILE", "Repaired mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard output."),
+    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl",
+                      "Repaired mesh; '-' writes OFF to standard output."),
 };
 
 /* Reports what was done, as text and JSON. */

@@ -13,7 +13,7 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE", "Mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard output."),
+    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl", "Mesh; '-' writes OFF to standard output."),
     CLI_FLAG_OPTION("list", list, "List the samples and their poses."),
 };
 

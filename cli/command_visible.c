@@ -219,6 +219,11 @@ static starg_status check_viewpoints(cli_session *session, const values *v) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--unseen asks about the whole free space; leave out --box, or say where "
                         "guards may stand by --within");
+    if (v->unseen && v->from.count > 1)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--unseen: --from says where the free space is reached from; give one "
+                        "point, not %zu",
+                        v->from.count);
     if (v->unseen)
         return STARG_OK;
     if (v->scene.cell > 0 || v->scene.standoff.count > 0 || v->scene.within.count > 0)

@@ -19,6 +19,11 @@ starg_status cli_format_by_extension(cli_session *session, const char *name,
                                      const cli_extension *known, size_t count, int standard,
                                      int *format);
 
+/* Refuses outputs of a command whose extension is that of another option or command, with advice;
+ * `values` is the struct of its options. What an option writes, says its value: "FILE.obj|.ply".
+ * Errors: ARGUMENT. */
+starg_status cli_check_extensions(cli_session *session, const char *values);
+
 /* Announces an output that must have the extension, for example ".ply"; NULL is allowed. */
 starg_status cli_announce_with_extension(cli_session *session, const char *option, const char *name,
                                          const char *extension);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "help.h"
 #include "manual.h"
 #include "model.h"
@@ -161,6 +162,10 @@ static bool is_word(const cli_option *o, const char *value) {
     return false;
 }
 
+static starg_status name_input(cli_session *session, const cli_option *o, const char *value) {
+    return value == NULL || is_word(o, value) ? STARG_OK : cli_name_input(session, value);
+}
+
 /* Registers all files that the command line names for reading. */
 static starg_status name_inputs(cli_session *session, const char *values) {
     const cli_command *command = session->command;
@@ -169,10 +174,14 @@ static starg_status name_inputs(cli_session *session, const char *values) {
         CLI_TRY(cli_name_input(session, session->operands[i]));
     for (size_t i = 0; i < command->option_count; i++) {
         const cli_option *o = &command->options[i];
-        const char *value =
-            (o->flags & STARG_FIELD_INPUT) ? *(const char *const *)(values + o->offset) : NULL;
-        if (value != NULL && !is_word(o, value))
-            CLI_TRY(cli_name_input(session, value));
+        const void *member = values + o->offset;
+        const starg_texts *texts = member;
+        if (!(o->flags & STARG_FIELD_INPUT))
+            continue;
+        if (o->kind == STARG_FIELD_TEXT)
+            CLI_TRY(name_input(session, o, *(const char *const *)member));
+        for (size_t k = 0; o->kind == STARG_FIELD_TEXTS && k < texts->count; k++)
+            CLI_TRY(name_input(session, o, texts->values[k]));
     }
 done:
     return status;
@@ -185,6 +194,7 @@ static starg_status perform(cli_session *session, void *values) {
     starg_status status = STARG_OK;
     CLI_TRY(check_operands(session));
     CLI_TRY(name_inputs(session, values));
+    CLI_TRY(cli_check_extensions(session, values));
     if (command->prepare != NULL)
         CLI_TRY(command->prepare(session, values));
     CLI_TRY(cli_input_read(session));

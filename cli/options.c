@@ -17,6 +17,7 @@ typedef struct parser {
     int argc, next;
     char **argv;
     cli_parse_error *error;
+    bool *given; /* by option of the groups, one after the other */
 } parser;
 
 /* An option as given by the user. */
@@ -139,6 +140,22 @@ static bool set_flag(const match *m) {
                                  strncmp(m->option->option, "no-", 3) != 0);
 }
 
+/* Values of an option either add up, or there is one: none replaces another. Flags say the same
+ * again. */
+static bool note_given(parser *p, const match *m) {
+    const cli_option *o = m->option;
+    bool adds_up = o->kind == STARG_FIELD_PLACES || o->kind == STARG_FIELD_TEXTS;
+    size_t at = (size_t)(o - m->group->options);
+    for (const cli_group *g = p->groups; g != m->group; g++)
+        at += g->count;
+    bool again = p->given[at];
+    p->given[at] = true;
+    if (!again || o->kind == STARG_FIELD_FLAG || (adds_up && !(o->flags & STARG_FIELD_ONCE)))
+        return true;
+    return fail_parse(p, "%s is given more than once, and takes effect only once; leave one",
+                      m->shown);
+}
+
 static bool set_value(parser *p, const match *m, const char *word) {
     void *variable = (char *)m->group->values + m->option->offset;
     switch (m->option->kind) {
@@ -225,6 +242,8 @@ static bool parse_long(parser *p, const char *text) {
     size_t size = equals != NULL ? (size_t)(equals - text) : strlen(text);
     if (!find_long(p, text, size, &m))
         return false;
+    if (!note_given(p, &m))
+        return false;
     if (m.option->kind == STARG_FIELD_FLAG && equals != NULL)
         return fail_parse(p, "%s takes no value", m.shown);
     if (equals == NULL && stands_alone(p, &m))
@@ -241,7 +260,7 @@ static bool parse_long(parser *p, const char *text) {
 static bool parse_short(parser *p, const char *text) {
     match m;
     const char *word = NULL;
-    if (!find_short(p, *text, &m))
+    if (!find_short(p, *text, &m) || !note_given(p, &m))
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && text[1] != '\0')
         return fail_parse(p, "unknown option '-%.100s'", text);
@@ -253,21 +272,36 @@ static bool parse_short(parser *p, const char *text) {
     return set_value(p, &m, word);
 }
 
+/* The number of operands; -1: wrong. */
+static int parse_words(parser *p) {
+    int operands = 0;
+    bool options_end = false;
+    while (p->next < p->argc) {
+        char *word = p->argv[p->next++];
+        if (options_end || word[0] != '-' || word[1] == '\0')
+            p->argv[operands++] = word;
+        else if (strcmp(word, "--") == 0)
+            options_end = true;
+        else if (word[1] == '-' ? !parse_long(p, word + 2) : !parse_short(p, word + 1))
+            return -1;
+    }
+    return operands;
+}
+
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
                       cli_parse_error *error) {
     parser p = {
         .groups = groups, .group_count = group_count, .argc = argc, .argv = argv, .error = error};
-    int operands = 0;
-    bool options_end = false;
-    while (p.next < argc) {
-        char *word = argv[p.next++];
-        if (options_end || word[0] != '-' || word[1] == '\0')
-            argv[operands++] = word;
-        else if (strcmp(word, "--") == 0)
-            options_end = true;
-        else if (word[1] == '-' ? !parse_long(&p, word + 2) : !parse_short(&p, word + 1))
-            return -1;
+    size_t count = 1;
+    for (size_t g = 0; g < group_count; g++)
+        count += groups[g].count;
+    p.given = calloc(count, sizeof *p.given);
+    if (p.given == NULL) {
+        fail_parse(&p, "out of memory");
+        return -1;
     }
+    int operands = parse_words(&p);
+    free(p.given);
     return operands;
 }
 

@@ -12,39 +12,35 @@
 const char *const cli_orientation_words[] = {"nested", "keep", NULL};
 
 starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene) {
-    starg_status status = STARG_OK;
-    for (size_t i = 0; i < scene->obstacles.count; i++)
-        CLI_TRY(cli_name_input(session, scene->obstacles.values[i]));
-    if ((scene->see != NULL) + (scene->ignore != NULL) + (scene->weights != NULL) > 1)
+    if ((scene->see.count > 0) + (scene->ignore.count > 0) + (scene->weights != NULL) > 1)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--see, --ignore and --weights exclude each other; weights say it all");
     if (scene->cell > 0 && scene->from.count == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--cell is the size of cubes for --from X,Y,Z; add that point");
-    if ((scene->over != NULL) != (scene->height > 0))
+    if ((scene->over.count > 0) != (scene->height > 0))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        scene->over != NULL
+                        scene->over.count > 0
                             ? "--over needs to know how high guards may stand above "
                               "the faces: add --height H"
                             : "--height is a height above faces: add --over FACES");
-    if (scene->mount != NULL && !(scene->clearance > 0))
+    if (scene->mount.count > 0 && !(scene->clearance > 0))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--mount needs to know how far from the faces guards hang: add --clearance "
                         "D");
     if (scene->outside && scene->standoff.count == 0 && scene->within.count == 0 &&
-        scene->over == NULL && scene->mount == NULL && session->command == &cli_command_guard)
+        scene->over.count == 0 && scene->mount.count == 0 && session->command == &cli_command_guard)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--outside needs to know how far guards may stand away: add --standoff "
                         "MIN,MAX or --within X0,Y0,Z0,X1,Y1,Z1");
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_plain(const cli_scene *s) {
     return s->obstacles.count == 0 && s->orientation == STARG_ORIENTATION_NESTED && !s->outside &&
-           s->standoff.count == 0 && s->within.count == 0 && s->see == NULL && s->ignore == NULL &&
-           s->weights == NULL && !s->soup && !s->two_sided && s->from.count == 0 &&
-           s->over == NULL && s->mount == NULL;
+           s->standoff.count == 0 && s->within.count == 0 && s->see.count == 0 &&
+           s->ignore.count == 0 && s->weights == NULL && !s->soup && !s->two_sided &&
+           s->from.count == 0 && s->over.count == 0 && s->mount.count == 0;
 }
 
 static double diagonal(const starg_mesh *mesh) {
@@ -60,22 +56,19 @@ static void take_options(const cli_scene *s, const starg_mesh *model, starg_spac
     out->soup = s->soup;
     out->two_sided = s->two_sided;
     if (s->from.count > 0) {
-        const double *last = s->from.values + 3 * (s->from.count - 1);
         out->cell = s->cell > 0 ? s->cell : 0.01 * diagonal(model);
-        for (int k = 0; k < 3; k++)
-            out->from[k] = last[k];
+        memcpy(out->from, s->from.values, sizeof out->from);
     }
     out->height = s->height;
-    if (s->over != NULL)
+    if (s->over.count > 0)
         memcpy(out->up, s->up, sizeof out->up);
-    if (s->mount != NULL) /* room for rounding, and for refinement */
+    if (s->mount.count > 0) /* room for rounding, and for refinement */
         out->mount_distance = 1.001 * s->clearance;
     if (s->standoff.count > 0) {
-        const double *last = s->standoff.values + 2 * (s->standoff.count - 1);
-        out->standoff_least = last[0];
-        out->standoff_most = last[1];
+        out->standoff_least = s->standoff.values[0];
+        out->standoff_most = s->standoff.values[1];
     }
-    const double *box = s->within.count > 0 ? s->within.values + 6 * (s->within.count - 1) : NULL;
+    const double *box = s->within.count > 0 ? s->within.values : NULL;
     for (int k = 0; box != NULL && k < 3; k++) {
         out->within[k] = fmin(box[k], box[k + 3]);
         out->within[k + 3] = fmax(box[k], box[k + 3]);
@@ -122,10 +115,15 @@ static char *ranges_of(const uint32_t *list, size_t count) {
     return NULL;
 }
 
-static bool recall_faces(const uint32_t *list, size_t count, char **text, const char **word) {
-    *text = count > 0 ? ranges_of(list, count) : NULL;
-    *word = *text;
-    return count == 0 || *text != NULL;
+static bool recall_faces(const uint32_t *list, size_t count, char **text, starg_texts *words) {
+    if (count == 0)
+        return true;
+    *text = ranges_of(list, count);
+    words->values = malloc(sizeof *words->values);
+    if (*text == NULL || words->values == NULL)
+        return false;
+    words->values[words->count++] = *text;
+    return true;
 }
 
 /* Are the faces to be seen alike? Then numbers tell them. */
@@ -184,6 +182,9 @@ void cli_scene_forget(cli_scene *scene) {
     free(scene->standoff.values);
     free(scene->within.values);
     free((void *)scene->obstacles.values);
+    free((void *)scene->over.values);
+    free((void *)scene->mount.values);
+    free((void *)scene->see.values);
     for (int i = 0; i < 3; i++)
         free(scene->recalled[i]);
     *scene = (cli_scene){0};
@@ -232,19 +233,19 @@ static starg_status keep_values(cli_session *session, double *values, size_t fac
     return *out != NULL ? STARG_OK : cli_fail_memory(session);
 }
 
-/* The values by face that a word says: a file, a list of numbers, or a name in the model. */
+/* The values by face that a word says: a file, numbers, or a name in the model. */
 static starg_status
 read_values(cli_session *session, const char *word, size_t faces,
             starg_status (*read)(starg_context *, const char *, size_t, double **), double **out) {
     starg_status status = STARG_OK;
     double *values = NULL;
     const char *model = session->operands[0];
-    bool file = strcmp(word, "-") == 0 || access(word, F_OK) == 0 || strpbrk(word, "/.") != NULL;
+    bool file = strcmp(word, "-") == 0 || access(word, F_OK) == 0;
     *out = NULL;
     if (!file && is_numbers(word))
         return take_numbers(session, word, faces, out);
     if (!file && strcmp(model, "-") == 0)
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
+        return cli_fail(session, STARG_ERROR_READ,
                         "there is no file '%.100s', and names in a model need its file, not "
                         "standard input",
                         word);
@@ -252,35 +253,75 @@ read_values(cli_session *session, const char *word, size_t faces,
                  : starg_faces_named(session->context, model, word, faces, &values));
     status = keep_values(session, values, faces, out);
 done:
+    if (status == STARG_ERROR_ARGUMENT && !file && strpbrk(word, "/.") != NULL) /* more likely */
+        status = cli_fail(session, STARG_ERROR_READ, "%s",                      /* a file */
+                          starg_context_error(session->context)->message);
+    return status;
+}
+
+static starg_status add_faces(cli_session *session, const char *word, size_t faces, double *sum) {
+    double *values = NULL;
+    starg_status status = read_values(session, word, faces, starg_faces_read, &values);
+    for (size_t f = 0; status == STARG_OK && f < faces; f++)
+        sum[f] = sum[f] != 0 || values[f] != 0;
+    free(values);
+    return status;
+}
+
+/* Words with commas between them. */
+static starg_status add_each(cli_session *session, const char *words, size_t faces, double *sum) {
+    starg_status status = STARG_OK;
+    char *copy = strdup(words), *rest = copy, *word;
+    if (copy == NULL)
+        return cli_fail_memory(session);
+    while (status == STARG_OK && (word = strsep(&rest, ",")) != NULL)
+        status = add_faces(session, word + strspn(word, " "), faces, sum);
+    free(copy);
+    return status;
+}
+
+/* The faces that any of the words says, as values that are 0 elsewhere. Names may have commas. */
+static starg_status read_union(cli_session *session, const starg_texts *words, size_t faces,
+                               double **out) {
+    starg_status status = STARG_OK;
+    *out = calloc(faces + 1, sizeof **out);
+    if (*out == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < words->count && status == STARG_OK; i++) {
+        const char *word = words->values[i];
+        status = add_faces(session, word, faces, *out);
+        if ((status == STARG_ERROR_ARGUMENT || status == STARG_ERROR_READ) &&
+            strchr(word, ',') != NULL && !is_numbers(word) && access(word, F_OK) != 0)
+            status = add_each(session, word, faces, *out);
+    }
     return status;
 }
 
 /* The weights that were asked for; NULL: none. */
 static starg_status read_weights(cli_session *session, const cli_scene *s, size_t faces,
                                  double **out) {
-    starg_status status = STARG_OK;
-    const char *word = s->see != NULL ? s->see : s->ignore;
+    bool ignores = s->ignore.count > 0;
     *out = NULL;
     if (s->weights != NULL)
         return read_values(session, s->weights, faces, starg_weights_read, out);
-    if (word == NULL)
+    if (s->see.count == 0 && !ignores)
         return STARG_OK;
-    status = read_values(session, word, faces, starg_faces_read, out);
+    starg_status status = read_union(session, ignores ? &s->ignore : &s->see, faces, out);
     for (size_t f = 0; status == STARG_OK && f < faces; f++)
-        (*out)[f] = ((*out)[f] != 0) == (s->ignore == NULL);
+        (*out)[f] = ((*out)[f] != 0) != ignores;
     return status;
 }
 
-/* The faces that a word says, as an ascending list. */
-static starg_status read_list(cli_session *session, const char *option, const char *word,
+/* The faces that words say, as an ascending list. */
+static starg_status read_list(cli_session *session, const char *option, const starg_texts *words,
                               size_t faces, uint32_t **list, size_t *count) {
     starg_status status = STARG_OK;
     double *values = NULL;
     *list = NULL;
     *count = 0;
-    if (word == NULL)
+    if (words->count == 0)
         return STARG_OK;
-    CLI_TRY(read_values(session, word, faces, starg_faces_read, &values));
+    CLI_TRY(read_union(session, words, faces, &values));
     *list = calloc(faces + 1, sizeof **list);
     if (*list == NULL) {
         status = cli_fail_memory(session);
@@ -291,7 +332,7 @@ static starg_status read_list(cli_session *session, const char *option, const ch
             (*list)[(*count)++] = (uint32_t)f;
     if (*count == 0)
         status = cli_fail(session, STARG_ERROR_ARGUMENT, "%s %.100s are no faces of the model",
-                          option, word);
+                          option, words->values[0]);
 done:
     free(values);
     return status;
@@ -311,8 +352,8 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
     }
     CLI_TRY(read_obstacles(session, s->obstacles.values, s->obstacles.count, &obstacles));
     CLI_TRY(read_weights(session, s, faces, &weights));
-    CLI_TRY(read_list(session, "--over", s->over, faces, &over, &options.over_count));
-    CLI_TRY(read_list(session, "--mount", s->mount, faces, &mount, &options.mount_count));
+    CLI_TRY(read_list(session, "--over", &s->over, faces, &over, &options.over_count));
+    CLI_TRY(read_list(session, "--mount", &s->mount, faces, &mount, &options.mount_count));
     options.over = over;
     options.mount = mount;
     CLI_TRY(starg_space_create(session->context, session->mesh,

@@ -61,7 +61,8 @@ enum {
     STARG_FIELD_COUNTED = 64, /* numbers of a column: count in the member at `length` */
     STARG_FIELD_RARE = 128,   /* with OPTIONAL: not in files where it is the default, which is 0 for
                                  NUMBERS; a RECORD, where all of it is */
-    STARG_FIELD_ALONE = 256   /* a CHOICE whose option needs no word: alone it stands for `none` */
+    STARG_FIELD_ALONE = 256,  /* a CHOICE whose option needs no word: alone it stands for `none` */
+    STARG_FIELD_ONCE = 512    /* PLACES, TEXTS: the option occurs at most once */
 };
 
 typedef struct starg_fields starg_fields;

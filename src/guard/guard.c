@@ -80,8 +80,10 @@ static starg_status take_given(const guard_problem *problem, candidate_points *p
     }
     if (dropped > 0)
         starg_log(problem->context, STARG_LOG_WARNING,
-                  "ignoring %zu of %zu given candidates: not inside, or too close to the boundary",
-                  dropped, options->point_count);
+                  "ignoring %zu of %zu given candidates: not inside%s%s", dropped,
+                  options->point_count,
+                  problem->solid->scene ? ", or not where guards may stand" : "",
+                  options->clearance > 0 ? ", or nearer to the boundary than the clearance" : "");
 done:
     return status;
 }
@@ -140,6 +142,11 @@ done:
     return status;
 }
 
+static bool is_limited(const starg_space_options *s) {
+    return s->within[0] < s->within[3] || s->standoff_most > 0 || s->standoff_least > 0 ||
+           s->cell > 0 || s->over_count > 0 || s->mount_count > 0;
+}
+
 /* Candidates that see nothing prove nothing. Says which limits may be the reason. */
 static starg_status fail_unseen(const guard_problem *problem, const guard_pool *pool) {
     const starg_guard_options *o = problem->options;
@@ -152,8 +159,9 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
         {"a larger range", range < diagonal},
         {"a wider view", sensor_is_directed(&o->visibility)},
         {"a larger incidence", o->visibility.incidence > 0 && o->visibility.incidence < 90},
-        {"other faces to see", problem->solid->importance != NULL},
-        {"wider limits of where guards may stand (box, distances, faces)", problem->solid->scene},
+        {"other faces to see", problem->weights.faces < starg_space_model_faces(problem->solid)},
+        {"wider limits of where guards may stand (box, distances, faces)",
+         problem->solid->scene && is_limited(&problem->solid->space)},
         {"other candidates", o->candidates == STARG_CANDIDATES_GIVEN},
     };
     char advice[256] = "";

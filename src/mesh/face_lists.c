@@ -108,44 +108,82 @@ starg_status starg_weights_read(starg_context *context, const char *path, size_t
 
 /* ---- names in the model ---- */
 
-bool starg_values_know(starg_face_values *values, const char *name, size_t length) {
-    size_t used = strlen(values->others);
-    if (length == values->length && memcmp(name, values->name, length) == 0)
-        return values->found = true;
-    if (used + length + 3 < sizeof values->others) {
-        char quoted[sizeof values->others];
-        snprintf(quoted, sizeof quoted, "%s%.*s", used > 0 ? ", " : "", (int)length, name);
-        const char *at = strstr(values->others, quoted + (used > 0 ? 2 : 0));
-        if (at == NULL)
-            strcat(values->others, quoted);
+/* Is the name what the pattern, up to its end, describes? The last * takes one character more
+ * whenever what follows it does not fit. Cost: the product of the lengths. */
+static bool fits(const char *pattern, const char *end, const char *name, size_t length) {
+    const char *stop = name + length, *star = NULL, *from = NULL;
+    while (name < stop) {
+        if (pattern < end && *pattern == '*') {
+            star = pattern++;
+            from = name;
+        } else if (pattern < end && (*pattern == '?' || *pattern == *name)) {
+            pattern++;
+            name++;
+        } else if (star != NULL) {
+            pattern = star + 1;
+            name = ++from;
+        } else {
+            return false;
+        }
     }
-    return false;
+    while (pattern < end && *pattern == '*')
+        pattern++;
+    return pattern == end;
+}
+
+bool starg_values_want(starg_face_values *values, const char *name, size_t length) {
+    bool wanted = fits(values->pattern, values->pattern + strlen(values->pattern), name, length);
+    values->found = values->found || wanted;
+    return wanted;
+}
+
+bool starg_values_want_property(starg_face_values *values, const char *name, size_t length) {
+    if (values->equals == NULL)
+        return starg_values_want(values, name, length);
+    bool wanted = fits(values->pattern, values->equals, name, length);
+    values->found = values->compared = values->found || wanted;
+    return wanted;
+}
+
+void starg_values_note(starg_face_values *values, const char *name, size_t length) {
+    size_t used = strlen(values->others);
+    char quoted[sizeof values->others];
+    if (used + length + 3 >= sizeof values->others)
+        return;
+    snprintf(quoted, sizeof quoted, "%s%.*s", used > 0 ? ", " : "", (int)length, name);
+    if (strstr(values->others, quoted + (used > 0 ? 2 : 0)) == NULL)
+        strcat(values->others, quoted);
+}
+
+void starg_values_take(starg_face_values *values, double value) {
+    if (values->equals != NULL)
+        values->current = values->current != 0 || value == values->wanted;
+    else if (value != 0)
+        values->current = value;
 }
 
 static starg_status fail_unknown(starg_context *context, const starg_face_values *values,
                                  const char *path) {
     bool any = values->others[0] != '\0';
     return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                      "no file, and no group, material or property of faces in '%.200s', is called "
-                      "'%.*s'%s%s",
-                      path, (int)(values->length < 100 ? values->length : 100), values->name,
+                      "no file, and no group, object, material or property of faces in '%.200s', "
+                      "is called '%.100s'%s%s",
+                      path, values->pattern,
                       any ? "; there are " : "; it names no faces: give a file of face numbers",
                       values->others);
 }
 
-/* 1 where the value is the one wanted. */
-static starg_status compare(starg_context *context, starg_face_values *values) {
+static starg_status take_pattern(starg_context *context, const char *name,
+                                 starg_face_values *values) {
     starg_status status = STARG_OK;
     starg_c_locale locale = {0};
-    double wanted;
+    values->pattern = name;
+    values->equals = strchr(name, '=');
     if (values->equals == NULL)
         return STARG_OK;
     STARG_TRY(starg_c_locale_enter(context, &locale));
-    if (!starg_parse_real(values->equals, strlen(values->equals), &wanted))
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "'%.100s' is not a number that a property can have", values->equals);
-    for (size_t i = 0; status == STARG_OK && i < values->data.count; i++)
-        values->data.data[i] = values->data.data[i] == wanted;
+    if (!starg_parse_real(values->equals + 1, strlen(values->equals + 1), &values->wanted))
+        values->wanted = NAN;
 done:
     starg_c_locale_leave(&locale);
     return status;
@@ -157,11 +195,9 @@ starg_status starg_faces_named(starg_context *context, const char *model_file, c
     starg_mesh *mesh = NULL;
     char *bytes = NULL;
     size_t size = 0;
-    const char *equals = strchr(name, '=');
-    starg_face_values values = {.name = name,
-                                .length = equals != NULL ? (size_t)(equals - name) : strlen(name),
-                                .equals = equals != NULL ? equals + 1 : NULL};
+    starg_face_values values = {0};
     *weights = NULL;
+    STARG_TRY(take_pattern(context, name, &values));
     STARG_TRY(starg_file_read(context, STAGE, model_file, &bytes, &size));
     STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
     if (!values.found)
@@ -170,8 +206,10 @@ starg_status starg_faces_named(starg_context *context, const char *model_file, c
         status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                             "'%.200s' has %zu faces, and the model %zu", model_file,
                             values.data.count, face_count);
+    else if (values.compared && isnan(values.wanted))
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "'%.100s' is not a number that a property can have", values.equals + 1);
     STARG_TRY(status);
-    STARG_TRY(compare(context, &values));
     *weights = values.data.data;
     values.data.data = NULL;
 done:

@@ -161,18 +161,30 @@ done:
     return status;
 }
 
+static starg_status fail_beyond(const flood_cells *f, const starg_solid *scene,
+                                const double from[3]) {
+    bvh_box box;
+    solid_reach(scene, &box);
+    return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
+                      "nobody can stand at (%g, %g, %g): it is not in the box where guards may be, "
+                      "from (%g, %g, %g) to (%g, %g, %g); choose a point in it, or another box "
+                      "(--within)",
+                      from[0], from[1], from[2], box.lower[0], box.lower[1], box.lower[2],
+                      box.upper[0], box.upper[1], box.upper[2]);
+}
+
 static starg_status spread(flood_cells *f, const starg_solid *scene, const double from[3]) {
     starg_status status = STARG_OK;
     cell_stack stack = {0};
     size_t at[3];
     const size_t step[3] = {1, f->count[0], f->count[0] * f->count[1]};
-    if (!locate(f, from, at) || starg_bit_test(f->taken, cell_at(f, at)))
+    if (!locate(f, from, at))
+        return fail_beyond(f, scene, from);
+    if (starg_bit_test(f->taken, cell_at(f, at)))
         return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
-                          "nobody can stand at (%g, %g, %g): %s; choose another point or smaller "
-                          "cubes",
-                          from[0], from[1], from[2],
-                          locate(f, from, at) ? "a face meets its cube"
-                                              : "it is not in the box where guards may be");
+                          "nobody can stand at (%g, %g, %g): a face meets its cube of the size %g; "
+                          "choose another point or smaller cubes",
+                          from[0], from[1], from[2], f->size);
     if (!starg_solid_contains(scene, from))
         return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
                           "nobody can stand at (%g, %g, %g): it is within matter, or outside of "

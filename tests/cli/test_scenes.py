@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: obstacles, shells as given, outsides, soups, targets; and what is wrong with them."""
 import json
+import random
 import struct
 
-from support import Case, main
+from support import OPEN, TETRAHEDRON, Case, main
 
 
 def box(low, high, n=1, inward=False):
@@ -355,6 +356,63 @@ class Scenes(Case):
             self.assertIn(name, err)
         self.assertNotIn("n.json", self.names())
 
+    def test_advice(self):
+        """A refused mesh is told of what helps, and of nothing else."""
+        chance = random.Random(1)
+        loose = "".join("%g %g %g\n" % tuple(chance.random() for _ in range(3)) for _ in range(90))
+        self.write("loose.off", f"OFF\n90 30 0\n{loose}" + "".join(f"3 {i} {i + 1} {i + 2}\n" for i in range(0, 90, 3)))
+        self.write("open.off", OPEN)
+        self.write("mid.txt", "4 3 1.5\n")
+        triple = TETRAHEDRON.replace("4 4 6", "5 7 6").replace("0 0 1\n", "0 0 1\n0 0 -1\n")
+        self.write("triple.off", triple + "3 0 1 4\n3 0 4 2\n3 1 2 4\n")
+        for model, says, never in [("loose.off", "--soup", "try 'starguard repair'"), ("open.off", "repair", "--soup"),
+                                   ("triple.off", "repair", "--soup")]:
+            _, err = self.run_text("guard", model, "-o", "n.json", status=2)
+            self.assertIn(says, err)
+            self.assertNotIn(never, err)
+        self.run_text("guard", "loose.off", "--soup", "--two-sided", "-o", "n.json", "--no-refine", "--count", "50")
+        for model, holes in [("loose.off", True), ("triple.off", False)]:
+            _, err = self.run_text("decompose", model, "-o", "p.vtk", status=2)
+            self.assertIn("of its diagonal away", err)
+            self.assertEqual("its holes are too large" in err, holes, err)
+        _, err = self.run_text("guard", "room.off", "--soup", "--range", "0.5", "-o", "n.json", "--candidates", "mid.txt",
+                               status=2)
+        self.assertRegex(err, "try a larger range, or other candidates\n")
+        self.write("out.txt", "9 9 9\n1 1 1\n")
+        for words, says in [([], ": not inside\n"), (["--clearance", "0.1"], ": not inside, or nearer")]:
+            _, err = self.run_text("guard", "room.off", "--candidates", "out.txt", "-o", "n.json", *words)
+            self.assertIn(says, err)
+
+    def test_many_names(self):
+        """Lists, patterns and repeated options are unions; names may have dots, slashes, spaces and commas."""
+        vertices, faces = box((0, 0, 0), (8, 6, 3))
+        given = ["Floor.001", "IfcSlab/Ceiling", "Wall, north", "wall_e", "0-3", "a*b=2"]
+        lines = [f"v {x} {y} {z}" for x, y, z in vertices]
+        for f, face in enumerate(faces):
+            if f % 2 == 0:
+                lines.append(f"o {given[f // 2]}")
+            lines.append("f " + " ".join(str(v + 1) for v in face))
+        self.write("named.obj", "\n".join(lines) + "\n")
+        self.write("wall_e", "11")
+        for words, names in [
+                (["--see", "Floor.001"], [0]), (["--see", "IfcSlab/Ceiling"], [1]), (["--see", "Wall, north"], [2]),
+                (["--see", "Floor.001,a*b=2"], [0, 5]), (["--see", "Floor.001, Ifc*"], [0, 1]),
+                (["--see", "[Ww]all*", "--see", "Wall*"], None), (["--see", "?all*"], [2, 3]),
+                (["--see", "*o*"], [0, 2]), (["--see", "0?3"], [4]), (["--see", "0-3"], [0, 1]),
+                (["--see", "0-1,Wall*"], [0, 2]), (["--see", "Floor.001", "--see", "0?3", "--see", "2-3"], [0, 1, 4]),
+                (["--ignore", "*all*", "--ignore", "Floor.001"], [1, 4, 5])]:
+            if names is None:
+                self.usage_error("guard", "named.obj", "-o", "n.json", *words, says="is called '[Ww]all*'")
+                continue
+            targets = [face for face, _ in self.guards("named.obj", *words)["scene"]["targets"]]
+            self.assertEqual(targets, [f for n in names for f in (2 * n, 2 * n + 1)], words)
+        wall = self.guards("named.obj", "--see", "wall_e")["scene"]["targets"]
+        self.assertEqual([face for face, _ in wall], [11]) # the file
+        _, err = self.run_text("guard", "named.obj", "-o", "n.json", "--see", "Floor.002", status=2)
+        self.assertIn("there are Floor.001, IfcSlab/Ceiling, Wall, north, wall_e, 0-3", err)
+        mounted = self.guards("named.obj", "--mount", "Floor.001", "--mount", "0-3", "--clearance", "0.1")
+        self.assertEqual(mounted["scene"]["mount"], [0, 1, 2, 3])
+
     def test_properties(self):
         """Weights are a property of the faces of a PLY file, also where these are polygons."""
         vertices, faces = box((0, 0, 0), (8, 6, 3))
@@ -369,10 +427,14 @@ class Scenes(Case):
         found = self.guards("room.ply", "--weights", "care")["scene"]["targets"]
         self.assertEqual(found, [[2 * q + i, q / 5] for q in range(1, 6) for i in range(2)])
         self.verified("room.ply")
+        targets = lambda pairs: [face for face, _ in pairs]
         kinds = self.guards("room.ply", "--see", "kind=2")["scene"]["targets"]
         self.assertEqual([face for face, _ in kinds], [4, 5, 10, 11])
         _, err = self.run_text("guard", "room.ply", "-o", "n.json", "--see", "kind=x", status=1)
         self.assertIn("not a number", err)
+        several = targets(self.guards("room.ply", "--see", "kind=2,care")["scene"]["targets"])
+        self.assertEqual(several, list(range(2, 12)))
+        self.assertEqual(targets(self.guards("room.ply", "--see", "k*")["scene"]["targets"]), [2, 3, 4, 5, 8, 9, 10, 11])
 
     def test_views_in_exports(self):
         """Cones and pyramids of cameras are in VTU and PLY files, from the guard outwards."""
@@ -432,7 +494,7 @@ class Scenes(Case):
                 (["room.off", "--standoff", "5,6"], 2, "no candidate"),
                 (["room.off", "--cell", "1"], 1, "--from"),
                 (["room.off", "--soup", "--from", "1,1,0", "--cell", "0.1"], 1, "a face meets"),
-                (["room.off", "--soup", "--from", "50,1,1"], 1, "not in the box"),
+                (["room.off", "--soup", "--from", "50,1,1"], 1, "from (0, 0, 0) to (8, 6, 3)"),
                 (["room.off", "--soup", "--from", "1,1,1", "--cell", "1e-5"], 1, "2^30"),
                 (["room.off", "--obstacles", "crate.off", "--from", "4,3,0.7", "--cell", "0.2"], 1,
                  "within matter"),

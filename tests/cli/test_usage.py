@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Help, version, and every way to get the command line wrong."""
+import json
+
 import support
 from support import COMMANDS, TETRAHEDRON
 
@@ -98,6 +100,29 @@ class Mistakes(support.Case):
         self.usage_error("guard", "m.off", "-o", "--quiet", says="-o needs a value")
         self.usage_error("guard", "m.off", "-o", "", says="-o takes a name")
 
+    def test_options_given_twice(self):
+        """Of every option of every command: values add up or the second is refused, none replaces another."""
+        table = json.loads(self.run_text("help", "--json")[0])
+        adding = set()
+        for command in (c for c in table["commands"] if not c["group"]):
+            for option in command["options"] + (table["common_options"] if command["name"] == "check" else []):
+                if option["kind"] == "flag":
+                    continue
+                name = "--" + option["name"]
+                for value in option.get("choices", ["1", "0.5", "10000", "1,2", "1,2,3", "1,2,3,4,5,6"]):
+                    words = [f"{name}={value}"] * 2
+                    _, err = self.run_text(*command["name"].split(), *words, "--nonsense", status=1)
+                    if f"{name} takes" not in err:
+                        break
+                if f"{name} is given more than once" not in err:
+                    adding.add((command["name"], option["name"]))
+        self.assertEqual(adding, {("visible", "from"), ("visible", "box")} | {
+            (command, option) for command in ("visible", "guard") for option in ("obstacles", "see", "ignore")
+        } | {("guard", "over"), ("guard", "mount")})
+        self.usage_error("guard", "m.off", "-o", "a", "--output=b", says="more than once")
+        self.usage_error("visible", "m.off", "--unseen", "--outside", "--from=2,2,2", "--from=3,3,3", says="one point")
+        self.run_text("check", "m.off", "--quiet", "--quiet")
+
     def test_value_for_a_flag(self):
         self.usage_error("check", "m.off", "--quiet=yes", says="--quiet takes no value")
 
@@ -162,6 +187,19 @@ class Mistakes(support.Case):
         self.usage_error("visible", "m.off", "--from", "0,0,0", "-o", "v.off", says=".ply")
         self.usage_error("guard", "m.off", "-o", "g.json", "--picture", "p.jpg", says=".png")
         self.usage_error("guard", "m.off", "-o", "g.json", "--marks", ".ply", says=".ply")
+
+    def test_endings_of_others(self):
+        """An output is never written under the extension of another kind: the message names what writes that."""
+        for words, says in [("guard m.off -o x.glb", "starguard export RESULT"), ("guard m.off -o x.CSV", "--poses"),
+                            ("guard m.off -o x.png", "--picture FILE.png"), ("guard m.off -o x.html", "starguard view"),
+                            ("decompose m.off -o p.ply", "starguard export"), ("decompose m.off -o p.json", "--report"),
+                            ("decompose m.off -o p.vtk --report r.off", "starguard repair"),
+                            ("describe m.off -o d.vtk", "starguard decompose"), ("view g.json -o v.glb", "export"),
+                            ("repair m.off -o r.vtu", "export"), ("map m.off m.off -o m.vtu", "--solid"),
+                            ("map --solid m.off m.off -o m.json", "--solid"), ("db matrix d -o m.html", "view"),
+                            ("morph m.off m.off --frames 2 -o m.glb", "--glb FILE.glb")]:
+            self.usage_error(*words.split(), says=says)
+        self.run_text("guard", "m.off", "-o", "guards.txt")
 
     def test_two_results_on_standard_output(self):
         self.usage_error("guard", "m.off", "-o", "-", "--marks", "-", says="only one output")

@@ -117,7 +117,8 @@ done:
     return status;
 }
 
-/* Which of group, object and material have the wanted name at this line? */
+/* Which of group, object and material have a wanted name at this line? A group may have several, and
+ * any name may have spaces. */
 enum { GROUP, OBJECT, MATERIAL, KEYWORDS };
 
 static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *values,
@@ -128,8 +129,18 @@ static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *
         if (!starg_word_is(keyword, keywords[k]))
             continue;
         held[k] = false;
-        while (starg_scan_word_here(scan, &name))
-            held[k] = starg_values_know(values, name.text, name.length) || held[k];
+        const char *begin = NULL, *end = NULL;
+        while (starg_scan_word_here(scan, &name)) {
+            begin = begin != NULL ? begin : name.text;
+            end = name.text + name.length;
+            held[k] = starg_values_want(values, name.text, name.length) || held[k];
+            if (k == GROUP)
+                starg_values_note(values, name.text, name.length);
+        }
+        if (begin != NULL && k != GROUP)
+            starg_values_note(values, begin, (size_t)(end - begin));
+        if (begin != NULL)
+            held[k] = starg_values_want(values, begin, (size_t)(end - begin)) || held[k];
     }
     values->current = held[GROUP] || held[OBJECT] || held[MATERIAL];
 }
