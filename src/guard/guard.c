@@ -159,6 +159,8 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
         {"a larger range", range < diagonal},
         {"a wider view", sensor_is_directed(&o->visibility)},
         {"a larger incidence", o->visibility.incidence > 0 && o->visibility.incidence < 90},
+        {"faces that are seen from either side (two-sided)",
+         problem->solid->other_side != NULL && !solid_is_two_sided(problem->solid)},
         {"other faces to see", problem->weights.faces < starg_space_model_faces(problem->solid)},
         {"wider limits of where guards may stand (box, distances, faces)",
          problem->solid->scene && is_limited(&problem->solid->space)},

@@ -240,10 +240,13 @@ class Scenes(Case):
     def test_two_sided(self):
         """A sheet is seen from either side only where that is asked for."""
         self.write("wall.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 4 0\n0 4 0\n3 0 1 2\n3 0 2 3\n")
-        for words, unseen in ([], [0, 1]), (["--two-sided"], []):
-            result = self.guards("wall.off", "--soup", "--within", "0,0,-3,4,4,-1", *words)
-            self.assertEqual(result["coverage"]["uncovered_faces"], unseen)
-            self.verified("wall.off")
+        behind = ["wall.off", "--soup", "--within", "0,0,-3,4,4,-1"]
+        _, errors = self.run_bytes("guard", *behind, "-o", "g.json", status=2)
+        self.assertIn(b"no candidate sees any target", errors)
+        self.assertIn(b"two-sided", errors)
+        result = self.guards(*behind, "--two-sided")
+        self.assertEqual(result["coverage"]["uncovered_faces"], [])
+        self.verified("wall.off")
 
     def test_unseen(self):
         """A box in a closed box is proven unseen from outside of both, and seen from between them."""
