@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Claims about boundary and volume. If the boundary is the model's surface, it is matched with it
  * (verify/boundary.c), and the volumes agree; if it only approximates the surface, the distance is
- * measured (verify/nearness.c), and so is how much of what the model winds around is in no piece,
- * or the other way round. */
+ * measured (verify/nearness.c). Either way the pieces fill what the model encloses, as far as
+ * points show (verify/enclosed.c). */
 #include <math.h>
 
 #include "verify/context.h"
@@ -13,9 +13,7 @@ static const double TOLERANCE = 1e-9; /* relative */
  * points of its convex hull, which are hardly farther from it. */
 static const double FARTHEST = 0.5;
 
-/* Of the volume that the model encloses: how much may change, and how much of it far from the
- * surface, where thin parts are lost. */
-static const double MOST_CHANGED = 0.5, MOST_DIFFERING = 0.001;
+static const double MUCH = 4; /* times what was measured: nowhere is the boundary so far away */
 
 /* ---- the boundary ---- */
 
@@ -123,27 +121,30 @@ static void claim_volume(const verify_context *own) {
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
 }
 
-/* What is enclosed by a surface that is only approximated, at points drawn in its bounding box. If
- * the boundary is near the model's surface, then whatever is farther from that is in both or in
- * none, and the volumes are about the same. */
-static starg_status claim_enclosed(const verify_context *own) {
+/* Beyond `near` of the model's surface the two are the same. If that is more than rounding, what
+ * was measured may be less than what there is: then a hundredth of the points may be wrong. */
+static starg_status claim_enclosed(const verify_context *own, double near) {
     verify_enclosed found;
-    double limit = own->report->distance * (1 + TOLERANCE) + verify_rounding(own->model);
+    double skin = TOLERANCE * verify_diagonal(own->model) + verify_rounding(own->model);
     if (own->solid == NULL) {
         verify_leave(own->verdict, "the volume: the model is not closed");
         return STARG_OK;
     }
-    starg_status status = verify_measure_enclosed(own->pieces, own->solid, limit, &found);
+    starg_status status = verify_compare_enclosed(own->pieces, own->solid, near + skin, &found);
     if (status != STARG_OK)
         return status;
-    double all = (double)found.inside;
-    bool same = fabs((double)found.held - all) <= MOST_CHANGED * all;
-    verify_claim(
-        own->verdict, all > 0 && same && (double)found.differing <= MOST_DIFFERING * all,
-        "the pieces hold what the model encloses (of %zu points inside; %zu are in pieces, "
-        "and %zu in one of both alone although far from the surface)",
-        found.inside, found.held, found.differing);
-    verify_leave(own->verdict, "volumes closer than that: the boundary is not the model's surface");
+    size_t wrong = found.missing + found.excess, most = near > skin ? found.inside / 100 : 0;
+    if (wrong <= most)
+        verify_claim(own->verdict, true,
+                     "the pieces fill what the model encloses, once (%zu points, %zu inside)",
+                     found.points, found.inside);
+    else
+        verify_claim(own->verdict, false,
+                     "the pieces fill what the model encloses, once: of %zu points %zu inside the "
+                     "model are in no piece, %zu others are in a piece or in several, for instance "
+                     "(%g, %g, %g)",
+                     found.points, found.missing, found.excess, found.place[0], found.place[1],
+                     found.place[2]);
     return STARG_OK;
 }
 
@@ -156,7 +157,7 @@ static starg_status claim_nearness(const verify_context *own) {
         return status;
     claim_near(own, &nearness);
     claim_simple(own, &nearness);
-    return claim_enclosed(own);
+    return claim_enclosed(own, fmin(own->report->distance, MUCH * nearness.to.farthest));
 }
 
 static starg_status claim_match(const verify_context *own) {
@@ -167,7 +168,7 @@ static starg_status claim_match(const verify_context *own) {
     claim_on_model(own, &match);
     claim_covered(own, &match);
     claim_volume(own);
-    return STARG_OK;
+    return claim_enclosed(own, 0);
 }
 
 starg_status verify_claim_once(const verify_context *own) {

@@ -98,6 +98,19 @@ typedef struct verify_nearness {
 starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
                                      verify_nearness *nearness);
 
+/* Points that were drawn, off the surface. */
+typedef struct verify_enclosed {
+    size_t points, inside; /* those in the model                                  */
+    size_t missing;        /* that the model encloses and the pieces do not       */
+    size_t excess;         /* the other way round, or that pieces enclose twice   */
+    double place[3];       /* the first of either                                 */
+} verify_enclosed;
+
+/* Do the pieces fill what the model encloses, but for what is as near to its surface as said?
+ * Errors: MEMORY, CANCELLED. */
+starg_status verify_compare_enclosed(const verify_pieces *pieces, const verify_surface *model,
+                                     double near, verify_enclosed *found);
+
 /* ---- star-shapedness ---- */
 
 typedef enum verify_proof {
@@ -140,15 +153,5 @@ typedef struct verify_seen {
 /* Which vertices of its piece does each guard see past the boundary? Errors: MEMORY, CANCELLED. */
 starg_status verify_find_seen(const verify_pieces *pieces, const starg_pieces_report *report,
                               const verify_certificate *certificates, verify_seen *seen);
-
-/* Points drawn in the bounding box of `solid`: those that it winds around, those in the pieces, and
- * those that are in one of them alone, farther than a distance from the solid's surface. */
-typedef struct verify_enclosed {
-    size_t inside, held, differing;
-} verify_enclosed;
-
-/* `solid` is closed. Errors: MEMORY, CANCELLED. */
-starg_status verify_measure_enclosed(const verify_pieces *pieces, const verify_surface *solid,
-                                     double distance, verify_enclosed *found);
 
 #endif

@@ -104,9 +104,9 @@ static starg_status claim_surface(end *e) {
         goto done;
     }
     STARG_TRY(verify_surface_create(e->own.context, e->model, &surface));
-    e->own.model = surface;
+    e->own.model = e->own.solid = surface;
     STARG_TRY(verify_claim_boundary(&e->own));
-    e->own.model = NULL;
+    e->own.model = e->own.solid = NULL;
 done:
     verify_surface_free(surface);
     return status;

@@ -282,7 +282,7 @@ End
         short = self.decompose(model="boxes.off")
         short.update(model=report["model"], distance_back=2.4)
         self.write_boxes([*near, (rng, [4, 0, 0])])
-        self.refused_pieces(short, "hold what the model encloses", model="boxes.off")
+        self.refused_pieces(short, "fill what the model encloses", model="boxes.off")
 
     # ---- what is not checked, and what is genuine ----
 

@@ -210,6 +210,29 @@ class Pieces(support.Case):
         other = self.sample("torus")
         self.assertTrue(self.failed(other, "d.vtk", "d.json"))
 
+    def test_what_the_model_encloses(self):
+        """Pieces that overlap, and a small part that is missing, though all else is as it should be."""
+        def twice(scale, shift):
+            points = POINTS + [[scale * x + shift for x in p] for p in POINTS]
+            lines = [" ".join(map(str, points[i])) for i in (0, 1, 2, 3, 5, 6, 7, 8)]
+            faces = [line.split()[1:] for line in TETRAHEDRON.splitlines()[6:10]]
+            lines += [" ".join(["3", *(str(int(v) + d) for v in face)]) for d in (0, 4) for face in faces]
+            self.write("two.off", "\n".join(["OFF", "8 8 0", *lines, ""]))
+            return points
+        one, model = json.loads(report()), {"vertices": 8, "faces": 8}
+        self.write("both.vtk", vtk(twice(1, .125), CELLS + [[i + 5 for i in c] for c in CELLS], [0, 0, 1, 1, 2, 2, 3, 3]))
+        moved = [{**p, "guard": [x + .125 for x in p["guard"]]} for p in one["pieces"]]
+        (_, _, shared), = one["adjacency"]
+        self.write("both.json", report(model=model, tetrahedra=8, strictly_star=4, pieces=one["pieces"] + moved,
+                                       adjacency=[[0, 1, shared], [2, 3, shared]]))
+        failed, = self.failed("two.off", "both.vtk", "both.json")
+        self.assertRegex(failed, "fill what the model encloses, once: .* 0 inside the model are in no piece")
+        twice(.015625, -.001)  # at a corner
+        for distance in (1e-9, .5):
+            self.write("short.json", report(model=model, surface="approximated", distance=distance, distance_back=.1))
+            failed, = self.failed("two.off", "p.vtk", "short.json")
+            self.assertRegex(failed, "fill what the model encloses, once: .* 0 others are in a piece")
+
     def test_approximated(self):
         self.write("near.json", report(surface="approximated", distance=.01,
                                       distance_back=.01))
