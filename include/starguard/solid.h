@@ -19,14 +19,15 @@ typedef struct starg_solid starg_solid;
 /* Creates a solid from a copy of a mesh. Inward shells are reversed, with a notice;
  * self-intersections are accepted, with a warning. Vertices and faces keep their numbers. If the
  * mesh is closed and manifold only after merging vertices at exactly equal positions, faces use the
- * first of these, with a notice. Parts may share vertices and edges where they touch. Errors: MESH (not closed, faces at an edge or a vertex
- * that do not match, not oriented: with indices; no volume: without), RANGE (narrower than 1e-90), MEMORY. */
+ * first of these, with a notice. Parts may share vertices and edges where they touch. Errors: MESH
+ * (not closed, faces at an edge or a vertex that do not match, not oriented: with indices; no
+ * volume: without), RANGE (narrower than 1e-90), MEMORY. */
 STARG_API starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh,
                                           starg_solid **out);
 STARG_API void starg_solid_free(starg_solid *solid);
 
-/* Both owned by the solid. The check describes the mesh before shells were reversed, with vertices of
- * their own for all parts that share some. */
+/* Both owned by the solid. The check describes the mesh before shells were reversed, with vertices
+ * of their own for all parts that share some. */
 STARG_API const starg_mesh *starg_solid_mesh(const starg_solid *solid);
 STARG_API const starg_check *starg_solid_check(const starg_solid *solid);
 

@@ -357,7 +357,7 @@ class Check:
     manifold: bool
     oriented: bool
     embedded: bool
-    #: Closed, manifold, oriented and of positive volume: the boundary of a solid.
+    #: Closed, oriented, of positive volume, and manifold but where parts touch: the boundary of a solid.
     usable: bool
     #: Sum over components; -1 unless closed and manifold.
     genus: int

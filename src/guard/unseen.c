@@ -78,11 +78,11 @@ static starg_status look_from_candidates(unseen_search *s, const starg_guard_opt
                             "distances, clearance)");
     STARG_TRY(status);
     for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++) {
-        if (!solid_is_target(s->solid, false, f) || starg_bit_test(pool.coverable, f))
+        if (!solid_is_target(s->solid, false, f))
             continue;
         if (solid_hides(s->solid, f))
             STARG_PUSH(s->context, STAGE, &s->buried, f);
-        else
+        else if (!starg_bit_test(pool.coverable, f))
             STARG_PUSH(s->context, STAGE, &s->list, f);
     }
 done:
@@ -358,7 +358,6 @@ starg_status starg_unseen(starg_context *context, const starg_solid *scene,
     if (view != NULL)
         options.visibility = *view;
     options.visibility.target = STARG_TARGET_FACES;
-    options.visibility.face_rule = STARG_FACES_WHOLE;
     options.clearance = clearance;
     unseen_search s = {
         .context = context, .solid = scene, .view = options.visibility, .clearance = clearance};

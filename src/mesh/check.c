@@ -215,30 +215,13 @@ static void check_areas(checker *c) {
     }
 }
 
-/* Does an edge of face a pass through the inside of face b? */
-static bool passes_through(const checker *c, uint32_t a, uint32_t b) {
-    const double *s[3], *t[3];
-    for (size_t k = 0; k < 3; k++) {
-        s[k] = position(c, c->mesh->faces[3 * (size_t)a + k]);
-        t[k] = position(c, c->mesh->faces[3 * (size_t)b + k]);
-    }
-    for (int i = 0; i < 3; i++) {
-        const double *p = s[i], *q = s[(i + 1) % 3];
-        int turn = orient3d(p, q, t[0], t[1]);
-        if (turn != 0 && orient3d(p, q, t[1], t[2]) == turn && orient3d(p, q, t[2], t[0]) == turn &&
-            orient3d(t[0], t[1], t[2], p) * orient3d(t[0], t[1], t[2], q) < 0)
-            return true;
-    }
-    return false;
-}
-
-/* Shells touch where faces overlap in a plane, or meet in edges: they need not cross there. */
+/* Shells that only touch need not cross. */
 static void note_shells(checker *c, uint32_t a, uint32_t b, triangle_contact contact) {
     uint32_t first = c->topology->component[a], second = c->topology->component[b];
     if (contact == TRIANGLES_APART || first == second)
         return;
     c->touching[a] = c->touching[b] = 1;
-    if (contact == TRIANGLES_CROSS && (passes_through(c, a, b) || passes_through(c, b, a)))
+    if (contact == TRIANGLES_CROSS)
         c->shells[first].crossed = c->shells[second].crossed = true;
 }
 
@@ -286,6 +269,11 @@ static starg_status check_shells(checker *c) {
     check->volume = ldexp(volume, 3 * starg_mesh_exponent(c->mesh));
     check->usable = volume > 0;
     return STARG_OK;
+}
+
+bool mesh_only_touches(const starg_check *check) {
+    return check->findings[STARG_FINDING_SELF_INTERSECTION].count == 0 &&
+           check->findings[STARG_FINDING_DEGENERATE_FACE].count == 0;
 }
 
 /* Does every face have one neighbour across each edge, facing the same way, and every vertex one
@@ -346,7 +334,7 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     check_areas(&c);
     STARG_TRY(check_intersections(&c));
     summarise(&c);
-    if (is_sound(&c))
+    if (is_sound(&c) && (c.check->manifold || mesh_only_touches(c.check)))
         STARG_TRY(check_shells(&c));
     if (!c.check->oriented)
         STARG_TRY(topology_count_one_sided(c.topology, mesh, &c.check->one_sided_faces));
@@ -376,7 +364,7 @@ static starg_status check_parted(starg_context *context, const starg_mesh *mesh,
     if (parted == NULL)
         goto done;
     STARG_TRY(mesh_examine(context, parted, &all));
-    if (!all.check->usable)
+    if (!all.check->usable || !mesh_only_touches(all.check))
         goto done;
     check->usable = true;
     check->volume = all.check->volume;

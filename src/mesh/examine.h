@@ -21,6 +21,8 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
  * the first. Release with starg_release, whatever the status. Errors: MEMORY. */
 starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh, uint32_t **first,
                                   size_t *count);
+/* Does no face lack area, or intersect another? Parts may then share vertices and edges. */
+bool mesh_only_touches(const starg_check *check);
 void mesh_examination_free(starg_context *context, mesh_examination *examination);
 
 #endif

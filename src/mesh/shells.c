@@ -1,20 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which shells lie in which.
  *
- * Problem: a shell lies in another if that has a nonzero winding number about it. Shells may touch,
- * with corners, edges, or faces that overlap in a plane; one that crosses another, perhaps along
- * edges alone, lies in none.
+ * Problem: a shell lies in another if that has a nonzero winding number about it. Shells may touch
+ * in corners and edges; one that crosses another, perhaps along edges alone, lies in none.
  *
  * Method: winding numbers are counted along a vertical line, exactly, from points that are on no
  * other shell: just beside a corner, within a face (bvh_crossing_beside). No curve or corner of
- * another shell passes there, only a face that overlaps this one; then the other shell is asked
- * about elsewhere. Shells without contacts are asked at one point, others also at all corners of
- * faces in contact: there a shell that crosses another along edges has points on both sides.
+ * another shell passes there, and no face overlaps this one, or the shells cross. Shells without
+ * contacts are asked at one point, others also at all corners of faces in contact: there a shell
+ * that crosses another along edges has points on both sides.
  *
  * Cost: O(log n) a shell and a contact, if few shells lie around one. */
 #include "mesh/shells.h"
 
-#include <limits.h>
 #include <math.h>
 
 #include "core/memory.h"
@@ -23,13 +21,11 @@
 
 static const char STAGE[] = "check";
 
-enum { UNKNOWN = INT_MIN };
-
 /* What is known of another shell, about the one in question. */
 typedef struct other_shell {
-    bool listed, covers; /* covers: the point is on it */
-    int winding;         /* about the point */
-    int known;           /* about points before, or UNKNOWN */
+    bool listed;
+    int winding; /* about the point */
+    int known;   /* about points before */
 } other_shell;
 
 typedef struct nesting {
@@ -60,13 +56,11 @@ static bool count_crossing(void *user, uint32_t triangle) {
         return true;
     other_shell *other = &n->others[name];
     int crossing = bvh_crossing_beside(n->tree, triangle, n->p);
-    bool covers = crossing == 0 && bvh_covers_beside(n->tree, triangle, n->p) != 0;
-    if (!other->listed && (crossing != 0 || covers)) {
-        *other = (other_shell){.listed = true, .known = n->asked ? 0 : UNKNOWN};
+    if (!other->listed && crossing != 0) {
+        other->listed = true;
         n->list[n->count++] = name;
     }
     other->winding += crossing;
-    other->covers = other->covers || covers;
     return true;
 }
 
@@ -79,12 +73,10 @@ static void ask(nesting *n, mesh_shell *shells, size_t face, size_t k) {
     bvh_query_box(n->tree, &line, count_crossing, n);
     for (size_t i = 0; i < n->count; i++) {
         other_shell *other = &n->others[n->list[i]];
-        if (!other->covers && other->known == UNKNOWN)
-            other->known = other->winding;
-        else if (!other->covers && other->known != other->winding)
+        if (n->asked && other->known != other->winding)
             shells[n->own].crossed = shells[n->list[i]].crossed = true;
+        other->known = other->winding;
         other->winding = 0;
-        other->covers = false;
     }
     n->asked = true;
 }
@@ -104,7 +96,7 @@ static starg_status nest(starg_context *context, nesting *n, const uint32_t *fac
             ask(n, shells, faces[i], k);
     for (; n->count > 0; n->count--) {
         other_shell *other = &n->others[n->list[n->count - 1]];
-        int winding = other->known != UNKNOWN ? other->known : 0;
+        int winding = other->known;
         own->depth += winding != 0;
         own->around += winding;
         *other = (other_shell){0};

@@ -72,12 +72,13 @@ done:
     return status;
 }
 
-/* Takes *other and its examination if it bounds a solid; *other is then what it replaces. */
+/* Takes *other and its examination if it bounds a solid, which may have to be one that only touches
+ * itself; *other is then what it replaces. */
 static starg_status take_if_usable(starg_context *context, starg_solid *solid, starg_mesh **other,
-                                   mesh_examination *all) {
+                                   bool touching, mesh_examination *all) {
     mesh_examination own = {0};
     starg_status status = mesh_examine(context, *other, &own);
-    if (status == STARG_OK && own.check->usable) {
+    if (status == STARG_OK && own.check->usable && (!touching || mesh_only_touches(own.check))) {
         mesh_examination former = *all;
         *all = own;
         own = former;
@@ -104,7 +105,8 @@ static starg_status mend_vertices(starg_context *context, starg_solid *solid,
     size_t copies = parted != NULL ? parted->vertex_count - (*shared)->vertex_count : 0;
     if (parted == NULL && welded == NULL)
         goto done;
-    STARG_TRY(take_if_usable(context, solid, parted != NULL ? &parted : &welded, all));
+    STARG_TRY(
+        take_if_usable(context, solid, parted != NULL ? &parted : &welded, parted != NULL, all));
     if (!all->check->usable)
         goto done;
     if (copies > 0) { /* the mesh as given is in `parted` now */
@@ -218,10 +220,11 @@ starg_status solid_must_not_share(starg_context *context, const starg_solid *sol
                                   const char *stage) {
     if (solid->shared == NULL)
         return STARG_OK;
-    return starg_fail(context, STARG_ERROR_MESH, stage,
-                      "parts of the surface share %zu vertices where they touch; give each part its "
-                      "own by 'starguard repair'",
-                      solid->mesh->vertex_count - solid->shared->vertex_count);
+    return starg_fail(
+        context, STARG_ERROR_MESH, stage,
+        "parts of the surface share %zu vertices where they touch; give each part its "
+        "own by 'starguard repair'",
+        solid->mesh->vertex_count - solid->shared->vertex_count);
 }
 
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,

@@ -97,7 +97,7 @@ starg_status solid_of_level(starg_context *context, const starg_solid *fine,
 
 /* Errors: MESH (parts of the surface share vertices, which maps of vertices do not allow). */
 starg_status solid_must_not_share(starg_context *context, const starg_solid *solid,
-                                  const char *stage);
+                                  const char *stage) STARG_PRIVATE(solid_must_not_share);
 
 /* Rebuilds a solid that another process examined: its mesh after examination, and the needed part
  * of the check. Copies everything. Errors: those of starg_mesh_create. */

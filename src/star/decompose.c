@@ -266,8 +266,8 @@ done:
     return status;
 }
 
-/* What is known without a search: each part of the solid needs a piece, and two if its kernel has no
- * interior. */
+/* What is known without a search: each part of the solid needs a piece, and two if its kernel has
+ * no interior. */
 static starg_status bound_by_parts(starg_context *context, const starg_solid *solid,
                                    starg_decomposition *d) {
     starg_status status = STARG_OK;
@@ -306,8 +306,7 @@ static starg_status decompose_union(starg_context *context, const starg_solid *s
                                     starg_decomposition **out) {
     starg_status status = STARG_OK;
     starg_solid *united = NULL;
-    double rounding;
-    STARG_TRY(united_make(context, solid, &united, &rounding));
+    STARG_TRY(united_make(context, solid, &united));
     if (united == NULL)
         goto done;
     STARG_TRY(decompose_surface(context, united, options, out));
@@ -315,7 +314,7 @@ static starg_status decompose_union(starg_context *context, const starg_solid *s
         goto done;
     (*out)->lower_bound = 0; /* it is that of the union */
     (*out)->optimal = false;
-    STARG_TRY(united_report(context, solid, united, rounding, *out));
+    STARG_TRY(united_report(context, solid, united, *out));
 done:
     starg_solid_free(united);
     return status;

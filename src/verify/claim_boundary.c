@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Claims about boundary and volume. If the boundary is the model's surface, it is matched with it
  * (verify/boundary.c), and the volumes agree; if it only approximates the surface, the distance is
- * measured (verify/nearness.c) and volumes are not compared. */
+ * measured (verify/nearness.c), and so is how much of what the model winds around is in no piece,
+ * or the other way round. */
 #include <math.h>
 
 #include "verify/context.h"
@@ -11,6 +12,10 @@ static const double TOLERANCE = 1e-9; /* relative */
 /* Relative to the diagonal: larger distances do not count as near. A surface winds only around
  * points of its convex hull, which are hardly farther from it. */
 static const double FARTHEST = 0.5;
+
+/* Of the volume that the model encloses: how much may change, and how much of it far from the
+ * surface, where thin parts are lost. */
+static const double MOST_CHANGED = 0.5, MOST_DIFFERING = 0.001;
 
 /* ---- the boundary ---- */
 
@@ -33,12 +38,12 @@ static void claim_covered(const verify_context *own, const verify_match *match) 
     int scale = own->pieces->scale;
     if (match->uneven == 0)
         verify_claim(own->verdict, true,
-                     "the boundary covers each of the model's %zu shells once (area %.17g)",
+                     "the boundary covers each of the model's %zu shells once (area %.9g)",
                      match->shells, ldexp(match->area, -2 * scale));
     else
         verify_claim(own->verdict, false,
                      "the boundary covers each of the model's %zu shells once: not so for %zu, "
-                     "first that of face %zu, of area %.17g, covered %.17g",
+                     "first that of face %zu, of area %.9g, covered %.9g",
                      match->shells, match->uneven, match->shell,
                      ldexp(match->shell_area, -2 * scale), ldexp(match->shell_covered, -2 * scale));
 }
@@ -51,25 +56,24 @@ static void claim_near(const verify_context *own, const verify_nearness *nearnes
     bool told = report->distance_back != INFINITY;
     if (nearness->to.farthest <= limit * (1 + TOLERANCE) + rounding)
         verify_claim(own->verdict, true,
-                     "the boundary is at most %.17g from the model's surface (%.17g at %zu points)",
+                     "the boundary is at most %.9g from the model's surface (%.9g at %zu points)",
                      limit, nearness->to.farthest, nearness->to.points);
     else
         verify_claim(own->verdict, false,
-                     "the boundary is at most %.17g from the model's surface: %s is %.17g away",
+                     "the boundary is at most %.9g from the model's surface: %s is %.9g away",
                      limit, verify_outer_words(own, nearness->to.face).text, nearness->to.farthest);
     verify_claim(own->verdict,
                  !(limit > most) && nearness->from.farthest <= most &&
                      !(told && report->distance_back > most),
-                 "boundary and model are the same but for a part of the diagonal: %.17g and %.17g "
-                 "are at most %.17g, half of it",
+                 "boundary and model are the same but for a part of the diagonal: %.9g and %.9g "
+                 "are at most %.9g, half of it",
                  limit, told ? report->distance_back : nearness->from.farthest, most);
     verify_leave(own->verdict, "points of either surface between those that were measured");
-    verify_leave(own->verdict, "the volume: the boundary is not the model's surface");
     if (!told)
         return;
     limit = report->distance_back;
     verify_claim(own->verdict, nearness->from.farthest <= limit * (1 + TOLERANCE) + rounding,
-                 "the model's surface is at most %.17g from the boundary (%.17g at %zu points, in "
+                 "the model's surface is at most %.9g from the boundary (%.9g at %zu points, in "
                  "face %zu)",
                  limit, nearness->from.farthest, nearness->from.points, nearness->from.face);
 }
@@ -115,8 +119,32 @@ static void claim_volume(const verify_context *own) {
     double expected = verify_volume_value(&solid);
     double slack = solid.slack + area * ldexp(verify_rounding(model), scale);
     verify_claim(own->verdict, verify_same_volume(&tetrahedra, expected, slack),
-                 "the tetrahedra have the volume of the model (%.17g and %.17g)",
+                 "the tetrahedra have the volume of the model (%.9g and %.9g)",
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
+}
+
+/* What is enclosed by a surface that is only approximated, at points drawn in its bounding box. If
+ * the boundary is near the model's surface, then whatever is farther from that is in both or in
+ * none, and the volumes are about the same. */
+static starg_status claim_enclosed(const verify_context *own) {
+    verify_enclosed found;
+    double limit = own->report->distance * (1 + TOLERANCE) + verify_rounding(own->model);
+    if (own->solid == NULL) {
+        verify_leave(own->verdict, "the volume: the model is not closed");
+        return STARG_OK;
+    }
+    starg_status status = verify_measure_enclosed(own->pieces, own->solid, limit, &found);
+    if (status != STARG_OK)
+        return status;
+    double all = (double)found.inside;
+    bool same = fabs((double)found.held - all) <= MOST_CHANGED * all;
+    verify_claim(
+        own->verdict, all > 0 && same && (double)found.differing <= MOST_DIFFERING * all,
+        "the pieces hold what the model encloses (of %zu points inside; %zu are in pieces, "
+        "and %zu in one of both alone although far from the surface)",
+        found.inside, found.held, found.differing);
+    verify_leave(own->verdict, "volumes closer than that: the boundary is not the model's surface");
+    return STARG_OK;
 }
 
 /* ---- public function ---- */
@@ -128,7 +156,7 @@ static starg_status claim_nearness(const verify_context *own) {
         return status;
     claim_near(own, &nearness);
     claim_simple(own, &nearness);
-    return STARG_OK;
+    return claim_enclosed(own);
 }
 
 static starg_status claim_match(const verify_context *own) {

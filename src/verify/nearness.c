@@ -22,6 +22,7 @@
 static const char STAGE[] = "verify";
 
 enum { MOST_FACES = 20000, POINTS = 5, RNG_STAGE = 0x6e656172, CANCEL_STEP = 256 };
+enum { MOST_INSIDE = 4096, MOST_DRAWN = 1 << 16, RNG_INSIDE = 0x656e636c };
 
 /* ---- distance ---- */
 
@@ -171,5 +172,42 @@ starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_s
 done:
     verify_tree_free(tree);
     verify_tree_free(model_tree);
+    return status;
+}
+
+/* ---- what is enclosed ---- */
+
+/* Is the point inside of the tree's surface? On it counts as neither. */
+static int is_inside(const verify_tree *tree, const double p[3]) {
+    bool on_surface;
+    int winding = verify_tree_winding(tree, p, &on_surface);
+    return on_surface ? -1 : winding > 0;
+}
+
+starg_status verify_measure_enclosed(const verify_pieces *pieces, const verify_surface *solid,
+                                     double distance, verify_enclosed *found) {
+    starg_status status = STARG_OK;
+    verify_tree *outer = NULL, *tree = NULL;
+    starg_rng rng = starg_rng_make(0, RNG_INSIDE, 0);
+    *found = (verify_enclosed){0};
+    STARG_TRY(verify_tree_create(pieces->outer, &outer));
+    STARG_TRY(verify_tree_create(solid, &tree));
+    for (int i = 0; i < MOST_DRAWN && found->inside < MOST_INSIDE; i++) {
+        double p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = solid->lower[k] + starg_rng_unit(&rng) * (solid->upper[k] - solid->lower[k]);
+        int in_solid = is_inside(tree, p), in_pieces = is_inside(outer, p);
+        if (i % CANCEL_STEP == 0)
+            STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+        if (in_solid < 0 || in_pieces < 0)
+            continue;
+        found->inside += in_solid == 1;
+        found->held += in_pieces == 1;
+        found->differing +=
+            in_solid != in_pieces && verify_tree_distance(tree, p, pieces->scale) > distance;
+    }
+done:
+    verify_tree_free(outer);
+    verify_tree_free(tree);
     return status;
 }

@@ -141,4 +141,14 @@ typedef struct verify_seen {
 starg_status verify_find_seen(const verify_pieces *pieces, const starg_pieces_report *report,
                               const verify_certificate *certificates, verify_seen *seen);
 
+/* Points drawn in the bounding box of `solid`: those that it winds around, those in the pieces, and
+ * those that are in one of them alone, farther than a distance from the solid's surface. */
+typedef struct verify_enclosed {
+    size_t inside, held, differing;
+} verify_enclosed;
+
+/* `solid` is closed. Errors: MEMORY, CANCELLED. */
+starg_status verify_measure_enclosed(const verify_pieces *pieces, const verify_surface *solid,
+                                     double distance, verify_enclosed *found);
+
 #endif

@@ -251,19 +251,6 @@ static void face_bounds(const verify_surface *surface, uint32_t face, shell *bou
     widen(bounds, t[2]);
 }
 
-/* Does an edge of s pass through the inside of t? */
-static bool passes_through(const double *const s[3], const double *const t[3]) {
-    for (int i = 0; i < 3; i++) {
-        const double *p = s[i], *q = s[(i + 1) % 3];
-        int turn = verify_side(p, q, t[0], t[1]);
-        if (turn != 0 && verify_side(p, q, t[1], t[2]) == turn &&
-            verify_side(p, q, t[2], t[0]) == turn &&
-            verify_side(t[0], t[1], t[2], p) * verify_side(t[0], t[1], t[2], q) < 0)
-            return true;
-    }
-    return false;
-}
-
 /* Is a corner of a face elsewhere than the shell, beside or in the other? */
 static bool strays(const verify_surface *surface, const double *const t[3], const shell *other,
                    bool in) {
@@ -276,7 +263,6 @@ static bool strays(const verify_surface *surface, const double *const t[3], cons
     return false;
 }
 
-/* Faces that overlap in a plane touch. */
 static bool shells_cross(const verify_surface *surface, const shell *own, const shell *other,
                          bool in) {
     if (!bounds_meet(own, other))
@@ -293,7 +279,7 @@ static bool shells_cross(const verify_surface *surface, const shell *own, const 
                 continue;
             near = true;
             verify_corners(surface, other->faces[j], t);
-            if (passes_through(s, t) || passes_through(t, s))
+            if (verify_cross(s, t))
                 return true;
         }
         if (near && strays(surface, s, other, in))

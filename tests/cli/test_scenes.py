@@ -268,6 +268,21 @@ class Scenes(Case):
         self.assertEqual(found["undecided"], [])  # where the figure stands in its plinth
         self.assertGreater(len(found["unseen"]), 20)
 
+    def test_covered_faces(self):
+        """The wall between two boxes is unseen, though its corners are seen; a cavity is not outside."""
+        self.write("pair.off", off(box((0, 0, 0), (2, 10, 10)), box((2, 0, 0), (4, 10, 10))))
+        found = self.run_json("visible", "pair.off", "--outside", "--unseen")
+        lines = self.read("pair.off").splitlines()
+        across = [float(line.split()[0]) for line in lines[2:18]]
+        wall = [f for f, line in enumerate(lines[18:]) if {across[int(v)] for v in line.split()[1:]} == {2}]
+        self.assertEqual((found["unseen"], found["undecided"], len(wall)), (wall, [], 4))
+        self.write("hollow.off", off(box((0, 0, 0), (4, 4, 4)), box((1, 1, 1), (3, 3, 3))))
+        found = self.run_json("visible", "hollow.off", "--outside", "--unseen")
+        self.assertEqual((found["unseen"], found["undecided"]), (list(range(12, 24)), []))
+        result = self.guards("hollow.off", "--outside", "--standoff", "0.1,3")
+        self.assertEqual(result["coverage"]["uncovered_faces"], list(range(12, 24)))
+        self.verified("hollow.off")
+
     def test_export(self):
         """Cameras with the right field of view; results of scenes can be shown."""
         self.guards("room.off", "--obstacles", "crate.off", "--fov", "90,60")

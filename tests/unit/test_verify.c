@@ -198,7 +198,7 @@ static model make_model(int which) {
     case 9:
         return two_cubes("cubes that cross, one inside out", 2.25, 1, 1, 0);
     case 10: /* half of the inner one's faces are in the wall */
-        return two_cubes("cavity flush with three walls", 2, 0, 0, 1);
+        return two_cubes("cubes that overlap in their faces", 2, 0, 1, 0);
     default:
         m = same("tiny room", shape_room());
         shape_place(&m.given, TINY, 0);
