@@ -12,6 +12,7 @@
 #include "scene.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
+#include "starguard/skeleton.h"
 #include "suggest.h"
 
 static const struct {
@@ -24,7 +25,7 @@ static const struct {
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
 
 typedef struct values {
-    const char *output, *marks, *picture, *certificate, *candidates, *poses_file;
+    const char *output, *marks, *picture, *certificate, *candidates, *poses_file, *leak;
     starg_guard_options wanted;
     cli_scene scene;
     starg_poses poses; /* --candidates FILE */
@@ -50,6 +51,9 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION("poses", poses_file, "FILE.csv|.json",
                     "Poses for other programs: positions, and with --cone or --fov rotations "
                     "(quaternions) and points to look at."),
+    CLI_TEXT_OPTION("leak", leak, "FILE.obj|.vtk",
+                    "--soup --from: the way by which the space that is reached leaks to the "
+                    "outside, or through a gap hardly wider than a cube, as a line."),
     CLI_SCENE_OPTIONS,
     CLI_PLACE_OPTIONS,
 };
@@ -252,6 +256,50 @@ static starg_status announce_poses(cli_session *session, const char *name) {
     return cli_announce(session, name);
 }
 
+static starg_status check_leak(cli_session *session, const values *v) {
+    if (v->leak == NULL)
+        return STARG_OK;
+    if (!v->scene.soup || v->scene.from.count == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--leak is about what is reached in a soup: add --soup --from X,Y,Z");
+    if (!cli_has_extension(v->leak, ".obj") && !cli_has_extension(v->leak, ".vtk"))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--leak needs a name that ends in .obj or .vtk, not '%.200s'", v->leak);
+    return STARG_OK;
+}
+
+/* Without a leak, no file. */
+static starg_status write_leak(cli_session *session, const char *name) {
+    starg_status status = STARG_OK;
+    starg_skeleton way = {0};
+    const double *points = starg_space_leak(session->solid, &way.node_count);
+    if (name == NULL)
+        return STARG_OK;
+    if (points == NULL) {
+        cli_say(session, "leak          none; '%s' is not written\n", name);
+        return STARG_OK;
+    }
+    CLI_TRY(cli_announce(session, name));
+    way.edge_count = way.node_count - 1;
+    way.positions = malloc(3 * way.node_count * sizeof *way.positions);
+    way.edges = malloc(2 * way.node_count * sizeof *way.edges);
+    if (way.positions == NULL || way.edges == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    memcpy(way.positions, points, 3 * way.node_count * sizeof *points);
+    for (uint32_t i = 0; i < 2 * way.edge_count; i++)
+        way.edges[i] = (i + 1) / 2;
+    status = starg_skeleton_write(session->context, &way,
+                                  cli_outputs_place(&session->outputs, name),
+                                  cli_has_extension(name, ".obj") ? STARG_SKELETON_OBJ
+                                                                  : STARG_SKELETON_VTK);
+done:
+    free(way.positions);
+    free(way.edges);
+    return status;
+}
+
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
@@ -263,6 +311,7 @@ static starg_status prepare(cli_session *session, void *data) {
     CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     CLI_TRY(announce_poses(session, v->poses_file));
+    CLI_TRY(check_leak(session, v));
     v->scene.clearance = v->wanted.clearance;
     memcpy(v->scene.up, v->wanted.visibility.up, sizeof v->scene.up);
     CLI_TRY(cli_scene_prepare(session, &v->scene));
@@ -279,6 +328,7 @@ static starg_status run(cli_session *session, void *data) {
     char *why = NULL;
     size_t size = 0;
     CLI_TRY(cli_scene_make(session, &v->scene));
+    CLI_TRY(write_leak(session, v->leak));
     if (v->certificate != NULL)
         CLI_TRY(starg_guard_certified(session->context, session->solid, &v->wanted, &guards, &why,
                                       &size));

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Checks format, layers, and that public headers compile alone.
+# Checks format, layers, names of files in comments and pages, and that public headers compile alone.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -9,6 +9,7 @@ sources=$( (find include src cli tools tests bench examples web -name '*.[ch]'; 
 clang-format --dry-run -Werror $sources
 
 scripts/check-layers.sh
+python3 scripts/dead-names.py
 
 # The licence line of each source.
 unmarked=$(git ls-files '*.c' '*.h' '*.cpp' '*.py' '*.sh' '*.js' '*.mjs' '*.cmake' '*CMakeLists.txt' |

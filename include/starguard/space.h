@@ -93,6 +93,11 @@ STARG_API size_t starg_space_model_faces(const starg_solid *scene);
 /* Whether a guard may stand at p: starg_solid_contains, and within the distances and the box. */
 STARG_API bool starg_space_admits(const starg_solid *scene, const double p[3]);
 
+/* A way from `from` of a soup out of the model's box, or through a gap hardly wider than a cube:
+ * `count` points, three numbers each, which the scene keeps; NULL: no leak was found. A warning
+ * tells of it, too. */
+STARG_API const double *starg_space_leak(const starg_solid *scene, size_t *count);
+
 #ifdef __cplusplus
 }
 #endif

@@ -63,6 +63,18 @@ class Data:
     def __repr__(self) -> str:
         return f"<C {self._type.name} at {self._address:#x}>"
 
+    # Results of the library do not change, so copies share them. An address means nothing elsewhere.
+
+    def __copy__(self) -> Data:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Data:
+        return self
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError("this object belongs to the library and cannot be pickled; write it to a file (write) and "
+                        "read it again, or pickle what it was made of, such as its mesh")
+
     def __bool__(self) -> bool:
         return self._address != 0
 

@@ -2,17 +2,25 @@
 """C options: words for enum values, and fields given by the caller."""
 from __future__ import annotations
 
+import difflib
 import warnings
-from typing import Any, Mapping
+from typing import Any, Iterable, Mapping
 
 from .errors import ArgumentError
+
+
+def near(word: str, words: Iterable[str]) -> str:
+    """"; did you mean ...?" for the most similar word, or nothing."""
+    found = difflib.get_close_matches(word, list(words), 1)
+    return f"; did you mean {found[0]!r}?" if found else ""
 
 
 def choose(name: str, word: str, words: Mapping[str, int]) -> int:
     """The value of a word."""
     value = words.get(word) if isinstance(word, str) else None
     if value is None:
-        raise ArgumentError(f"{name} is {word!r}; it must be one of {', '.join(words)}")
+        raise ArgumentError(f"{name} is {word!r}; it must be one of {', '.join(words)}"
+                            + (near(word, words) if isinstance(word, str) else ""))
     return value
 
 

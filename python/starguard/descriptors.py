@@ -149,9 +149,9 @@ def describe(model: Any, *, threads: int | None = None, seed: int | None = None,
     >>> d.distances.shape, d.guards["position"].shape
     ((1, 256), (1, 3))
     """
+    wanted = _OPTIONS.make(options)
     mesh = as_mesh(model)
     session = Session(threads, seed)
-    wanted = _OPTIONS.make(options)
     return Descriptor._of(session.make(
         "starg_descriptor", lib.starg_descriptor_free, lib.starg_descriptor_create, session.context,
         mesh._handle, wanted.pointer, shared=True, progress=progress, time_limit=time_limit), mesh.file)
@@ -220,11 +220,12 @@ def signature(model: Any, kind: str = "star", *, threads: int | None = None,
     >>> starguard.signature(starguard.sample("star", vertices=500), "shape-dna").numbers.shape
     (50,)
     """
+    number = choose("kind", kind, KINDS)
     mesh = as_mesh(model)
     session = Session(threads, seed)
     return Signature._of(session.make(
         "starg_signature", lib.starg_signature_free, lib.starg_signature_create, session.context,
-        mesh._handle, choose("kind", kind, KINDS), shared=True, progress=progress,
+        mesh._handle, number, shared=True, progress=progress,
         time_limit=time_limit))
 
 

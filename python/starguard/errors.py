@@ -2,6 +2,8 @@
 """Exceptions, one per status of the library."""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ._library import ffi, lib, text
@@ -91,6 +93,34 @@ _CLASSES: dict[int, type[Error]] = {
 }
 
 
+#: What messages call by its command, and how it is called here.
+_CALLS = {"check": "Mesh.check()", "repair": "Mesh.repair()", "guard": "guard()", "visible": "visible()",
+          "map": "map_surface()", "verify": "verify()", "sample": "sample()", "decompose": "decompose()",
+          "db list": "Database.models()", "db create": "Database.create()"}
+_FLAGS = "soup outside two-sided prove overlay fill union no-refine"
+
+
+def _in_python(message: str) -> str:
+    """Commands and options of the command line as calls and keyword arguments."""
+    def call(match: re.Match[str]) -> str:
+        name = match[1] if match[1] in _CALLS else match[1].split()[0]
+        rest = match[1][len(name):].replace(" ", "")
+        made = _CALLS.get(name, name + "()")
+        return f"`{made[:-1]}{keyword(rest)})`" if rest else f"`{made}`"
+
+    def keyword(option: str) -> str:
+        found = re.match(r"--([a-z][a-z-]*)(.*)", option)
+        if found is None:
+            return option
+        name, value = found[1], "=True" if found[1] in _FLAGS.split() else "=..." if found[2] else ""
+        if name.startswith("no-"):
+            name, value = name[3:], "=False"
+        return name.replace("-", "_") + value
+
+    message = re.sub(r"'starguard ([^']*)'", call, message)
+    return re.sub(r"(?<![\w'])--[a-z][a-z-]*\b", lambda match: keyword(match[0]), message)
+
+
 def of_status(status: int, context: object) -> Error:
     """The exception for a failed call on a context (NULL: creation failed)."""
     kind = _CLASSES.get(status, Error)
@@ -100,5 +130,5 @@ def of_status(status: int, context: object) -> Error:
         return kind(phrase)
     element = _ELEMENTS[detail.element]
     indices = np.array(ffi.unpack(detail.indices, detail.index_count), np.uint64).astype(np.int64)
-    return kind(text(detail.message) or phrase, text(detail.stage), element,
+    return kind(_in_python(text(detail.message)) or phrase, text(detail.stage), element,
                 indices.reshape(-1, 2) if element == "edge" else indices)

@@ -197,11 +197,11 @@ class Morph:
     def __init__(self, a: Any, target: Any, *, threads: int | None = None, seed: int | None = None,
                  time_limit: float | None = None, progress: Progress | None = None,
                  **options: Unpack[MorphOptions]) -> None:
+        wanted = _OPTIONS.make(options)
         self.mesh: Mesh = as_mesh(a)  #: A
         images = self._images(target, threads=threads, seed=seed, progress=progress)
         self._session = Session(threads, seed)
         self._lock = threading.Lock()
-        wanted = _OPTIONS.make(options)
         self._handle = self._session.make(
             "starg_morph", lib.starg_morph_free, lib.starg_morph_create, self._session.context,
             self.mesh._handle, _arrays.pointer("double[]", images), wanted.pointer, progress=progress,

@@ -259,9 +259,9 @@ def decompose(model: Any, *, guards: ArrayLike | None = None,
     >>> pieces, pieces.guards.shape, bool(pieces.pieces["star"].all())
     (Decomposition(1 pieces, 1 proven star-shaped), (1, 3), True)
     """
+    wanted = OPTIONS.make(options)
     shape = as_shape(model)
     session = Session(threads, seed)
-    wanted = OPTIONS.make(options)
     if guards is not None:
         places = _arrays.points(guards, "guards")
         points = _arrays.pointer("double[]", places)

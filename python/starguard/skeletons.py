@@ -108,9 +108,9 @@ def skeleton(model: Any, *, threads: int | None = None, seed: int | None = None,
     >>> s.loops, s.ends, s.homotopic
     (1, 0, True)
     """
+    wanted = _OPTIONS.make(options)
     solid = as_solid(model)
     session = Session(threads, seed)
-    wanted = _OPTIONS.make(options)
     return Skeleton._of(session.make(
         "starg_skeleton", lib.starg_skeleton_free, lib.starg_skeleton_create, session.context,
         solid._handle, wanted.pointer, shared=True, progress=progress, time_limit=time_limit))

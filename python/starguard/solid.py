@@ -42,6 +42,12 @@ class Solid:
         self.mesh: Mesh = Mesh._of(inner, given.file, owner=self._handle)
         self.mesh._solid = weakref.ref(self)  # a Mesh caches its solid
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Solid, (self.mesh,)
+
+    def __deepcopy__(self, memo: Any) -> Solid:
+        return self  # it does not change
+
     def __repr__(self) -> str:
         return f"Solid({len(self.mesh.vertices)} vertices, {len(self.mesh.faces)} faces)"
 
@@ -144,8 +150,22 @@ class Scene(Solid):
             raise ArgumentError(f"weights must have the shape ({faces},), not {numbers.shape}")
         session.call(lib.starg_space_weigh, self._handle, _arrays.pointer("double[]", numbers))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a scene cannot be pickled; pickle its model and obstacles, and make the scene of them again")
+
+    def __copy__(self) -> Scene:
+        return self
+
     def __repr__(self) -> str:
         return f"Scene({len(self.model.faces)} faces, {len(self.obstacles)} obstacles)"
+
+    @property
+    def leak(self) -> Array:
+        """A way from `start` of a soup to the outside of the model, or through a gap hardly wider
+        than a cube; a warning tells of it, too. Shape (n, 3), with n = 0 if no leak was found."""
+        count = ffi.new("size_t *")
+        points = lib.starg_space_leak(self._handle, count)
+        return _arrays.view(self._handle, points, (count[0], 3), np.float64) if points else np.empty((0, 3))
 
     def admits(self, points: ArrayLike) -> Array:
         """Whether a guard may stand at each point. Shape (n,), bool."""

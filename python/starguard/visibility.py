@@ -113,10 +113,10 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
     >>> seen.shape, bool(seen[1].any())
     ((2, 1008), False)
     """
-    solid = as_solid(model)
-    rows = _arrays.points(points, "points")
-    session = Session(threads)
     wanted = _OPTIONS.make(options)
+    rows = _arrays.points(points, "points")
+    solid = as_solid(model)
+    session = Session(threads)
     if directions is not None:
         looks = _arrays.points(directions, "directions")
         if len(looks) != len(rows):
@@ -145,10 +145,10 @@ def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
     >>> bool((point[0] <= box[0]).all())
     True
     """
-    solid = as_solid(model)
-    rows = _arrays.points(boxes, "boxes", 6)
-    session = Session(threads)
     wanted = _OPTIONS.make({"target": target, "range": range})
+    rows = _arrays.points(boxes, "boxes", 6)
+    solid = as_solid(model)
+    session = Session(threads)
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility_region,
                              session.context, solid._handle, _arrays.pointer("double[]", rows),
                              len(rows), wanted.pointer, progress=progress, time_limit=time_limit))

@@ -25,19 +25,11 @@ static const double MOST_CELLS = 0x1p30;
 
 enum { FACES_PER_CLOCK = 1024, MOST_ASKED = 4096 };
 
-struct flood_cells {
-    starg_context *context;
-    double origin[3], size;
-    size_t count[3], reached;
-    uint64_t *taken, *bits; /* met by a face; reached */
-};
-
 static size_t cell_at(const flood_cells *f, const size_t at[3]) {
     return at[0] + f->count[0] * (at[1] + f->count[1] * at[2]);
 }
 
-/* False where p is out of the grid. */
-static bool locate(const flood_cells *f, const double p[3], size_t at[3]) {
+bool flood_locate(const flood_cells *f, const double p[3], size_t at[3]) {
     for (int k = 0; k < 3; k++) {
         double x = floor((p[k] - f->origin[k]) / f->size);
         if (!(x >= 0 && x < (double)f->count[k]))
@@ -178,7 +170,7 @@ static starg_status spread(flood_cells *f, const starg_solid *scene, const doubl
     cell_stack stack = {0};
     size_t at[3];
     const size_t step[3] = {1, f->count[0], f->count[0] * f->count[1]};
-    if (!locate(f, from, at))
+    if (!flood_locate(f, from, at))
         return fail_beyond(f, scene, from);
     if (starg_bit_test(f->taken, cell_at(f, at)))
         return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
@@ -233,7 +225,7 @@ void flood_free(flood_cells *f) {
 
 bool flood_reaches(const flood_cells *f, const double p[3]) {
     size_t at[3];
-    return locate(f, p, at) && starg_bit_test(f->bits, cell_at(f, at));
+    return flood_locate(f, p, at) && starg_bit_test(f->bits, cell_at(f, at));
 }
 
 bool flood_meets(const flood_cells *f, const bvh_box *box) {

@@ -5,7 +5,15 @@
 
 #include "mesh/solid.h"
 
-typedef struct flood_cells flood_cells;
+typedef struct flood_cells {
+    starg_context *context;
+    double origin[3], size;
+    size_t count[3], reached;
+    uint64_t *taken, *bits; /* met by a face; reached */
+} flood_cells;
+
+/* The cube of p; false where p is out of the grid. */
+bool flood_locate(const flood_cells *cells, const double p[3], size_t at[3]);
 
 /* The cubes of `size` in the reach of a scene (solid_reach) that are connected to that of `from`
  * over sides, through cubes that no face meets. Errors: ARGUMENT (`from` is out of reach or in a

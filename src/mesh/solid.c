@@ -278,6 +278,7 @@ void starg_solid_free(starg_solid *solid) {
     starg_release(context, solid->other_side);
     starg_release(context, solid->once_twin);
     flood_free(solid->reached);
+    starg_release(context, solid->leak);
     near_faces_free(context, &solid->over);
     near_faces_free(context, &solid->mount);
     starg_release(context, solid->importance);

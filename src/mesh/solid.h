@@ -33,6 +33,8 @@ struct starg_solid {
                                of them; NULL: there are no backs */
     uint32_t *once_twin;
     struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
+    double *leak;                /* a way out of there, leak_points x 3; NULL: none is known */
+    size_t leak_points;
     near_faces over, mount;      /* faces that guards are bound to */
     double *importance;          /* by face; NULL: 1 each */
     uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */

@@ -21,6 +21,7 @@
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/flood.h"
+#include "mesh/leak.h"
 #include "mesh/solid.h"
 
 static const char STAGE[] = "scene";
@@ -371,6 +372,34 @@ done:
     return status;
 }
 
+/* ---- what is reached ---- */
+
+/* A solid has an inside that cannot leak; a soup's is what is reached. */
+static starg_status reach_from(starg_context *context, starg_solid *scene) {
+    starg_status status = STARG_OK;
+    const starg_space_options *o = &scene->space;
+    const double *from = o->from;
+    flood_leak leak;
+    STARG_TRY(flood_create(context, scene, from, o->cell, &scene->reached));
+    if (!o->soup)
+        return STARG_OK;
+    STARG_TRY(flood_find_leak(scene->reached, &scene->tree->nodes[0].box, from, &leak));
+    scene->leak = leak.way.data;
+    scene->leak_points = leak.way.count / 3;
+    if (scene->leak_points > 0)
+        starg_log(context, STARG_LOG_WARNING,
+                  "the space that is reached from (%g, %g, %g) leaks %s%s at (%g, %g, %g): guards "
+                  "may stand there, too; --leak FILE writes the way; close it, or choose other "
+                  "cubes (--cell) or a box (--within)",
+                  from[0], from[1], from[2], leak.outside ? "to the outside of the model" : "",
+                  !leak.gap      ? ","
+                  : leak.outside ? ", through a gap hardly wider than a cube"
+                                 : "through a gap hardly wider than a cube",
+                  leak.place[0], leak.place[1], leak.place[2]);
+done:
+    return status;
+}
+
 /* ---- the call ---- */
 
 starg_status starg_space_create(starg_context *context, const starg_mesh *model,
@@ -407,7 +436,7 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     if (scene->mesh->face_count > scene->model_faces)
         STARG_TRY(starg_space_weigh(scene, NULL));
     if (o->cell > 0)
-        STARG_TRY(flood_create(context, scene, o->from, o->cell, &scene->reached));
+        STARG_TRY(reach_from(context, scene));
     *out = scene;
     scene = NULL;
 done:
@@ -424,6 +453,11 @@ size_t starg_space_model_vertices(const starg_solid *scene) {
 
 size_t starg_space_model_faces(const starg_solid *scene) {
     return scene->scene ? scene->model_faces : scene->mesh->face_count;
+}
+
+const double *starg_space_leak(const starg_solid *scene, size_t *count) {
+    *count = scene->leak_points;
+    return scene->leak;
 }
 
 bool starg_space_admits(const starg_solid *scene, const double p[3]) {

@@ -13,7 +13,7 @@
  * no sign is asked of a point that was computed.
  *
  * Stages: orient both sides and check them; find one cell; spread across the edges of cells, which
- * says which faces come next. Points get weights in their faces by determinants (overlay_place.c
+ * says which faces come next. Points get weights in their faces by determinants (overlay_room.c
  * evens out what rounding spoils).
  * Cost: O(cells), and O(faces) for the first. */
 #include "morph/overlay.h"

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: obstacles, shells as given, outsides, soups, targets; and what is wrong with them."""
 import json
+import os
 import random
+import re
 import struct
 
 from support import OPEN, TETRAHEDRON, Case, main
@@ -358,6 +360,55 @@ class Scenes(Case):
         for name in ("ceiling", "floor", "paint0"):
             self.assertIn(name, err)
         self.assertNotIn("n.json", self.names())
+
+    def test_leak(self):
+        """Two rooms of a soup: what is reached leaks through narrow gaps and out of the box, and the way shows it."""
+        def rooms(gap, door):
+            """Of 4 by 6 by 3 each, with openings of these widths in the wall between and to the outside."""
+            corners, quads = [], []
+            def add(*quad):
+                quads.append("4 " + " ".join(str(len(corners) + i) for i in range(4)))
+                corners.extend(quad)
+            for z in (0, 3):
+                add((0, 0, z), (8, 0, z), (8, 6, z), (0, 6, z))
+            for y in (0, 6):
+                add((0, y, 0), (8, y, 0), (8, y, 3), (0, y, 3))
+            for x, width in ((0, 0), (4, gap), (8, door)):
+                for a, b in ((0, 3 - width / 2), (3 + width / 2, 6)):
+                    add((x, a, 0), (x, b, 0), (x, b, 3), (x, a, 3))
+            lines = [" ".join(map(str, c)) for c in corners] + quads
+            return f"OFF\n{len(corners)} {len(quads)} 0\n" + "\n".join(lines) + "\n"
+        cell = 0.01 * (64 + 36 + 9) ** 0.5
+        for gap, door, says in [(6, 0, None), (1, 0, None), (0, 0, None), (0, 1, None), (6, 1, "outside of the model, at"),
+                                (1, 1, "outside of the model, at"), (0.25, 0, "leaks through a gap"),
+                                (0.25, 1, "outside of the model, through a gap"),
+                                (6, 0.25, "outside of the model, through a gap")]:
+            self.write("rooms.off", rooms(gap, door))
+            words = ["rooms.off", "--soup", "--two-sided", "--from", "1.1,1,1", "--leak", "way.obj", "-o", "g.json",
+                     "--no-refine", "--count", "30"]
+            log = [line["message"] for line in self.run_json("guard", *words)["log"] if line["level"] == "warning"]
+            self.assertEqual(len(log), says is not None, log)
+            self.assertEqual("way.obj" in self.names(), says is not None)
+            if says is None:
+                continue
+            self.assertIn(says, log[0])
+            place = [float(x) for x in re.search(r" at \((.*?)\)", log[0])[1].split(",")]
+            wall, width = (4, gap) if gap < 1 else (8, door)
+            self.assertLess(abs(place[0] - wall), 2 * cell)
+            self.assertLess(abs(place[1] - 3), width / 2)
+            lines = [line.split() for line in self.read("way.obj").decode().splitlines()]
+            way = [[float(x) for x in line[1:]] for line in lines if line[0] == "v"]
+            self.assertEqual(way[0], [1.1, 1, 1])
+            self.assertEqual([line[1:] for line in lines if line[0] == "l"],
+                             [[str(i), str(i + 1)] for i in range(1, len(way))])
+            self.assertEqual(way[-1][0] > 8, "outside" in says) # past the walls by their openings only
+            for x, width in ((4, gap), (8, door)):
+                for (p, q) in zip(way, way[1:]):
+                    if (p[0] < x) != (q[0] < x):
+                        self.assertLess(abs(p[1] - 3), width / 2)
+            os.remove(os.path.join(self.folder, "way.obj"))
+        self.usage_error("guard", "room.off", "--leak", "way.obj", "-o", "n.json", says="--soup --from")
+        self.usage_error("guard", "rooms.off", "--soup", "--from", "1,1,1", "--leak", "w.txt", "-o", "n.json", says=".vtk")
 
     def test_advice(self):
         """A refused mesh is told of what helps, and of nothing else."""
