@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/check.h"
@@ -186,13 +187,16 @@ static void judge(cli_session *session, const starg_check *check) {
                                      used == 0 ? "" : ", ", starg_finding_name(serious[i]), count);
     }
     cli_warn(session, "'%s' is not a usable solid: %s; %s", name,
-             used > 0 ? list : "it encloses no volume", starg_check_advice(session->mesh, check));
+             used > 0 ? list : "it encloses no volume",
+             check->one_sided_faces > 0 && check->one_sided_faces == check->faces
+                 ? "its surfaces are one-sided, which cannot be repaired"
+                 : "try 'starguard repair'");
     session->outcome = CLI_EXIT_INPUT;
 }
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    return cli_announce(session, v->marks);
+    return cli_announce_with_extension(session, "--marks", v->marks, ".ply");
 }
 
 static starg_status run(cli_session *session, void *data) {

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "csv.h"
 #include "database.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/picture.h"
@@ -38,8 +39,8 @@ static starg_status prepare_matrix(cli_session *session, void *data) {
     if (v->output == NULL && v->picture == NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "no output; add -o FILE.csv, --picture FILE.png, or both");
-    CLI_TRY(cli_announce(session, v->output));
-    CLI_TRY(cli_announce(session, v->picture));
+    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
     return status;
 }
@@ -139,8 +140,8 @@ static const cli_option evaluate_options[] = {
 static starg_status prepare_evaluate(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    CLI_TRY(cli_announce(session, v->output));
-    CLI_TRY(cli_announce(session, v->picture));
+    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".svg"));
 done:
     return status;
 }

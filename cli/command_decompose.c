@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
@@ -343,7 +344,7 @@ static starg_status announce_files(cli_session *session, const values *v) {
     if (v->certificate != NULL && !v->wanted.prove)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate says why the bound of --prove holds; add --prove");
-    CLI_TRY(cli_announce(session, v->picture));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     CLI_TRY(cli_announce_folder(session, v->surfaces));
 done:
     return status;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/descriptor.h"
@@ -30,9 +31,9 @@ static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE.json"));
-    CLI_TRY(cli_announce(session, v->reconstruct));
-    CLI_TRY(cli_announce(session, v->picture));
-    CLI_TRY(cli_announce(session, v->histograms));
+    CLI_TRY(cli_announce_with_extension(session, "--reconstruct", v->reconstruct, ".ply"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "--histograms", v->histograms, ".svg"));
 done:
     return status;
 }

@@ -21,20 +21,24 @@ static const cli_option options[] = {
                      "current folder or to the result."),
 };
 
-static starg_scene_format format_of(const char *name) {
+static starg_status choose_format(cli_session *session, const char *name,
+                                  starg_scene_format *format) {
     static const cli_extension known[] = {{".glb", STARG_SCENE_GLB},
                                           {".vtu", STARG_SCENE_VTU},
                                           {".ply", STARG_SCENE_PLY},
                                           {".obj", STARG_SCENE_OBJ}};
-    return (starg_scene_format)cli_format_of(name, known, sizeof known / sizeof *known,
-                                             STARG_SCENE_GLB);
+    int found;
+    starg_status status = cli_format_by_extension(
+        session, name, known, sizeof known / sizeof *known, STARG_SCENE_GLB, &found);
+    *format = (starg_scene_format)found;
+    return status;
 }
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply or .obj"));
-    v->format = format_of(v->output);
+    CLI_TRY(choose_format(session, v->output, &v->format));
 done:
     return status;
 }
@@ -111,15 +115,16 @@ const cli_command cli_command_export = {
     .name = "export",
     .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj [options]",
     .summary = "export a model with guards, pieces and skeleton for other programs",
-    .description = "Writes results and their model into one file. Inputs are recognized by "
-                   "content, at most one of each kind: GUARDS.json, PIECES.vtk and PIECES.json, a "
-                   "skeleton (.obj, .cg, .vtk), a model.\n"
-                   ".glb (Blender, browsers, three.js): a named node for the model, each guard, "
-                   "each piece and the skeleton; extras hold the data of guards and pieces.\n"
-                   ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "
-                   "data give the part, the piece, and the guard that sees a face.\n"
-                   ".ply (MeshLab): faces coloured by piece, or by the guard that sees them.\n"
-                   ".obj: one object per part.",
+    .description =
+        "Writes results and their model into one file. Inputs are recognized by "
+        "content, at most one of each kind: GUARDS.json, PIECES.vtk and PIECES.json, a "
+        "skeleton (.obj, .cg, .vtk), a model.\n"
+        ".glb (Blender, browsers, three.js): a named node for the model, obstacles, "
+        "each guard, each piece and the skeleton; extras hold the data of guards and pieces.\n"
+        ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "
+        "data give the part, the piece, and the guard that sees a face.\n"
+        ".ply (MeshLab): faces coloured by piece, or by the guard that sees them.\n"
+        ".obj: one object per part.",
     .examples = "# guards and pieces of a model for Blender\n"
                 "starguard guard horse.off -o guards.json\n"
                 "starguard decompose horse.off -o pieces.vtk --report pieces.json\n"

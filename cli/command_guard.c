@@ -12,6 +12,7 @@
 #include "scene.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
+#include "starguard/skeleton.h"
 #include "suggest.h"
 
 static const struct {
@@ -24,7 +25,7 @@ static const struct {
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
 
 typedef struct values {
-    const char *output, *marks, *picture, *certificate, *candidates, *poses_file;
+    const char *output, *marks, *picture, *certificate, *candidates, *poses_file, *leak;
     starg_guard_options wanted;
     cli_scene scene;
     starg_poses poses; /* --candidates FILE */
@@ -51,11 +52,11 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION("poses", poses_file, "FILE.csv|.json",
                     "Poses for other programs: positions, and with --cone or --fov rotations "
                     "(quaternions) and points to look at."),
+    CLI_TEXT_OPTION("leak", leak, "FILE.obj|.vtk",
+                    "--soup --from: the way by which the space that is reached leaks to the "
+                    "outside, or through a gap hardly wider than a cube, as a line."),
     CLI_SCENE_OPTIONS,
     CLI_PLACE_OPTIONS,
-    CLI_TEXT_OPTION("leak", scene.leak, "FILE.obj|.vtk",
-                    "--soup --from: way from that point out of the model's box, or to space behind "
-                    "gaps about as wide as a cube, as a line; no file if there is none."),
 };
 
 /* ---- options ---- */
@@ -114,7 +115,15 @@ static void say_area_bound(cli_session *session, const starg_guards *g) {
             cli_percent(g->coverage_area),
             cli_percent(anywhere ? g->area_bound_everywhere : g->area_bound),
             cli_count_of(g->options.max_guards, "guard", "guards").text,
-            anywhere ? ", wherever they stand" : " of these candidates");
+            anywhere ? " wherever they stand" : " of these candidates");
+}
+
+/* Why there is no bound for guards anywhere. */
+static const char *why_unbound(const starg_guards *g) {
+    if (g->options.prove)
+        return "was not found in the time";
+    return g->options.coverage < 1 ? "is not sought for a part of the area (--prove does)"
+                                   : "was not sought (--prove does)";
 }
 
 static void say_count(cli_session *session, const starg_guards *g) {
@@ -122,19 +131,21 @@ static void say_count(cli_session *session, const starg_guards *g) {
     if (g->options.max_guards > 0)
         cli_say(session, " of at most %zu", (size_t)g->options.max_guards);
     else if (g->optimal_everywhere)
-        cli_say(session, ", the fewest possible, wherever they stand");
+        cli_say(session, ", the fewest possible wherever they stand");
     else if (g->lower_bound_everywhere > 0)
-        cli_say(session, "; at least %zu %s needed, wherever they stand", g->lower_bound_everywhere,
+        cli_say(session, "; at least %zu %s needed wherever they stand", g->lower_bound_everywhere,
                 g->lower_bound_everywhere == 1 ? "is" : "are");
+    else
+        cli_say(session, "; how many are needed wherever they stand %s", why_unbound(g));
     cli_say(session, "\n");
 }
 
 static void say_guards(cli_session *session, const starg_guards *g) {
     say_count(session, g);
-    if (g->options.max_guards == 0)
-        say_bound(session, g);
-    else
+    if (g->options.max_guards > 0)
         say_area_bound(session, g);
+    else if (session->common.verbose || g->options.candidates == STARG_CANDIDATES_GIVEN)
+        say_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
             cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
@@ -240,6 +251,56 @@ done:
     return status;
 }
 
+static starg_status announce_poses(cli_session *session, const char *name) {
+    if (name != NULL && !cli_has_extension(name, ".csv") && !cli_has_extension(name, ".json"))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--poses needs a name that ends in .csv or .json, not '%.200s'", name);
+    return cli_announce(session, name);
+}
+
+static starg_status check_leak(cli_session *session, const values *v) {
+    if (v->leak == NULL)
+        return STARG_OK;
+    if (!v->scene.soup || v->scene.from.count == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--leak is about what is reached in a soup: add --soup --from X,Y,Z");
+    if (!cli_has_extension(v->leak, ".obj") && !cli_has_extension(v->leak, ".vtk"))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--leak needs a name that ends in .obj or .vtk, not '%.200s'", v->leak);
+    return STARG_OK;
+}
+
+/* Without a leak, no file. */
+static starg_status write_leak(cli_session *session, const char *name) {
+    starg_status status = STARG_OK;
+    starg_skeleton way = {0};
+    const double *points = starg_space_leak(session->solid, &way.node_count);
+    if (name == NULL)
+        return STARG_OK;
+    if (points == NULL) {
+        cli_say(session, "leak          none; '%s' is not written\n", name);
+        return STARG_OK;
+    }
+    CLI_TRY(cli_announce(session, name));
+    way.edge_count = way.node_count - 1;
+    way.positions = malloc(3 * way.node_count * sizeof *way.positions);
+    way.edges = malloc(2 * way.node_count * sizeof *way.edges);
+    if (way.positions == NULL || way.edges == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    memcpy(way.positions, points, 3 * way.node_count * sizeof *points);
+    for (uint32_t i = 0; i < 2 * way.edge_count; i++)
+        way.edges[i] = (i + 1) / 2;
+    status = starg_skeleton_write(
+        session->context, &way, cli_outputs_place(&session->outputs, name),
+        cli_has_extension(name, ".obj") ? STARG_SKELETON_OBJ : STARG_SKELETON_VTK);
+done:
+    free(way.positions);
+    free(way.edges);
+    return status;
+}
+
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
@@ -248,9 +309,10 @@ static starg_status prepare(cli_session *session, void *data) {
     if (v->certificate != NULL && !v->wanted.prove)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate says why the bound of --prove holds; add --prove");
-    CLI_TRY(cli_announce(session, v->marks));
-    CLI_TRY(cli_announce(session, v->picture));
-    CLI_TRY(cli_announce(session, v->poses_file));
+    CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(announce_poses(session, v->poses_file));
+    CLI_TRY(check_leak(session, v));
     v->scene.clearance = v->wanted.clearance;
     memcpy(v->scene.up, v->wanted.visibility.up, sizeof v->scene.up);
     CLI_TRY(cli_scene_prepare(session, &v->scene));
@@ -267,6 +329,7 @@ static starg_status run(cli_session *session, void *data) {
     char *why = NULL;
     size_t size = 0;
     CLI_TRY(cli_scene_make(session, &v->scene));
+    CLI_TRY(write_leak(session, v->leak));
     if (v->certificate != NULL)
         CLI_TRY(starg_guard_certified(session->context, session->solid, &v->wanted, &guards, &why,
                                       &size));
@@ -324,10 +387,10 @@ const cli_command cli_command_guard = {
     .description =
         "Generates candidate points inside the solid, computes exactly which faces each one sees, "
         "and chooses the fewest that together see every visible face. The result contains the "
-        "guards, their coverage, and a proven lower bound of these candidates: no fewer of them "
-        "cover "
-        "as much. With --prove every point of the solid is a candidate, and the bound holds "
-        "wherever guards stand. Faces that no candidate sees are listed; they are not an error.\n"
+        "guards, their coverage, and how many guards are needed at least: wherever they stand, as "
+        "far as that is known, and of these candidates (--verbose). With --prove every point of "
+        "the solid is a candidate. Faces that no candidate sees are listed; they are not an "
+        "error.\n"
         "With --time-limit the best result so far is written with its bound.",
     .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"

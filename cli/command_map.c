@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "map_solid.h"
 #include "model.h"
 #include "report.h"
@@ -25,9 +26,8 @@ static const double SQUARES = 16; /* of the checker along A's longest side */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("MAP[.json|.vtu]",
-                      "Map (docs/formats.md): MAP.vtu with --solid, else MAP.json; '-' writes to "
-                      "standard output."),
+    CLI_OUTPUT_OPTION("MAP.json|.vtu", "Map (docs/formats.md): MAP.json, or MAP.vtu with --solid; "
+                                       "'-' writes to standard output."),
     CLI_INPUT_OPTION(
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
@@ -83,7 +83,7 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--picture is for maps of surfaces; leave out --solid");
     CLI_TRY(cli_solid_map_prepare(session, &solid));
-    CLI_TRY(cli_announce(session, v->picture));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
     return status;
 }

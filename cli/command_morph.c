@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/animation.h"
@@ -121,9 +122,9 @@ static starg_status prepare(cli_session *session, void *data) {
         v->wanted.method != STARG_MORPH_SPHERICAL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--guards: method %s has no guards; use star or spherical", method_word(v));
-    CLI_TRY(cli_announce(session, v->glb));
-    CLI_TRY(cli_announce(session, v->picture));
-    CLI_TRY(cli_announce(session, v->certificate));
+    CLI_TRY(cli_announce_with_extension(session, "--glb", v->glb, ".glb"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "--certificate", v->certificate, ".vtu"));
     if (v->certificate != NULL && v->wanted.method != STARG_MORPH_SOLID)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate: only method solid has one, and this is %s", method_word(v));

@@ -57,7 +57,7 @@ static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE"));
-    v->format = cli_mesh_format(v->output);
+    CLI_TRY(cli_mesh_format(session, v->output, &v->format));
 done:
     return status;
 }

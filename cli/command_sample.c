@@ -57,6 +57,7 @@ static starg_status check_name(cli_session *session, const char *name) {
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
+    starg_mesh_format format;
     starg_mesh *mesh = NULL;
     if (v->list)
         return list_samples(session);
@@ -66,9 +67,10 @@ static starg_status run(cli_session *session, void *data) {
             "give a sample and an output: starguard sample NAME -o FILE; --list lists the names");
     const char *name = session->operands[0];
     CLI_TRY(check_name(session, name));
+    CLI_TRY(cli_mesh_format(session, v->output, &format));
     CLI_TRY(cli_announce(session, v->output));
     CLI_TRY(starg_sample_create(session->context, name, &v->wanted, &mesh));
-    CLI_TRY(cli_mesh_write(session, mesh, cli_mesh_format(v->output), NULL, v->output));
+    CLI_TRY(cli_mesh_write(session, mesh, format, NULL, v->output));
     cli_say(session, "%s, pose %d: %zu vertices, %zu faces\n", name, v->wanted.pose,
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh));
     cli_report_head(session, "starguard-sample", v->output, mesh);

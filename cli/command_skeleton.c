@@ -24,19 +24,23 @@ static const cli_option options[] = {
                     "Picture of the translucent model with its skeleton."),
 };
 
-static starg_skeleton_format format_of(const char *name) {
+static starg_status choose_format(cli_session *session, const char *name,
+                                  starg_skeleton_format *format) {
     static const cli_extension known[] = {
         {".obj", STARG_SKELETON_OBJ}, {".cg", STARG_SKELETON_CG}, {".vtk", STARG_SKELETON_VTK}};
-    return (starg_skeleton_format)cli_format_of(name, known, sizeof known / sizeof *known,
-                                                STARG_SKELETON_VTK);
+    int found;
+    starg_status status = cli_format_by_extension(
+        session, name, known, sizeof known / sizeof *known, STARG_SKELETON_VTK, &found);
+    *format = (starg_skeleton_format)found;
+    return status;
 }
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE.obj, .cg or .vtk"));
-    v->format = format_of(v->output);
-    CLI_TRY(cli_announce(session, v->picture));
+    CLI_TRY(choose_format(session, v->output, &v->format));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
     return status;
 }

@@ -11,26 +11,66 @@
 #include "starguard/verify.h"
 #include "terminal.h"
 
-static void tell_claims(cli_session *session, const starg_verdict *verdict) {
+typedef struct values {
+    bool verbose;
+} values;
+
+static const cli_option options[] = {
+    CLI_FLAG_OPTION("verbose", verbose, "List every claim, and what is not checked of any result."),
+};
+
+/* How many claims hold; with --verbose each of them, else those that do not. */
+static void tell_claims(cli_session *session, const starg_verdict *verdict, bool verbose) {
     FILE *stream = stdout;
     for (size_t i = 0; i < verdict->count; i++) {
         const starg_claim *claim = &verdict->claims[i];
-        cli_say(session, "  %s%s%s %s\n", cli_style_on(stream, claim->holds ? CLI_GREEN : CLI_RED),
-                claim->holds ? "ok    " : "FAILED", cli_style_off(stream), claim->text);
+        if (verbose || !claim->holds)
+            cli_say(session, "  %s%s%s %s\n",
+                    cli_style_on(stream, claim->holds ? CLI_GREEN : CLI_RED),
+                    claim->holds ? "ok    " : "FAILED", cli_style_off(stream), claim->text);
         if (!claim->holds && session->common.quiet)
             cli_warn(session, "FAILED %s", claim->text);
     }
     for (size_t i = 0; i < verdict->not_checked_count; i++)
-        cli_say(session, "  not checked: %s\n", verdict->not_checked[i].text);
+        if (verbose)
+            cli_say(session, "  not checked: %s\n", verdict->not_checked[i].text);
 }
 
+/* What holds, and what is left open: of results that were made to have it each of it, else how
+ * much. */
+static void tell_summary(cli_session *session, const starg_verdict *verdict, const char *holds,
+                         bool verbose) {
+    size_t failed = 0, routine = 0;
+    for (size_t i = 0; i < verdict->count; i++)
+        failed += !verdict->claims[i].holds;
+    for (size_t i = 0; i < verdict->not_checked_count; i++)
+        routine += !verdict->not_checked[i].asked;
+    if (verdict->passed)
+        cli_say(session, "  verified: %s; %zu claims checked\n", holds, verdict->count);
+    else
+        cli_say(session, "  NOT verified: %zu of %zu claims do not hold\n", failed, verdict->count);
+    for (size_t i = 0; i < verdict->not_checked_count; i++)
+        if (!verbose && verdict->not_checked[i].asked)
+            cli_say(session, "  not checked: %s\n", verdict->not_checked[i].text);
+    if (!verbose && routine > 0)
+        cli_say(session, "  %s not checked in any such result (--verbose lists %s)\n",
+                cli_count_of(routine, "statement is", "statements are").text,
+                routine == 1 ? "it" : "them");
+}
+
+/* Where verdicts go. */
+typedef struct telling {
+    json_t *results;
+    bool verbose;
+} telling;
+
 /* Reports a verdict and adds it to the results; takes over `result`, the keys specific to its
- * kind. */
+ * kind. `holds` says what a passed verdict means. */
 static void tell_verdict(cli_session *session, const char *file, const starg_verdict *verdict,
-                         json_t *result, json_t *results) {
+                         const char *holds, json_t *result, const telling *to) {
     cli_say(session, "%s\n", file);
-    tell_claims(session, verdict);
-    cli_say(session, "  %s\n", verdict->passed ? "verified" : "NOT verified");
+    tell_claims(session, verdict, to->verbose);
+    tell_summary(session, verdict, holds, to->verbose);
     json_t *claims = json_array();
     for (size_t i = 0; i < verdict->count; i++)
         cli_append(session, claims,
@@ -43,12 +83,61 @@ static void tell_verdict(cli_session *session, const char *file, const starg_ver
     cli_put(session, result, "passed", json_boolean(verdict->passed));
     cli_put(session, result, "claims", claims);
     cli_put(session, result, "not_checked", unchecked);
-    cli_append(session, results, result);
+    cli_append(session, to->results, result);
     if (!verdict->passed)
         session->outcome = CLI_EXIT_FAILED;
 }
 
 /* ---- input ---- */
+
+/* What an operand is, by its beginning: models go first. */
+typedef enum operand_kind { SURFACE, TETRAHEDRA, RESULT, UNKNOWN } operand_kind;
+
+static bool has_text(const char *head, const char *text) {
+    return strstr(head, text) != NULL;
+}
+
+/* A tetrahedral mesh may be either; what cannot be read twice is not looked at. */
+static operand_kind kind_of(const char *name) {
+    char head[1024] = "";
+    struct stat about;
+    if (stat(name, &about) != 0)
+        return UNKNOWN;
+    if (S_ISDIR(about.st_mode))
+        return RESULT;
+    FILE *file = S_ISREG(about.st_mode) ? fopen(name, "rb") : NULL;
+    if (file == NULL)
+        return UNKNOWN;
+    size_t size = fread(head, 1, sizeof head - 1, file);
+    head[size] = '\0';
+    fclose(file);
+    if (strncmp(head, "starguard-certificate", 21) == 0 ||
+        (head[strspn(head, " \t\r\n")] == '{' && has_text(head, "\"starguard-")) ||
+        has_text(head, "type=\"UnstructuredGrid\""))
+        return RESULT;
+    return has_text(head, "DATASET UNSTRUCTURED_GRID") ? TETRAHEDRA : SURFACE;
+}
+
+/* Moves the operand `from` to the place `to` before it; those between keep their order. */
+static void move_operand(cli_session *session, size_t from, size_t to) {
+    char *name = session->operands[from];
+    memmove(session->operands + to + 1, session->operands + to,
+            (from - to) * sizeof *session->operands);
+    session->operands[to] = name;
+}
+
+/* If results are given before the model, or before A and B, these are moved to the front. A
+ * tetrahedral mesh is the model only where there is no surface. */
+static void put_models_first(cli_session *session) {
+    size_t count = session->operand_count, models = 0;
+    for (size_t i = 0; i < count; i++)
+        if (kind_of(session->operands[i]) == UNKNOWN)
+            return;
+    for (int kind = SURFACE; kind < RESULT && models == 0; kind++)
+        for (size_t i = 0; i < count && (kind == SURFACE || models == 0); i++)
+            if ((int)kind_of(session->operands[i]) == kind)
+                move_operand(session, i, models++);
+}
 
 /* The model: a surface, or a tetrahedral mesh. */
 typedef struct model {
@@ -257,7 +346,7 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
 
 /* A certificate directly follows its guards. */
 static starg_status verify_guards(cli_session *session, const model *given, size_t operand,
-                                  starg_result *const *results, json_t *list) {
+                                  starg_result *const *results, const telling *to) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     starg_mesh **obstacles = NULL;
@@ -272,7 +361,8 @@ static starg_status verify_guards(cli_session *session, const model *given, size
     json_t *entry = json_object();
     if (behind != 0)
         cli_put(session, entry, "certificate", cli_json_text(session->operands[behind]));
-    tell_verdict(session, session->operands[operand], verdict, entry, list);
+    tell_verdict(session, session->operands[operand], verdict,
+                 "guards stand where they may, and see what is told", entry, to);
 done:
     cli_scene_free_obstacles(obstacles, guards->obstacle_count);
     starg_verdict_free(session->context, verdict);
@@ -280,7 +370,7 @@ done:
 }
 
 static starg_status verify_pieces(cli_session *session, const model *given, decomposition found,
-                                  starg_result *const *results, json_t *list) {
+                                  starg_result *const *results, const telling *to) {
     starg_verdict *verdict = NULL;
     const starg_pieces_mesh *pieces = results[found.pieces]->pieces;
     const starg_pieces_report *report = found.report != 0 ? results[found.report]->report : NULL;
@@ -302,12 +392,16 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
     if (why != NULL)
         cli_put(session, entry, "certificate", cli_json_text(session->operands[found.certificate]));
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)pieces->count));
+    char holds[160] = "tetrahedra fill the model, once";
     if (report != NULL) {
+        snprintf(holds, sizeof holds, "%zu of %zu pieces are star-shaped, and together they %s",
+                 report->strictly_star, report->piece_count,
+                 report->approximated ? "approximate the model" : "fill the model");
         cli_put(session, entry, "report", cli_json_text(session->operands[found.report]));
         cli_put(session, entry, "pieces", json_integer((json_int_t)report->piece_count));
         cli_put(session, entry, "strictly_star", json_integer((json_int_t)report->strictly_star));
     }
-    tell_verdict(session, session->operands[found.pieces], verdict, entry, list);
+    tell_verdict(session, session->operands[found.pieces], verdict, holds, entry, to);
     starg_verdict_free(session->context, verdict);
     return STARG_OK;
 }
@@ -321,19 +415,20 @@ static json_t *entry_of_pair(cli_session *session, const inputs *from) {
 }
 
 static starg_status verify_map(cli_session *session, const model *given, const inputs *from,
-                               size_t operand, json_t *list) {
+                               size_t operand, const telling *to) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     CLI_TRY(starg_verify_map(session->context, given->mesh, from->target,
                              from->results[operand]->map, &verdict));
-    tell_verdict(session, session->operands[operand], verdict, entry_of_pair(session, from), list);
+    tell_verdict(session, session->operands[operand], verdict,
+                 "points of A are where the map has them on B", entry_of_pair(session, from), to);
 done:
     starg_verdict_free(session->context, verdict);
     return status;
 }
 
 static starg_status verify_morph(cli_session *session, const model *given, const inputs *from,
-                                 size_t operand, json_t *list) {
+                                 size_t operand, const telling *to) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     const folder *own = &from->folders[operand];
@@ -346,14 +441,15 @@ static starg_status verify_morph(cli_session *session, const model *given, const
                                own->report != NULL ? own->report->morph : NULL, &verdict));
     json_t *entry = entry_of_pair(session, from);
     cli_put(session, entry, "frames", json_integer((json_int_t)own->count));
-    tell_verdict(session, session->operands[operand], verdict, entry, list);
+    tell_verdict(session, session->operands[operand], verdict, "frames lead from A to B", entry,
+                 to);
 done:
     starg_verdict_free(session->context, verdict);
     return status;
 }
 
 static starg_status verify_solid_map(cli_session *session, const model *given, const inputs *from,
-                                     size_t operand, json_t *list) {
+                                     size_t operand, const telling *to) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     const starg_solid_map *map = from->results[operand]->solid_map;
@@ -361,7 +457,9 @@ static starg_status verify_solid_map(cli_session *session, const model *given, c
     json_t *entry = entry_of_pair(session, from);
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)map->count));
     cli_put(session, entry, "pieces", json_integer((json_int_t)map->piece_count));
-    tell_verdict(session, session->operands[operand], verdict, entry, list);
+    tell_verdict(session, session->operands[operand], verdict,
+                 from->target != NULL ? "tetrahedra fill A and B, one to one" : "tetrahedra fill A",
+                 entry, to);
 done:
     starg_verdict_free(session->context, verdict);
     return status;
@@ -374,12 +472,13 @@ static void report(cli_session *session, const starg_mesh *mesh, json_t *results
 }
 
 static starg_status run(cli_session *session, void *data) {
-    (void)data;
+    const values *v = data;
     starg_status status = STARG_OK;
     model given = {0};
     decomposition found;
-    json_t *list = json_array();
+    const telling to = {.results = json_array(), .verbose = v->verbose};
     inputs from = {0};
+    put_models_first(session);
     CLI_TRY(read_model(session, &given));
     CLI_TRY(read_inputs(session, &from));
     CLI_TRY(check_certificates(session, from.results));
@@ -387,23 +486,23 @@ static starg_status run(cli_session *session, void *data) {
     starg_result *const *results = from.results;
     for (size_t i = 1; i < session->operand_count; i++) {
         if (from.folders[i].count > 0)
-            CLI_TRY(verify_morph(session, &given, &from, i, list));
+            CLI_TRY(verify_morph(session, &given, &from, i, &to));
         else if (results[i] == NULL)
             continue;
         else if (results[i]->map != NULL)
-            CLI_TRY(verify_map(session, &given, &from, i, list));
+            CLI_TRY(verify_map(session, &given, &from, i, &to));
         else if (results[i]->solid_map != NULL)
-            CLI_TRY(verify_solid_map(session, &given, &from, i, list));
+            CLI_TRY(verify_solid_map(session, &given, &from, i, &to));
         else if (results[i]->guards != NULL)
-            CLI_TRY(verify_guards(session, &given, i, results, list));
+            CLI_TRY(verify_guards(session, &given, i, results, &to));
         else if (i == found.pieces)
-            CLI_TRY(verify_pieces(session, &given, found, results, list));
+            CLI_TRY(verify_pieces(session, &given, found, results, &to));
     }
     if (session->report != NULL)
-        report(session, given.mesh, list);
+        report(session, given.mesh, to.results);
 done:
     inputs_free(session, &from);
-    json_decref(list);
+    json_decref(to.results);
     starg_mesh_free(given.mesh);
     starg_tetmesh_free(given.tetmesh);
     return status;
@@ -416,7 +515,10 @@ const cli_command cli_command_verify = {
     .description =
         "Checks the claims of result files with independent geometry and exact signs; "
         "only the readers of the model and of GUARDS.json are shared with the solver. "
-        "Files are recognized by content. Exit status 4 if a claim is false.\n"
+        "Files are recognized by content, and may come in any order but that of A and B. Tells "
+        "what "
+        "holds, what does not, and what is open; --verbose lists every claim. Exit status 4 if a "
+        "claim is false.\n"
         "GUARDS.json of 'starguard guard': every guard is inside and sees as many faces "
         "as stated; coverage, uncovered faces, counts and bounds are right. Claims about "
         "candidates are refuted by counterexamples; otherwise they are listed as not "
@@ -451,6 +553,7 @@ const cli_command cli_command_verify = {
                 "# a map between two solids\n"
                 "starguard map --solid horse_0.off horse_1.off -o horse.vtu\n"
                 "starguard verify horse_0.off horse_1.off horse.vtu",
+    CLI_OPTIONS(options),
     CLI_OPERANDS(2, SIZE_MAX),
     .run = run,
 };

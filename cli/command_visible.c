@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "extensions.h"
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
@@ -220,8 +221,9 @@ static starg_status check_viewpoints(cli_session *session, const values *v) {
                         "guards may stand by --within");
     if (v->unseen && v->from.count > 1)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "with --unseen, --from is the one point from which the free space is "
-                        "reached; leave out the others");
+                        "--unseen: --from says where the free space is reached from; give one "
+                        "point, not %zu",
+                        v->from.count);
     if (v->unseen)
         return STARG_OK;
     if (v->scene.cell > 0 || v->scene.standoff.count > 0 || v->scene.within.count > 0)
@@ -244,7 +246,7 @@ static starg_status prepare(cli_session *session, void *data) {
     if (v->unseen) /* lent: freed where it comes from */
         v->scene.from = v->from;
     CLI_TRY(cli_scene_prepare(session, &v->scene));
-    CLI_TRY(cli_announce(session, v->output));
+    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".ply"));
 done:
     return status;
 }

@@ -162,6 +162,10 @@ static bool is_word(const cli_option *o, const char *value) {
     return false;
 }
 
+static starg_status name_input(cli_session *session, const cli_option *o, const char *value) {
+    return value == NULL || is_word(o, value) ? STARG_OK : cli_name_input(session, value);
+}
+
 /* Registers all files that the command line names for reading. */
 static starg_status name_inputs(cli_session *session, const char *values) {
     const cli_command *command = session->command;
@@ -171,17 +175,13 @@ static starg_status name_inputs(cli_session *session, const char *values) {
     for (size_t i = 0; i < command->option_count; i++) {
         const cli_option *o = &command->options[i];
         const void *member = values + o->offset;
-        const char *const *names = member;
-        size_t count = 1;
+        const starg_texts *texts = member;
         if (!(o->flags & STARG_FIELD_INPUT))
             continue;
-        if (o->kind == STARG_FIELD_TEXTS) {
-            names = ((const starg_texts *)member)->values;
-            count = ((const starg_texts *)member)->count;
-        }
-        for (size_t k = 0; k < count; k++)
-            if (names[k] != NULL && !is_word(o, names[k]))
-                CLI_TRY(cli_name_input(session, names[k]));
+        if (o->kind == STARG_FIELD_TEXT)
+            CLI_TRY(name_input(session, o, *(const char *const *)member));
+        for (size_t k = 0; o->kind == STARG_FIELD_TEXTS && k < texts->count; k++)
+            CLI_TRY(name_input(session, o, texts->values[k]));
     }
 done:
     return status;
@@ -194,9 +194,9 @@ static starg_status perform(cli_session *session, void *values) {
     starg_status status = STARG_OK;
     CLI_TRY(check_operands(session));
     CLI_TRY(name_inputs(session, values));
+    CLI_TRY(cli_check_extensions(session, values));
     if (command->prepare != NULL)
         CLI_TRY(command->prepare(session, values));
-    CLI_TRY(cli_check_names(session, values));
     CLI_TRY(cli_input_read(session));
     CLI_TRY(command->run(session, values));
 done:

@@ -56,12 +56,12 @@ starg_status cli_solid_map_prepare(cli_session *session, const cli_solid_map *v)
         if (session->operand_count != 2)
             return refuse(session, "two models are needed, A and B");
         if (v->output != NULL && cli_has_extension(v->output, ".vtu"))
-            return refuse(session, "a map of surfaces is a MAP.json; add --solid for a MAP.vtu");
+            return refuse(session, "a map of surfaces is MAP.json; for MAP.vtu add --solid");
         return cli_announce_needed(session, v->output, "MAP.json");
     }
-    if (v->output != NULL && cli_has_extension(v->output, ".json"))
-        return refuse(session, "a map of solids is a MAP.vtu; leave out --solid for a MAP.json");
     CLI_TRY(check_options(session, v));
+    if (v->output != NULL && cli_has_extension(v->output, ".json"))
+        return refuse(session, "a map of solids is MAP.vtu; for MAP.json leave out --solid");
     if (!is_solid_map(v->map) || v->output != NULL)
         CLI_TRY(cli_announce_needed(session, v->output, "MAP.vtu"));
     CLI_TRY(cli_announce(session, v->carried));

@@ -154,13 +154,16 @@ done:
     return status;
 }
 
-starg_mesh_format cli_mesh_format(const char *name) {
+starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format) {
     static const cli_extension known[] = {{".off", STARG_MESH_OFF},
                                           {".obj", STARG_MESH_OBJ},
                                           {".ply", STARG_MESH_PLY_BINARY},
                                           {".stl", STARG_MESH_STL_BINARY}};
-    return (starg_mesh_format)cli_format_of(name, known, sizeof known / sizeof *known,
-                                            STARG_MESH_OFF);
+    int found;
+    starg_status status = cli_format_by_extension(
+        session, name, known, sizeof known / sizeof *known, STARG_MESH_OFF, &found);
+    *format = (starg_mesh_format)found;
+    return status;
 }
 
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,

@@ -21,8 +21,8 @@ starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh *
 starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
                                 starg_descriptor **descriptor);
 
-/* The format of an output mesh by its file extension; OFF for "-". */
-starg_mesh_format cli_mesh_format(const char *name);
+/* The format of an output mesh by its file extension; OFF for "-". Errors: ARGUMENT. */
+starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);
 
 /* Writes a mesh with face colours (or NULL) to an announced output. */
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,

@@ -17,14 +17,13 @@ typedef struct parser {
     int argc, next;
     char **argv;
     cli_parse_error *error;
-    size_t *times; /* how often each option was given, by its number over all groups */
+    bool *given; /* by option of the groups, one after the other */
 } parser;
 
 /* An option as given by the user. */
 typedef struct match {
     const cli_option *option;
     const cli_group *group;
-    size_t number;
     char shown[64]; /* "--name" or "-n" */
 } match;
 
@@ -141,19 +140,19 @@ static bool set_flag(const match *m) {
                                  strncmp(m->option->option, "no-", 3) != 0);
 }
 
-/* Occurrences of an option that add up: all but the first one of others are refused, so that none
- * is lost without a word. Flags say the same however often. */
-static size_t occurrences(const cli_option *o) {
-    bool adds = o->kind == STARG_FIELD_PLACES || o->kind == STARG_FIELD_TEXTS;
-    if (adds && o->most > 0)
-        return o->most;
-    return adds || o->kind == STARG_FIELD_FLAG ? SIZE_MAX : 1;
-}
-
-static bool count_occurrence(parser *p, const match *m) {
-    if (++p->times[m->number] <= occurrences(m->option))
+/* Values of an option either add up, or there is one: none replaces another. Flags say the same
+ * again. */
+static bool note_given(parser *p, const match *m) {
+    const cli_option *o = m->option;
+    bool adds_up = o->kind == STARG_FIELD_PLACES || o->kind == STARG_FIELD_TEXTS;
+    size_t at = (size_t)(o - m->group->options);
+    for (const cli_group *g = p->groups; g != m->group; g++)
+        at += g->count;
+    bool again = p->given[at];
+    p->given[at] = true;
+    if (!again || o->kind == STARG_FIELD_FLAG || (adds_up && !(o->flags & STARG_FIELD_ONCE)))
         return true;
-    return fail_parse(p, "%s is given more than once, and takes one value; leave out all but one",
+    return fail_parse(p, "%s is given more than once, and takes effect only once; leave one",
                       m->shown);
 }
 
@@ -188,14 +187,13 @@ static bool find_long(parser *p, const char *name, size_t size, match *m) {
     if (size < sizeof word)
         memcpy(word, name, size);
     cli_suggest_begin(&near, word);
-    size_t number = 0;
     for (size_t g = 0; g < p->group_count; g++) {
-        for (size_t i = 0; i < p->groups[g].count; i++, number++) {
+        for (size_t i = 0; i < p->groups[g].count; i++) {
             const cli_option *o = &p->groups[g].options[i];
             if (o->option == NULL)
                 continue;
             if (strcmp(word, o->option) == 0) {
-                *m = (match){.option = o, .group = &p->groups[g], .number = number};
+                *m = (match){.option = o, .group = &p->groups[g]};
                 snprintf(m->shown, sizeof m->shown, "--%s", o->option);
                 return true;
             }
@@ -208,13 +206,12 @@ static bool find_long(parser *p, const char *name, size_t size, match *m) {
 }
 
 static bool find_short(parser *p, char letter, match *m) {
-    size_t number = 0;
     for (size_t g = 0; g < p->group_count; g++) {
-        for (size_t i = 0; i < p->groups[g].count; i++, number++) {
+        for (size_t i = 0; i < p->groups[g].count; i++) {
             const cli_option *o = &p->groups[g].options[i];
             if (o->option == NULL || o->letter != letter)
                 continue;
-            *m = (match){.option = o, .group = &p->groups[g], .number = number};
+            *m = (match){.option = o, .group = &p->groups[g]};
             snprintf(m->shown, sizeof m->shown, "-%c", letter);
             return true;
         }
@@ -243,7 +240,9 @@ static bool parse_long(parser *p, const char *text) {
     match m;
     const char *equals = strchr(text, '='), *word = NULL;
     size_t size = equals != NULL ? (size_t)(equals - text) : strlen(text);
-    if (!find_long(p, text, size, &m) || !count_occurrence(p, &m))
+    if (!find_long(p, text, size, &m))
+        return false;
+    if (!note_given(p, &m))
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && equals != NULL)
         return fail_parse(p, "%s takes no value", m.shown);
@@ -261,7 +260,7 @@ static bool parse_long(parser *p, const char *text) {
 static bool parse_short(parser *p, const char *text) {
     match m;
     const char *word = NULL;
-    if (!find_short(p, *text, &m) || !count_occurrence(p, &m))
+    if (!find_short(p, *text, &m) || !note_given(p, &m))
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && text[1] != '\0')
         return fail_parse(p, "unknown option '-%.100s'", text);
@@ -273,7 +272,7 @@ static bool parse_short(parser *p, const char *text) {
     return set_value(p, &m, word);
 }
 
-/* The number of operands, or -1. */
+/* The number of operands; -1: wrong. */
 static int parse_words(parser *p) {
     int operands = 0;
     bool options_end = false;
@@ -293,14 +292,16 @@ int cli_options_parse(const cli_group *groups, size_t group_count, int argc, cha
                       cli_parse_error *error) {
     parser p = {
         .groups = groups, .group_count = group_count, .argc = argc, .argv = argv, .error = error};
-    size_t options = 1;
+    size_t count = 1;
     for (size_t g = 0; g < group_count; g++)
-        options += groups[g].count;
-    p.times = calloc(options, sizeof *p.times);
-    if (p.times == NULL)
+        count += groups[g].count;
+    p.given = calloc(count, sizeof *p.given);
+    if (p.given == NULL) {
         fail_parse(&p, "out of memory");
-    int operands = p.times != NULL ? parse_words(&p) : -1;
-    free(p.times);
+        return -1;
+    }
+    int operands = parse_words(&p);
+    free(p.given);
     return operands;
 }
 

@@ -27,6 +27,9 @@ typedef starg_field cli_option;
 /* Same for an input file. */
 #define CLI_INPUT_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
     { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP), .flags = STARG_FIELD_INPUT }
+/* Input files, or names; each occurrence adds one. */
+#define CLI_INPUTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
+    { CLI_OPTION(NAME, STARG_FIELD_TEXTS, MEMBER, VALUE, HELP), .flags = STARG_FIELD_INPUT }
 #define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
     { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP), .length = 3 }
 #define CLI_BOXES_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
@@ -69,8 +72,8 @@ typedef struct cli_parse_error {
 
 /* Parses `argc` words. Options and operands may be mixed; "--" ends the options. Option names
  * cannot be abbreviated. Moves operands to the front of argv and returns their number; -1 with a
- * message on the first error. Occurrences of an option add up (PLACES, TEXTS; at most `most` of
- * them unless that is 0) or are flags; any other option that occurs twice is an error. */
+ * message on the first error. Options of several values add up when they are repeated; a second
+ * value for an option that has one is an error. */
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
                       cli_parse_error *error);
 

@@ -5,11 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "starguard/skeleton.h"
 
 const char *const cli_orientation_words[] = {"nested", "keep", NULL};
 
@@ -17,10 +15,6 @@ starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene) {
     if ((scene->see.count > 0) + (scene->ignore.count > 0) + (scene->weights != NULL) > 1)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--see, --ignore and --weights exclude each other; weights say it all");
-    if (scene->leak != NULL && (!scene->soup || scene->from.count == 0))
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "--leak shows where space leaks that is reached in a soup; add --soup and "
-                        "--from X,Y,Z");
     if (scene->cell > 0 && scene->from.count == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--cell is the size of cubes for --from X,Y,Z; add that point");
@@ -63,8 +57,7 @@ static void take_options(const cli_scene *s, const starg_mesh *model, starg_spac
     out->two_sided = s->two_sided;
     if (s->from.count > 0) {
         out->cell = s->cell > 0 ? s->cell : 0.01 * diagonal(model);
-        for (int k = 0; k < 3; k++)
-            out->from[k] = s->from.values[k];
+        memcpy(out->from, s->from.values, sizeof out->from);
     }
     out->height = s->height;
     if (s->over.count > 0)
@@ -123,12 +116,14 @@ static char *ranges_of(const uint32_t *list, size_t count) {
 }
 
 static bool recall_faces(const uint32_t *list, size_t count, char **text, starg_texts *words) {
-    *text = count > 0 ? ranges_of(list, count) : NULL;
-    words->values = *text != NULL ? malloc(sizeof *words->values) : NULL;
-    words->count = words->values != NULL;
-    if (words->count > 0)
-        words->values[0] = *text;
-    return count == 0 || words->count > 0;
+    if (count == 0)
+        return true;
+    *text = ranges_of(list, count);
+    words->values = malloc(sizeof *words->values);
+    if (*text == NULL || words->values == NULL)
+        return false;
+    words->values[words->count++] = *text;
+    return true;
 }
 
 /* Are the faces to be seen alike? Then numbers tell them. */
@@ -187,9 +182,9 @@ void cli_scene_forget(cli_scene *scene) {
     free(scene->standoff.values);
     free(scene->within.values);
     free((void *)scene->obstacles.values);
-    free((void *)scene->see.values);
     free((void *)scene->over.values);
     free((void *)scene->mount.values);
+    free((void *)scene->see.values);
     for (int i = 0; i < 3; i++)
         free(scene->recalled[i]);
     *scene = (cli_scene){0};
@@ -238,85 +233,86 @@ static starg_status keep_values(cli_session *session, double *values, size_t fac
     return *out != NULL ? STARG_OK : cli_fail_memory(session);
 }
 
-/* Standard input, or a file: a folder that is called like a group is none. */
-static bool is_file(const char *word) {
-    struct stat info;
-    return strcmp(word, "-") == 0 || (stat(word, &info) == 0 && !S_ISDIR(info.st_mode));
-}
-
-/* Numbers come before names; an object that is called like some is not passed over in silence. */
-static void warn_of_name(cli_session *session, const char *word, size_t faces) {
-    double *values = NULL;
-    if (strcmp(session->operands[0], "-") != 0 &&
-        starg_faces_named(session->context, session->operands[0], word, faces, &values) == STARG_OK)
-        cli_log(
-            session, STARG_LOG_WARNING,
-            "%.100s is taken as numbers of faces; the model has a name like that: write '?%.100s' "
-            "to mean it",
-            word, word + 1);
-    starg_weights_free(session->context, values);
-}
-
-/* The values by face that a word says: a file, a list of numbers, or names in the model. */
+/* The values by face that a word says: a file, numbers, or a name in the model. */
 static starg_status
 read_values(cli_session *session, const char *word, size_t faces,
             starg_status (*read)(starg_context *, const char *, size_t, double **), double **out) {
     starg_status status = STARG_OK;
     double *values = NULL;
     const char *model = session->operands[0];
-    bool file = is_file(word);
+    bool file = strcmp(word, "-") == 0 || access(word, F_OK) == 0;
     *out = NULL;
-    if (!file && is_numbers(word)) {
-        CLI_TRY(take_numbers(session, word, faces, out));
-        warn_of_name(session, word, faces);
-        goto done;
-    }
+    if (!file && is_numbers(word))
+        return take_numbers(session, word, faces, out);
     if (!file && strcmp(model, "-") == 0)
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
+        return cli_fail(session, STARG_ERROR_READ,
                         "there is no file '%.100s', and names in a model need its file, not "
                         "standard input",
                         word);
-    status = file ? read(session->context, word, faces, &values)
-                  : starg_faces_named(session->context, model, word, faces, &values);
-    if (status == STARG_ERROR_ARGUMENT && strpbrk(word, "/.") != NULL) /* more likely a file */
-        status = cli_fail(session, STARG_ERROR_READ, "%s",
-                          starg_context_error(session->context)->message);
-    CLI_TRY(status);
+    CLI_TRY(file ? read(session->context, word, faces, &values)
+                 : starg_faces_named(session->context, model, word, faces, &values));
     status = keep_values(session, values, faces, out);
 done:
+    if (status == STARG_ERROR_ARGUMENT && !file && strpbrk(word, "/.") != NULL) /* more likely */
+        status = cli_fail(session, STARG_ERROR_READ, "%s",                      /* a file */
+                          starg_context_error(session->context)->message);
     return status;
 }
 
-/* What any of the words says; NULL: there are none. */
+static starg_status add_faces(cli_session *session, const char *word, size_t faces, double *sum) {
+    double *values = NULL;
+    starg_status status = read_values(session, word, faces, starg_faces_read, &values);
+    for (size_t f = 0; status == STARG_OK && f < faces; f++)
+        sum[f] = sum[f] != 0 || values[f] != 0;
+    free(values);
+    return status;
+}
+
+/* Words with commas between them. */
+static starg_status add_each(cli_session *session, const char *words, size_t faces, double *sum) {
+    starg_status status = STARG_OK;
+    char *copy = strdup(words), *rest = copy, *word;
+    if (copy == NULL)
+        return cli_fail_memory(session);
+    while (status == STARG_OK && (word = strsep(&rest, ",")) != NULL)
+        status = add_faces(session, word + strspn(word, " "), faces, sum);
+    free(copy);
+    return status;
+}
+
+/* The faces that any of the words says, as values that are 0 elsewhere. Names may have commas. */
 static starg_status read_union(cli_session *session, const starg_texts *words, size_t faces,
                                double **out) {
     starg_status status = STARG_OK;
-    double *values = NULL;
-    *out = NULL;
-    for (size_t i = 0; i < words->count; i++) {
-        CLI_TRY(read_values(session, words->values[i], faces, starg_faces_read, &values));
-        for (size_t f = 0; f < faces && *out != NULL; f++)
-            values[f] = fmax(values[f], (*out)[f]);
-        free(*out);
-        *out = values;
+    *out = calloc(faces + 1, sizeof **out);
+    if (*out == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < words->count && status == STARG_OK; i++) {
+        const char *word = words->values[i];
+        status = add_faces(session, word, faces, *out);
+        if ((status == STARG_ERROR_ARGUMENT || status == STARG_ERROR_READ) &&
+            strchr(word, ',') != NULL && !is_numbers(word) && access(word, F_OK) != 0)
+            status = add_each(session, word, faces, *out);
     }
-done:
     return status;
 }
 
 /* The weights that were asked for; NULL: none. */
 static starg_status read_weights(cli_session *session, const cli_scene *s, size_t faces,
                                  double **out) {
-    bool ignore = s->ignore.count > 0;
+    bool ignores = s->ignore.count > 0;
+    *out = NULL;
     if (s->weights != NULL)
         return read_values(session, s->weights, faces, starg_weights_read, out);
-    starg_status status = read_union(session, ignore ? &s->ignore : &s->see, faces, out);
-    for (size_t f = 0; status == STARG_OK && *out != NULL && f < faces; f++)
-        (*out)[f] = ((*out)[f] != 0) != ignore;
+    if (s->see.count == 0 && !ignores)
+        return STARG_OK;
+    starg_status status = read_union(session, ignores ? &s->ignore : &s->see, faces, out);
+    for (size_t f = 0; status == STARG_OK && f < faces; f++)
+        (*out)[f] = ((*out)[f] != 0) != ignores;
     return status;
 }
 
-/* The faces that the words of an option say, as an ascending list. */
+/* The faces that words say, as an ascending list. */
 static starg_status read_list(cli_session *session, const char *option, const starg_texts *words,
                               size_t faces, uint32_t **list, size_t *count) {
     starg_status status = STARG_OK;
@@ -339,36 +335,6 @@ static starg_status read_list(cli_session *session, const char *option, const st
                           option, words->values[0]);
 done:
     free(values);
-    return status;
-}
-
-/* A leak as a curve, for viewers of skeletons, too. */
-static starg_status write_leak(cli_session *session, const char *name) {
-    starg_status status = STARG_OK;
-    const double *points;
-    starg_skeleton line = {.node_count = starg_space_leak(session->solid, &points)};
-    size_t n = line.node_count;
-    if (n == 0) {
-        cli_log(session, STARG_LOG_NOTICE, "nothing leaks; '%.200s' is not written", name);
-        return STARG_OK;
-    }
-    line.edge_count = n - 1;
-    line.positions = malloc(3 * n * sizeof *points);
-    line.edges = malloc(2 * n * sizeof *line.edges);
-    if (line.positions == NULL || line.edges == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
-    memcpy(line.positions, points, 3 * n * sizeof *points);
-    for (size_t i = 0; i < 2 * n; i++)
-        line.edges[i] = (uint32_t)((i + 1) / 2);
-    CLI_TRY(cli_announce(session, name));
-    status = starg_skeleton_write(
-        session->context, &line, cli_outputs_place(&session->outputs, name),
-        cli_has_extension(name, ".vtk") ? STARG_SKELETON_VTK : STARG_SKELETON_OBJ);
-done:
-    free(line.positions);
-    free(line.edges);
     return status;
 }
 
@@ -395,8 +361,6 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
                                &session->solid));
     if (weights != NULL)
         CLI_TRY(starg_space_weigh(session->solid, weights));
-    if (s->leak != NULL)
-        status = write_leak(session, s->leak);
 done:
     free(weights);
     free(over);

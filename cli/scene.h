@@ -14,8 +14,8 @@ typedef struct cli_scene {
     double cell;
     starg_places from;
     starg_places standoff, within;
-    starg_texts see, ignore, over, mount;
-    const char *weights, *leak;
+    starg_texts see, ignore, over, mount; /* unions */
+    const char *weights;
     double height;
     double clearance;  /* of guards from where they are mounted, and what is up: from the other */
     double up[3];      /* options of `guard` */
@@ -24,15 +24,11 @@ typedef struct cli_scene {
 
 extern const char *const cli_orientation_words[];
 
-#define CLI_FACES_OPTION(NAME, MEMBER, HELP)                                                       \
-    { CLI_OPTION(NAME, STARG_FIELD_TEXTS, MEMBER, "FACES", HELP), .flags = STARG_FIELD_INPUT }
-
 /* Rows for a struct `values` with a member `scene`. */
 #define CLI_SCENE_OPTIONS                                                                          \
-    {CLI_OPTION("obstacles", STARG_FIELD_TEXTS, scene.obstacles, "FILE",                           \
-                "Mesh that stands in the way. A closed one is solid: no guard stands in it; an "   \
-                "open one blocks the view. Its faces need not be seen. Repeatable."),              \
-     .flags = STARG_FIELD_INPUT},                                                                  \
+    CLI_INPUTS_OPTION("obstacles", scene.obstacles, "FILE",                                        \
+                      "Mesh that stands in the way. A closed one is solid: no guard stands in "    \
+                      "it; an open one blocks the view. Its faces need not be seen. Repeatable."), \
         {CLI_OPTION("orientation", STARG_FIELD_CHOICE, scene.orientation, "nested|keep",           \
                     "Shells bound matter and cavities by their nesting, or as their faces are "    \
                     "turned, also where they touch or overlap."),                                  \
@@ -44,14 +40,15 @@ extern const char *const cli_orientation_words[];
                     "seen from its front, where its corners turn counter-clockwise.")},            \
         {CLI_OPTION("two-sided", STARG_FIELD_FLAG, scene.two_sided, NULL,                          \
                     "--soup: faces are seen from either side.")},                                  \
-        CLI_FACES_OPTION("see", scene.see,                                                         \
-                         "Only these faces need to be seen: a text file of face numbers, from 0; " \
-                         "numbers, such as 0-11,40; or a name in the model: a group, an object "   \
-                         "or a material (OBJ), or a property of faces (PLY) that is not 0 there, " \
-                         "or has a value: NAME=VALUE. Also lists and patterns of names: "          \
-                         "floor,'wall*'. Repeatable: what all of them name."),                     \
-        CLI_FACES_OPTION("ignore", scene.ignore,                                                   \
-                         "All faces but these need to be seen. Repeatable."),                      \
+        CLI_INPUTS_OPTION(                                                                         \
+            "see", scene.see, "FACES",                                                             \
+            "Only these faces need to be seen: a text file of face numbers, from 0; numbers, "     \
+            "such as 0-11,40; or names in the model, with commas between them: of groups, "        \
+            "objects or materials (OBJ), or of properties of faces (PLY) that are not 0 there, "   \
+            "or have a value: NAME=VALUE. * in a name stands for any characters, ? for one. "      \
+            "Repeatable: all of them."),                                                           \
+        CLI_INPUTS_OPTION("ignore", scene.ignore, "FACES",                                         \
+                          "All faces but these need to be seen. Repeatable."),                     \
         CLI_INPUT_OPTION("weights", scene.weights, "FILE|PROPERTY",                                \
                          "How much each face matters: a number for each face of the model in a "   \
                          "text file, or a property of its faces (PLY). Its area counts so many "   \
@@ -61,33 +58,32 @@ extern const char *const cli_orientation_words[];
 #define CLI_LIMIT_OPTIONS                                                                          \
     {CLI_OPTION("standoff", STARG_FIELD_PLACES, scene.standoff, "MIN,MAX",                         \
                 "Guards keep these distances from the model."),                                    \
-     .length = 2, .most = 1},                                                                      \
+     .length = 2, .flags = STARG_FIELD_ONCE},                                                      \
         {CLI_OPTION("within", STARG_FIELD_PLACES, scene.within, "X0,Y0,Z0,X1,Y1,Z1",               \
                     "Guards stand in this box."),                                                  \
-         .length = 6, .most = 1},                                                                  \
+         .length = 6, .flags = STARG_FIELD_ONCE},                                                  \
         CLI_POSITIVE_OPTION("cell", scene.cell, "D", 1e100, 0, "a hundredth of the diagonal",      \
                             "--from: size of the cubes.")
 
 /* The same for `guard`, which does not look from points. */
 #define CLI_PLACE_OPTIONS                                                                          \
     CLI_LIMIT_OPTIONS,                                                                             \
-        CLI_FACES_OPTION("over", scene.over,                                                       \
-                         "Guards stand straight above one of these faces, as floors, at most "     \
-                         "--height high; faces as with --see. --up says what is up. "              \
-                         "Repeatable."),                                                           \
+        CLI_INPUTS_OPTION("over", scene.over, "FACES",                                             \
+                          "Guards stand straight above one of these faces, as floors, at most "    \
+                          "--height high; faces as with --see. What is up says --up."),            \
         CLI_POSITIVE_OPTION("height", scene.height, "H", 1e100, 0, NULL,                           \
                             "--over: how high above them guards may stand."),                      \
-        CLI_FACES_OPTION("mount", scene.mount,                                                     \
-                         "Guards hang at the distance --clearance from these faces only, as "      \
-                         "ceilings and masts; faces as with --see. Repeatable."),                  \
+        CLI_INPUTS_OPTION("mount", scene.mount, "FACES",                                           \
+                          "Guards hang at the distance --clearance from these faces only, as "     \
+                          "ceilings and masts; faces as with --see."),                             \
     {                                                                                              \
         CLI_OPTION("from", STARG_FIELD_PLACES, scene.from, "X,Y,Z",                                \
                    "Guards stand where one gets from this point through cubes that no face "       \
                    "meets; their size is that of --cell."),                                        \
-            .length = 3, .most = 1                                                                 \
+            .length = 3, .flags = STARG_FIELD_ONCE                                                 \
     }
 
-/* Checks the options. */
+/* Names the files that it reads. */
 starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene);
 
 /* The options that ask for the scene of a result. Files that it does not tell become words in

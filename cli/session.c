@@ -23,6 +23,7 @@ const cli_option cli_common_options[] = {
                         "Stop after S seconds. Searches return their best result; without one, the "
                         "exit status is 3."),
     CLI_FLAG_OPTION("quiet", quiet, "Print only warnings and errors."),
+    CLI_FLAG_OPTION("verbose", verbose, "Print details, too."),
     CLI_FLAG_OPTION("json", json,
                     "Print one JSON object to standard output instead of text (docs/formats.md)."),
     {CLI_OPTION("help", STARG_FIELD_FLAG, help, NULL, "Show this help."), .letter = 'h'},

@@ -31,7 +31,7 @@ typedef enum cli_exit {
 typedef struct cli_common {
     uint64_t threads, seed;
     double time_limit; /* seconds; 0: none */
-    bool quiet, json, help, version;
+    bool quiet, verbose, json, help, version;
 } cli_common;
 
 extern const cli_option cli_common_options[];

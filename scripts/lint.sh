@@ -9,7 +9,7 @@ sources=$( (find include src cli tools tests bench examples web -name '*.[ch]'; 
 clang-format --dry-run -Werror $sources
 
 scripts/check-layers.sh
-scripts/check-names.py
+python3 scripts/dead-names.py
 
 # The licence line of each source.
 unmarked=$(git ls-files '*.c' '*.h' '*.cpp' '*.py' '*.sh' '*.js' '*.mjs' '*.cmake' '*CMakeLists.txt' |

@@ -61,7 +61,8 @@ enum {
     STARG_FIELD_COUNTED = 64, /* numbers of a column: count in the member at `length` */
     STARG_FIELD_RARE = 128,   /* with OPTIONAL: not in files where it is the default, which is 0 for
                                  NUMBERS; a RECORD, where all of it is */
-    STARG_FIELD_ALONE = 256   /* a CHOICE whose option needs no word: alone it stands for `none` */
+    STARG_FIELD_ALONE = 256,  /* a CHOICE whose option needs no word: alone it stands for `none` */
+    STARG_FIELD_ONCE = 512    /* PLACES, TEXTS: the option occurs at most once */
 };
 
 typedef struct starg_fields starg_fields;
@@ -76,8 +77,7 @@ typedef struct starg_field {
     size_t offset, size; /* of the member, in bytes                                             */
 
     uint64_t least, most, initial, none; /* COUNT: range, default, meaning of null. CHOICE and FLAG:
-                                            `initial` is the default. LIST: `least` items.
-                                            PLACES, TEXTS: `most` of them, 0: any number */
+                                            `initial` is the default. LIST: `least` items */
     double low, high, standard;          /* REAL, NUMBERS: range, default                       */
     const char *const *words;            /* CHOICE: by number, NULL-terminated */
 

@@ -79,7 +79,8 @@ STARG_API starg_status starg_weights_read(starg_context *context, const char *pa
                                           size_t face_count, double **weights);
 /* The same for a name that the model's own file gives to faces: 1 for those of a group, an object
  * or a material (OBJ), the values of a property of faces (PLY), or 1 where such a property has the
- * value, for `name=value`. Errors: READ, ARGUMENT (no such name, with those that there are; another
+ * value, for `name=value`. In the name * stands for any characters and ? for one: all names that
+ * fit; of several properties, the last value that is not 0. Errors: READ, ARGUMENT (no such name, with those that there are; another
  * model), those of starg_mesh_read. */
 STARG_API starg_status starg_faces_named(starg_context *context, const char *model_file,
                                          const char *name, size_t face_count, double **weights);
@@ -92,10 +93,10 @@ STARG_API size_t starg_space_model_faces(const starg_solid *scene);
 /* Whether a guard may stand at p: starg_solid_contains, and within the distances and the box. */
 STARG_API bool starg_space_admits(const starg_solid *scene, const double p[3]);
 
-/* Where the space that is reached from `from` in a soup leaks (a warning tells, too): a way of
- * `count` points x 3, which belong to the scene, out of the model's bounding box, or to space
- * behind gaps about as wide as a cube. 0: it does not leak. */
-STARG_API size_t starg_space_leak(const starg_solid *scene, const double **points);
+/* A way from `from` of a soup out of the model's box, or through a gap hardly wider than a cube:
+ * `count` points, three numbers each, which the scene keeps; NULL: no leak was found. A warning
+ * tells of it, too. */
+STARG_API const double *starg_space_leak(const starg_solid *scene, size_t *count);
 
 #ifdef __cplusplus
 }

@@ -26,6 +26,7 @@ typedef struct starg_claim {
 /* Something that a result says and that its verdict does not answer for. */
 typedef struct starg_unchecked {
     char text[256]; /* what, and why */
+    bool asked;     /* the result was made to have it: a verdict that leaves it open says so */
 } starg_unchecked;
 
 typedef struct starg_verdict {
@@ -108,6 +109,7 @@ typedef struct starg_pieces_mesh {
 /* The contents of PIECES.json. */
 typedef struct starg_pieces_report {
     char *file; /* the model's path as given; NULL if there is none */
+    size_t model_vertices, model_faces, model_tetrahedra; /* 0: not given */
     starg_decompose_mode mode;
     size_t tetrahedra;
     size_t piece_count;
@@ -227,6 +229,10 @@ typedef struct starg_solid_map {
      * the check tells. */
     size_t strayed;
     double farthest;
+    /* What a file says beside that, for the check; NULL and 0 if made. */
+    double *ratios;   /* count: of each tetrahedron; or NULL                                  */
+    size_t misplaced; /* offsets that are not 4, 8, 12, ...; the first is of `first_misplaced` */
+    size_t first_misplaced;
     /* Of a morph: where the vertices are at times between 0 and 1, key_count x vertex_count x 3.
      * They move straight from A's places through these to B's, and every tetrahedron is positive at
      * every time. */

@@ -63,6 +63,18 @@ class Data:
     def __repr__(self) -> str:
         return f"<C {self._type.name} at {self._address:#x}>"
 
+    # Results of the library do not change, so copies share them. An address means nothing elsewhere.
+
+    def __copy__(self) -> Data:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Data:
+        return self
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError("this object belongs to the library and cannot be pickled; write it to a file (write) and "
+                        "read it again, or pickle what it was made of, such as its mesh")
+
     def __bool__(self) -> bool:
         return self._address != 0
 
@@ -74,18 +86,6 @@ class Data:
 
     def __int__(self) -> int:
         return self._address
-
-    # What the library made does not change, so a copy shares it; memory is of this process only.
-
-    def __copy__(self) -> Data:
-        return self
-
-    def __deepcopy__(self, memo: Any) -> Data:
-        return self
-
-    def __reduce_ex__(self, protocol: Any) -> Any:
-        raise TypeError("this object of the library cannot be pickled: write it to a file and read that, or "
-                        "make it again from its model")
 
     def __add__(self, count: int) -> Data:
         kind = self._type

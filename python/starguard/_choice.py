@@ -9,10 +9,10 @@ from typing import Any, Iterable, Mapping
 from .errors import ArgumentError
 
 
-def meant(word: object, words: Iterable[str]) -> str:
-    """A question for a message, if one of the words is like this one."""
-    near = difflib.get_close_matches(word, list(words), 1) if isinstance(word, str) else []
-    return f"; did you mean {near[0]!r}?" if near else ""
+def near(word: str, words: Iterable[str]) -> str:
+    """"; did you mean ...?" for the most similar word, or nothing."""
+    found = difflib.get_close_matches(word, list(words), 1)
+    return f"; did you mean {found[0]!r}?" if found else ""
 
 
 def choose(name: str, word: str, words: Mapping[str, int]) -> int:
@@ -20,7 +20,7 @@ def choose(name: str, word: str, words: Mapping[str, int]) -> int:
     value = words.get(word) if isinstance(word, str) else None
     if value is None:
         raise ArgumentError(f"{name} is {word!r}; it must be one of {', '.join(words)}"
-                            f"{meant(word, words)}")
+                            + (near(word, words) if isinstance(word, str) else ""))
     return value
 
 

@@ -12,7 +12,7 @@ import warnings
 from typing import Any, Callable, Iterator, Mapping, TypeVar
 
 from . import _arrays
-from ._choice import meant
+from ._choice import near
 from ._library import ffi, lib, text
 from .errors import ArgumentError
 
@@ -61,8 +61,8 @@ class Field:
 
     def _wrong(self, value: Any) -> ArgumentError:
         what = self._expectation()
-        return ArgumentError(f"the {self.name.replace('_', ' ')} is {value!r}; it must be {what}"
-                             f"{meant(value, self.words)}")
+        hint = near(value, self.words) if isinstance(value, str) else ""
+        return ArgumentError(f"the {self.name.replace('_', ' ')} is {value!r}; it must be {what}{hint}")
 
     def get(self, struct: Any) -> Any:
         """The value as a caller would give it; None if it has no number."""
@@ -150,7 +150,7 @@ class Options:
         for name, value in given.items():
             now = self._old.get(name, name)
             if now not in self.fields:
-                raise TypeError(f"unknown option {name!r}{meant(name, self.fields)}")
+                raise TypeError(f"unknown option {name!r}{near(name, self.fields)}")
             if now in values:
                 raise TypeError(f"{now!r} is given twice, once by its old name")
             if now != name:

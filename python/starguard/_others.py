@@ -6,9 +6,7 @@ from __future__ import annotations
 import base64
 import html
 import importlib
-import os
-import tempfile
-from typing import Any, Callable, Mapping
+from typing import Any, Mapping
 
 import numpy as np
 
@@ -25,15 +23,6 @@ def package(name: str) -> Any:
         return importlib.import_module(name)
     except ImportError as error:
         raise ImportError(f"this needs {name}, which cannot be imported: pip install {name}") from error
-
-
-def written(write: Callable[[str], Any], name: str) -> bytes:
-    """The contents of a file that `write` writes."""
-    with tempfile.TemporaryDirectory(prefix="starguard-") as folder:
-        path = os.path.join(folder, name)
-        write(path)
-        with open(path, "rb") as file:
-            return file.read()
 
 
 def trimesh(vertices: Array, faces: Array) -> Any:

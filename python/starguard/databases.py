@@ -111,9 +111,6 @@ class Database:
             "starg_database", lib.starg_database_close, lib.starg_database_open,
             self._session.context, _arrays.path(path))
 
-    def __reduce__(self) -> Any:
-        raise TypeError(f"an open database cannot be pickled or copied; open it again: Database({self.path!r})")
-
     @classmethod
     def create(cls, path: PathLike, *, threads: int | None = None,
                seed: int | None = None) -> Database:

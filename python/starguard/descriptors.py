@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays, _others
+from . import _arrays
 from ._choice import choose, renamed
 from ._fields import fill
 from ._library import ffi, lib, text
@@ -77,9 +77,6 @@ class Descriptor:
                     edges=_arrays.records(d, d.edges, d.edge_count),
                     distances=_arrays.view(d, d.distances, (d.guard_count, d.direction_count),
                                            np.float64))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Descriptor.from_bytes, (_others.written(self.write, "descriptor.json"), "pickle")
 
     @classmethod
     def read(cls, path: PathLike) -> Descriptor:
@@ -152,9 +149,9 @@ def describe(model: Any, *, threads: int | None = None, seed: int | None = None,
     >>> d.distances.shape, d.guards["position"].shape
     ((1, 256), (1, 3))
     """
-    session = Session(threads, seed)
     wanted = _OPTIONS.make(options)
     mesh = as_mesh(model)
+    session = Session(threads, seed)
     return Descriptor._of(session.make(
         "starg_descriptor", lib.starg_descriptor_free, lib.starg_descriptor_create, session.context,
         mesh._handle, wanted.pointer, shared=True, progress=progress, time_limit=time_limit), mesh.file)
@@ -223,11 +220,12 @@ def signature(model: Any, kind: str = "star", *, threads: int | None = None,
     >>> starguard.signature(starguard.sample("star", vertices=500), "shape-dna").numbers.shape
     (50,)
     """
+    number = choose("kind", kind, KINDS)
     mesh = as_mesh(model)
     session = Session(threads, seed)
     return Signature._of(session.make(
         "starg_signature", lib.starg_signature_free, lib.starg_signature_create, session.context,
-        mesh._handle, choose("kind", kind, KINDS), shared=True, progress=progress,
+        mesh._handle, number, shared=True, progress=progress,
         time_limit=time_limit))
 
 

@@ -93,24 +93,32 @@ _CLASSES: dict[int, type[Error]] = {
 }
 
 
-# Messages of the library name commands and options of the command line.
-_CALLS = {"check": "Mesh.check", "repair": "Mesh.repair", "db": "Database"}
+#: What messages call by its command, and how it is called here.
+_CALLS = {"check": "Mesh.check()", "repair": "Mesh.repair()", "guard": "guard()", "visible": "visible()",
+          "map": "map_surface()", "verify": "verify()", "sample": "sample()", "decompose": "decompose()",
+          "db list": "Database.models()", "db create": "Database.create()"}
+_FLAGS = "soup outside two-sided prove overlay fill union no-refine"
 
 
-def in_python(message: str) -> str:
-    """The same with the calls and keywords of this package.
+def _in_python(message: str) -> str:
+    """Commands and options of the command line as calls and keyword arguments."""
+    def call(match: re.Match[str]) -> str:
+        name = match[1] if match[1] in _CALLS else match[1].split()[0]
+        rest = match[1][len(name):].replace(" ", "")
+        made = _CALLS.get(name, name + "()")
+        return f"`{made[:-1]}{keyword(rest)})`" if rest else f"`{made}`"
 
-    >>> in_python("make one with 'starguard repair --union', or leave out --prove")
-    'make one with Mesh.repair(union=...), or leave out prove='
-    """
-    def call(found: re.Match[str]) -> str:
-        keywords = [word.replace("-", "_") for word in re.findall(r"--([a-z][a-z-]*)", found[2])]
-        if "soup" in keywords:
-            return "Scene(model, soup=True)"
-        return f"{_CALLS.get(found[1], found[1])}({', '.join(f'{word}=...' for word in keywords)})"
+    def keyword(option: str) -> str:
+        found = re.match(r"--([a-z][a-z-]*)(.*)", option)
+        if found is None:
+            return option
+        name, value = found[1], "=True" if found[1] in _FLAGS.split() else "=..." if found[2] else ""
+        if name.startswith("no-"):
+            name, value = name[3:], "=False"
+        return name.replace("-", "_") + value
 
-    message = re.sub(r"'starguard ([a-z]+)([^']*)'", call, message)
-    return re.sub(r"(?<!\S)--([a-z][a-z-]*)", lambda m: m[1].replace("-", "_") + "=", message)
+    message = re.sub(r"'starguard ([^']*)'", call, message)
+    return re.sub(r"(?<![\w'])--[a-z][a-z-]*\b", lambda match: keyword(match[0]), message)
 
 
 def of_status(status: int, context: object) -> Error:
@@ -122,5 +130,5 @@ def of_status(status: int, context: object) -> Error:
         return kind(phrase)
     element = _ELEMENTS[detail.element]
     indices = np.array(ffi.unpack(detail.indices, detail.index_count), np.uint64).astype(np.int64)
-    return kind(in_python(text(detail.message)) or phrase, text(detail.stage), element,
+    return kind(_in_python(text(detail.message)) or phrase, text(detail.stage), element,
                 indices.reshape(-1, 2) if element == "edge" else indices)

@@ -257,8 +257,8 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
     >>> len(guards), guards.lower_bound, guards.optimal, guards.positions.shape
     (1, 1, True, (1, 3))
     """
-    session = Session(threads, seed)
     wanted = _OPTIONS.make(options)
+    session = Session(threads, seed)
     if isinstance(candidates, str):
         wanted.pointer.candidates = choose("candidates", candidates, _CANDIDATES)
     elif candidates is not None:
@@ -273,7 +273,7 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
         wanted.pointer.candidates = lib.STARG_CANDIDATES_GIVEN
         wanted.pointer.points = points
         wanted.pointer.point_count = len(places)
-    solid = as_solid(model)  # the options are checked before this work
+    solid = as_solid(model)
     if certificate is not None:
         handle = _certified(session, certificate, solid._handle, wanted.pointer, progress=progress,
                             time_limit=time_limit)
@@ -299,8 +299,8 @@ def unseen(model: Any, *, clearance: float = 0.0, work: int = 30_000_000, thread
     >>> int(starguard.unseen(room).max())
     0
     """
-    session = Session(threads)
     solid = as_solid(model)
+    session = Session(threads)
     out = ffi.new("uint8_t **")
     session.call(lib.starg_unseen, session.context, solid._handle, ffi.NULL, clearance, work, out,
                  progress=progress, time_limit=time_limit)
@@ -326,13 +326,14 @@ def candidate_points(model: Any, source: str = "skeleton", count: int = 1000, *,
     >>> starguard.candidate_points(room, "interior", 50).shape[1]
     3
     """
-    session = Session(threads, seed)
     kind = choose("source", source, _CANDIDATES)
     solid = as_solid(model)
+    session = Session(threads, seed)
     out, number = ffi.new("double **"), ffi.new("size_t *")
     try:
-        session.call(lib.starg_candidate_points, session.context, solid._handle, kind, count,
-                     float(clearance), out, number, progress=progress, time_limit=time_limit)
+        session.call(lib.starg_candidate_points, session.context, solid._handle,
+                     kind, count, float(clearance), out, number,
+                     progress=progress, time_limit=time_limit)
     finally:
         owner = session.own(out[0], lib.starg_points_free, shared=True) if out[0] else None
     return _arrays.view(owner, out[0], (number[0], 3), np.float64)

@@ -2,16 +2,14 @@
 """Maps and morphs between two surfaces."""
 from __future__ import annotations
 
-import os
-import tempfile
 import threading
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays, _others
+from . import _arrays
 from ._choice import word_of
 from ._fields import fill
 from ._library import ffi, lib
@@ -70,9 +68,6 @@ class SurfaceMap:
                     faces=_arrays.view(m, m.faces, (m.vertex_count,), np.uint32),
                     coordinates=_arrays.view(m, m.coordinates, (m.vertex_count, 3), np.float64))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled, (_others.written(self.write, "map.json"), self.source, self.target, self.kind)
-
     def images(self) -> Array:
         """The images of A's vertices, (n, 3)."""
         rows = np.empty((len(self.faces), 3))
@@ -115,15 +110,6 @@ class SurfaceMap:
         return cls._of(session.make("starg_map", lib.starg_map_free, lib.starg_map_read,
                                     session.context, _arrays.path(path), first._handle,
                                     second._handle, shared=True), first, second)
-
-
-def _unpickled(data: bytes, source: Mesh, target: Mesh, kind: str) -> SurfaceMap:
-    """The map of the file, which is measured again."""
-    with tempfile.TemporaryDirectory(prefix="starguard-") as folder:
-        path = os.path.join(folder, "map.json")
-        with open(path, "wb") as file:
-            file.write(data)
-        return replace(SurfaceMap.read(path, source, target), kind=kind)
 
 
 def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *,
@@ -211,11 +197,11 @@ class Morph:
     def __init__(self, a: Any, target: Any, *, threads: int | None = None, seed: int | None = None,
                  time_limit: float | None = None, progress: Progress | None = None,
                  **options: Unpack[MorphOptions]) -> None:
-        self._session = Session(threads, seed)
-        self._lock = threading.Lock()
         wanted = _OPTIONS.make(options)
         self.mesh: Mesh = as_mesh(a)  #: A
         images = self._images(target, threads=threads, seed=seed, progress=progress)
+        self._session = Session(threads, seed)
+        self._lock = threading.Lock()
         self._handle = self._session.make(
             "starg_morph", lib.starg_morph_free, lib.starg_morph_create, self._session.context,
             self.mesh._handle, _arrays.pointer("double[]", images), wanted.pointer, progress=progress,

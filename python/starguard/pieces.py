@@ -2,6 +2,8 @@
 """Star decomposition: few pieces, each entirely visible from its guard."""
 from __future__ import annotations
 
+import os
+import tempfile
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Iterator
 
@@ -89,9 +91,15 @@ class Decomposition:
         return iter(self.pieces)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        pieces = _others.written(lambda path: self.write(path, binary=True), "pieces.vtk")
-        report = _others.written(self.write_report, "pieces.json")
-        return _unpickled, (pieces, report, self.options)
+        with tempfile.TemporaryDirectory(prefix="starguard-") as folder:
+            files = os.path.join(folder, "pieces.vtk"), os.path.join(folder, "pieces.json")
+            self.write(files[0], binary=True)
+            self.write_report(files[1])
+            contents = []
+            for name in files:
+                with open(name, "rb") as file:
+                    contents.append(file.read())
+        return _unpickled, (*contents, self.options)
 
     def _repr_html_(self) -> str:
         from .pictures import distinct_colors
@@ -251,14 +259,14 @@ def decompose(model: Any, *, guards: ArrayLike | None = None,
     >>> pieces, pieces.guards.shape, bool(pieces.pieces["star"].all())
     (Decomposition(1 pieces, 1 proven star-shaped), (1, 3), True)
     """
-    session = Session(threads, seed)
     wanted = OPTIONS.make(options)
+    shape = as_shape(model)
+    session = Session(threads, seed)
     if guards is not None:
         places = _arrays.points(guards, "guards")
         points = _arrays.pointer("double[]", places)
         wanted.pointer.guards = points
         wanted.pointer.guard_count = len(places)
-    shape = as_shape(model)
     function, handle = _subject(shape)
     if certificate is not None:
         if function != lib.starg_decompose:

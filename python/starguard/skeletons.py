@@ -2,12 +2,12 @@
 """The curve skeleton of a solid: an interior graph along its centre with the same topology."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _arrays, _others
+from . import _arrays
 from ._choice import choose
 from ._fields import fill
 from ._library import ffi, lib
@@ -62,11 +62,6 @@ class Skeleton:
                     edges=_arrays.view(s, s.edges, (s.edge_count, 2), np.uint32),
                     vertex_nodes=_arrays.view(s, s.vertex_nodes, (s.vertex_count,), np.uint32))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        rest = {name: getattr(self, name) for name in ("radii", "cuts", "mends", "homotopic")}
-        return _unpickled, (_others.written(self.write, "skeleton.vtk"),
-                            np.array(self.vertex_nodes), rest)
-
     @classmethod
     def read(cls, path: PathLike) -> Skeleton:
         """Reads a file of `write`, recognized by content.
@@ -102,11 +97,6 @@ class Skeleton:
                      choose("format", format, _FORMATS))
 
 
-def _unpickled(data: bytes, vertex_nodes: Array, rest: dict[str, Any]) -> Skeleton:
-    """The graph of the file, and what that does not tell."""
-    return replace(Skeleton.from_bytes(data, "pickle"), vertex_nodes=vertex_nodes, **rest)
-
-
 @takes(_OPTIONS)
 def skeleton(model: Any, *, threads: int | None = None, seed: int | None = None,
              time_limit: float | None = None, progress: Progress | None = None,
@@ -118,9 +108,9 @@ def skeleton(model: Any, *, threads: int | None = None, seed: int | None = None,
     >>> s.loops, s.ends, s.homotopic
     (1, 0, True)
     """
-    session = Session(threads, seed)
     wanted = _OPTIONS.make(options)
     solid = as_solid(model)
+    session = Session(threads, seed)
     return Skeleton._of(session.make(
         "starg_skeleton", lib.starg_skeleton_free, lib.starg_skeleton_create, session.context,
         solid._handle, wanted.pointer, shared=True, progress=progress, time_limit=time_limit))

@@ -2,7 +2,6 @@
 """Solids: checked meshes with search structures."""
 from __future__ import annotations
 
-import functools
 import weakref
 from typing import Any, Sequence
 
@@ -43,11 +42,14 @@ class Solid:
         self.mesh: Mesh = Mesh._of(inner, given.file, owner=self._handle)
         self.mesh._solid = weakref.ref(self)  # a Mesh caches its solid
 
-    def __repr__(self) -> str:
-        return f"Solid({len(self.mesh.vertices)} vertices, {len(self.mesh.faces)} faces)"
-
     def __reduce__(self) -> tuple[Any, ...]:
         return Solid, (self.mesh,)
+
+    def __deepcopy__(self, memo: Any) -> Solid:
+        return self  # it does not change
+
+    def __repr__(self) -> str:
+        return f"Solid({len(self.mesh.vertices)} vertices, {len(self.mesh.faces)} faces)"
 
     @property
     def check(self) -> Check:
@@ -105,9 +107,6 @@ class Scene(Solid):
         #: What is to be seen, and what stands in the way.
         self.model: Mesh = as_mesh(model)
         self.obstacles: list[Mesh] = [as_mesh(obstacle) for obstacle in obstacles]
-        self._given = {"orientation": orientation, "outside": outside, "soup": soup, "standoff": standoff,
-                       "within": within, "start": start, "cell": cell, "over": over, "up": up,
-                       "mount": mount, "weights": weights}
         session = Session(threads)
         options = ffi.new("starg_space_options *")
         lib.starg_space_options_default(options)
@@ -141,9 +140,6 @@ class Scene(Solid):
         self.mesh = Mesh._of(lib.starg_solid_mesh(self._handle), self.model.file,
                              owner=self._handle)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return functools.partial(Scene, self.model, obstacles=self.obstacles, **self._given), ()
-
     def _pointers(self) -> Any:
         return ffi.new("starg_mesh *[]", [o._handle for o in self.obstacles] or [ffi.NULL])
 
@@ -154,21 +150,28 @@ class Scene(Solid):
             raise ArgumentError(f"weights must have the shape ({faces},), not {numbers.shape}")
         session.call(lib.starg_space_weigh, self._handle, _arrays.pointer("double[]", numbers))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a scene cannot be pickled; pickle its model and obstacles, and make the scene of them again")
+
+    def __copy__(self) -> Scene:
+        return self
+
     def __repr__(self) -> str:
         return f"Scene({len(self.model.faces)} faces, {len(self.obstacles)} obstacles)"
+
+    @property
+    def leak(self) -> Array:
+        """A way from `start` of a soup to the outside of the model, or through a gap hardly wider
+        than a cube; a warning tells of it, too. Shape (n, 3), with n = 0 if no leak was found."""
+        count = ffi.new("size_t *")
+        points = lib.starg_space_leak(self._handle, count)
+        return _arrays.view(self._handle, points, (count[0], 3), np.float64) if points else np.empty((0, 3))
 
     def admits(self, points: ArrayLike) -> Array:
         """Whether a guard may stand at each point. Shape (n,), bool."""
         rows = _arrays.points(points, "points")
         return np.array([lib.starg_space_admits(self._handle, ffi.from_buffer("double[3]", row))
                          for row in rows], bool)
-
-    def leak(self) -> Array:
-        """Of a soup with a `start`: the way from there out of the model's box, or to space behind gaps
-        about as wide as a cube, (n, 3); empty if there is none. A warning tells of it, too."""
-        out = ffi.new("double **")
-        count = lib.starg_space_leak(self._handle, out)
-        return np.array(ffi.unpack(out[0], 3 * count) if count else [], float).reshape(-1, 3)
 
 
 def as_solid(model: Any) -> Solid:

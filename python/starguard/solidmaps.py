@@ -123,9 +123,9 @@ def map_solid(a: Any, target: Any, *, overlay: bool = False, threads: int | None
     >>> starguard.verify_map(a, b, starguard.map_solid(a, b, overlay=True)).passed
     True
     """
+    wanted = _OPTIONS.make(options)
     mesh = as_mesh(a)
     session = Session(threads, seed)
-    wanted = _OPTIONS.make(options)
     if isinstance(target, str) and target in _SHAPES:
         return SolidMap._of(session.make(
             "starg_solid_map", lib.starg_solid_map_free, lib.starg_solid_map_to, session.context,

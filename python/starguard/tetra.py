@@ -199,9 +199,9 @@ def tetrahedralize(model: Any, *, threads: int | None = None, time_limit: float 
     >>> tets.report.generator, tets.report.surface_kept
     ('stuffing', False)
     """
-    session = Session(threads)
     wanted = _OPTIONS.make(options)
     mesh = as_mesh(model)
+    session = Session(threads)
     report = ffi.new("starg_tetra_report *")
     function, handle = lib.starg_tetmesh_from_solid, None
     try:

@@ -333,6 +333,8 @@ def pieces_report_of(d: Decomposition) -> Any:
     own = d._handle
     report = ffi.new("starg_pieces_report *")
     report.mode = own.mode
+    for name in ("model_vertices", "model_faces", "model_tetrahedra"):
+        setattr(report, name, getattr(own, name))
     report.tetrahedra = len(d.labels)
     report.piece_count, report.pieces = own.piece_count, own.pieces
     report.contact_count, report.contacts = own.contact_count, own.contacts

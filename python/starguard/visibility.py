@@ -47,13 +47,14 @@ class Bits:
         given = np.asarray(matrix, bool)
         if given.ndim != 2:
             raise ArgumentError(f"a bit matrix has two dimensions, not {given.ndim}")
-        return _unpickled(np.packbits(given, axis=1, bitorder="little"), given.shape)
+        session = Session()
+        handle = session.make("starg_bits", lib.starg_bits_free, lib.starg_bits_create,
+                              session.context, *given.shape, brief=True)
+        _fill(handle, np.packbits(given, axis=1, bitorder="little"))
+        return cls(handle)
 
     def __repr__(self) -> str:
         return f"Bits({self.shape[0]} x {self.shape[1]})"
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled, (np.packbits(np.asarray(self), axis=1, bitorder="little"), self.shape)
 
     def __len__(self) -> int:
         return self.shape[0]
@@ -88,14 +89,6 @@ class Bits:
         return np.array([lib.starg_bits_count(self._handle, i) for i in range(len(self))], np.int64)
 
 
-def _unpickled(packed: Array, shape: tuple[int, ...]) -> Bits:
-    session = Session()
-    handle = session.make("starg_bits", lib.starg_bits_free, lib.starg_bits_create, session.context,
-                          *shape, brief=True)
-    _fill(handle, packed)
-    return Bits(handle)
-
-
 def _fill(handle: Any, packed: Array) -> None:
     """Sets the bits of a new matrix that is not shared yet."""
     bytes_per_row = 8 * lib.starg_bits_words(handle)
@@ -120,9 +113,10 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
     >>> seen.shape, bool(seen[1].any())
     ((2, 1008), False)
     """
-    rows = _arrays.points(points, "points")
-    session = Session(threads)
     wanted = _OPTIONS.make(options)
+    rows = _arrays.points(points, "points")
+    solid = as_solid(model)
+    session = Session(threads)
     if directions is not None:
         looks = _arrays.points(directions, "directions")
         if len(looks) != len(rows):
@@ -131,7 +125,6 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
         wanted.pointer.directions = pointer
     elif wanted.pointer.cone < 360 or wanted.pointer.fov[0] > 0:
         raise ArgumentError("a cone or a field of view needs directions, one per point")
-    solid = as_solid(model)
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility, session.context,
                              solid._handle, _arrays.pointer("double[]", rows), len(rows),
                              wanted.pointer, progress=progress, time_limit=time_limit))
@@ -152,10 +145,10 @@ def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
     >>> bool((point[0] <= box[0]).all())
     True
     """
-    rows = _arrays.points(boxes, "boxes", 6)
-    session = Session(threads)
     wanted = _OPTIONS.make({"target": target, "range": range})
+    rows = _arrays.points(boxes, "boxes", 6)
     solid = as_solid(model)
+    session = Session(threads)
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility_region,
                              session.context, solid._handle, _arrays.pointer("double[]", rows),
                              len(rows), wanted.pointer, progress=progress, time_limit=time_limit))

@@ -466,8 +466,9 @@ static double box_distance_squared(const double p[3], const bvh_box *box) {
     return sum;
 }
 
-/* Sets the nearest point, if there are triangles; returns its squared distance. */
-static double nearest_squared(const bvh *tree, const double p[3], double out[3]) {
+/* Sets the nearest point and its triangle, if there are triangles; returns its squared distance. */
+static double nearest_squared(const bvh *tree, const double p[3], double out[3],
+                              uint32_t *nearest) {
     uint32_t stack[STACK_SIZE];
     int depth = 0;
     double best = INFINITY;
@@ -490,6 +491,7 @@ static double nearest_squared(const bvh *tree, const double p[3], double out[3])
             double foot[3] = {0}, d = triangle_nearest(p, corners, foot);
             if (d < best) {
                 best = d;
+                *nearest = triangle;
                 vec3_copy(foot, out);
             }
         }
@@ -499,10 +501,19 @@ static double nearest_squared(const bvh *tree, const double p[3], double out[3])
 
 double bvh_distance(const bvh *tree, const double p[3]) {
     double foot[3];
-    return sqrt(nearest_squared(tree, p, foot));
+    uint32_t triangle;
+    return sqrt(nearest_squared(tree, p, foot, &triangle));
 }
 
 void bvh_nearest(const bvh *tree, const double p[3], double out[3]) {
+    uint32_t triangle;
     vec3_copy(p, out);
-    nearest_squared(tree, p, out);
+    nearest_squared(tree, p, out, &triangle);
+}
+
+uint32_t bvh_nearest_triangle(const bvh *tree, const double p[3]) {
+    double foot[3];
+    uint32_t triangle = 0;
+    nearest_squared(tree, p, foot, &triangle);
+    return triangle;
 }

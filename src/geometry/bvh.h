@@ -122,6 +122,10 @@ bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bv
 /* Distance from p to the nearest triangle, rounded; infinity without triangles. */
 double bvh_distance(const bvh *tree, const double p[3]) STARG_PRIVATE(bvh_distance);
 
+/* The triangle nearest to p, as far as rounding tells; one of several. There must be some. */
+uint32_t bvh_nearest_triangle(const bvh *tree, const double p[3])
+    STARG_PRIVATE(bvh_nearest_triangle);
+
 /* The point of the triangles nearest to p, rounded; p without triangles. */
 void bvh_nearest(const bvh *tree, const double p[3], double out[3]) STARG_PRIVATE(bvh_nearest);
 

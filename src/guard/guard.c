@@ -80,8 +80,10 @@ static starg_status take_given(const guard_problem *problem, candidate_points *p
     }
     if (dropped > 0)
         starg_log(problem->context, STARG_LOG_WARNING,
-                  "ignoring %zu of %zu given candidates: not inside, or too close to the boundary",
-                  dropped, options->point_count);
+                  "ignoring %zu of %zu given candidates: not inside%s%s", dropped,
+                  options->point_count,
+                  problem->solid->scene ? ", or not where guards may stand" : "",
+                  options->clearance > 0 ? ", or nearer to the boundary than the clearance" : "");
 done:
     return status;
 }
@@ -140,10 +142,14 @@ done:
     return status;
 }
 
+static bool is_limited(const starg_space_options *s) {
+    return s->within[0] < s->within[3] || s->standoff_most > 0 || s->standoff_least > 0 ||
+           s->cell > 0 || s->over_count > 0 || s->mount_count > 0;
+}
+
 /* Candidates that see nothing prove nothing. Says which limits may be the reason. */
 static starg_status fail_unseen(const guard_problem *problem, const guard_pool *pool) {
     const starg_guard_options *o = problem->options;
-    const starg_space_options *space = &problem->solid->space;
     double diagonal = problem->solid->check->diagonal, range = o->visibility.range;
     const struct {
         const char *text;
@@ -153,12 +159,11 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
         {"a larger range", range < diagonal},
         {"a wider view", sensor_is_directed(&o->visibility)},
         {"a larger incidence", o->visibility.incidence > 0 && o->visibility.incidence < 90},
-        {"other faces to see", problem->solid->importance != NULL},
-        {"a larger box for guards", space_is_bounded(space)},
-        {"other distances from the model", space->standoff_least > 0 || space->standoff_most > 0},
-        {"other faces to stand over", space->over_count > 0},
-        {"other faces to hang from", space->mount_count > 0},
-        {"another point to start from", space->cell > 0},
+        {"faces that are seen from either side (two-sided)",
+         problem->solid->other_side != NULL && !solid_is_two_sided(problem->solid)},
+        {"other faces to see", problem->weights.faces < starg_space_model_faces(problem->solid)},
+        {"wider limits of where guards may stand (box, distances, faces)",
+         problem->solid->scene && is_limited(&problem->solid->space)},
         {"other candidates", o->candidates == STARG_CANDIDATES_GIVEN},
     };
     char advice[256] = "";
@@ -322,6 +327,7 @@ static starg_status find_star_guard(const guard_problem *problem, guard_outcome 
         STARG_PUSH(problem->context, STAGE, &out->selection.chosen, 0);
         STARG_PUSH(problem->context, STAGE, &out->selection.levels, 0);
         out->selection.lower_bound = out->search.bound = 1;
+        out->selection.weight_bound = out->search.weight_bound = problem->weights.total;
     } else
         pool_free(pool);
 done:

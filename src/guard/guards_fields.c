@@ -225,10 +225,6 @@ static bool has_area_bound(const void *record) {
     return of(record)->options.max_guards > 0;
 }
 
-static bool has_area_bound_everywhere(const void *record) {
-    return of(record)->area_bound_everywhere > 0;
-}
-
 static bool is_bounded_everywhere(const void *record) {
     return of(record)->lower_bound_everywhere > 0;
 }
@@ -410,10 +406,9 @@ static const starg_field COVERAGE[] = {
              "candidates covers; trivially 1 with redundancy above 1 or target vertices."},
     {.key = "area_bound_everywhere",
      .kind = STARG_FIELD_REAL,
-     .flags = STARG_FIELD_OPTIONAL,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_ABOVE,
      RESULT(area_bound_everywhere),
      .high = 1,
-     .applies = has_area_bound_everywhere,
      .help = "With max_guards and prove: upper bound on the area fraction that so many guards "
              "cover, wherever they stand."},
 };

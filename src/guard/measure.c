@@ -3,6 +3,7 @@
 #include "geometry/vec3.h"
 #include "guard/baseline.h"
 #include "guard/stages.h"
+#include "visibility/scene.h"
 
 static const char STAGE[] = "guard";
 
@@ -149,8 +150,8 @@ static starg_status measure_vertices(const guard_problem *problem, const guard_p
     const starg_visibility_options options =
         view_of(problem, STARG_TARGET_VERTICES, result->directions, result->ups);
     STARG_TRY(find_unused(problem, &unused, &used));
-    STARG_TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
-                               &options, &seen));
+    STARG_TRY(visibility_rows(problem->context, problem->solid, result->positions, result->count,
+                              &options, NULL, &seen));
     STARG_TRY(pool_join_rows(problem->context, seen, &joined));
     STARG_TRY(list_missing(problem, joined, STARG_TARGET_VERTICES, unused,
                            &result->uncovered_vertices, &result->uncovered_vertex_count));

@@ -16,7 +16,6 @@
 #include "core/memory.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
-#include "geometry/vec3.h"
 #include "mesh/contact.h"
 #include "mesh/examine.h"
 #include "mesh/mesh.h"
@@ -312,37 +311,6 @@ static void summarise(checker *c) {
         int64_t euler = used - (int64_t)check->faces / 2;
         check->genus = (int64_t)check->components - euler / 2;
     }
-}
-
-/* Large holes: the area vectors of the faces, which cancel out on a closed surface, leave more than
- * a twentieth of the area. Faces that are not turned alike say nothing. */
-static const double MOST_OPEN = 0.05;
-
-static bool is_wide_open(const starg_mesh *mesh, const starg_check *check) {
-    double sum[3] = {0, 0, 0}, area = 0;
-    if (check->findings[STARG_FINDING_OPEN_EDGE].count == 0 ||
-        check->findings[STARG_FINDING_INCONSISTENT_EDGE].count > 0)
-        return false;
-    for (size_t f = 0; f < mesh->face_count; f++) {
-        const uint32_t *c = mesh->faces + 3 * f;
-        double a[3], b[3], own[3];
-        vec3_subtract(mesh->vertices + 3 * (size_t)c[1], mesh->vertices + 3 * (size_t)c[0], a);
-        vec3_subtract(mesh->vertices + 3 * (size_t)c[2], mesh->vertices + 3 * (size_t)c[0], b);
-        vec3_cross(a, b, own);
-        vec3_along(sum, 1, own, sum);
-        area += vec3_length(own);
-    }
-    return vec3_length(sum) > MOST_OPEN * area;
-}
-
-const char *starg_check_advice(const starg_mesh *mesh, const starg_check *check) {
-    if (check->one_sided_faces > 0 && check->one_sided_faces == check->faces)
-        return "its surfaces are one-sided, which cannot be repaired; 'starguard guard --soup' "
-               "takes "
-               "them as they are";
-    if (is_wide_open(mesh, check))
-        return "its holes are large: 'starguard guard --soup' takes it as it is";
-    return "try 'starguard repair'";
 }
 
 starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_examination *out) {

@@ -108,141 +108,114 @@ starg_status starg_weights_read(starg_context *context, const char *path, size_t
 
 /* ---- names in the model ---- */
 
-/* Does the text fit a pattern, in which * stands for any characters, and ? for any one? */
-static bool fits(const char *pattern, size_t pattern_length, const char *text, size_t length) {
-    size_t p = 0, t = 0, star = SIZE_MAX, resume = 0;
-    while (t < length) {
-        if (p < pattern_length && pattern[p] == '*') {
-            star = p++;
-            resume = t;
-        } else if (p < pattern_length && (pattern[p] == '?' || pattern[p] == text[t])) {
-            p++;
-            t++;
-        } else if (star != SIZE_MAX) {
-            p = star + 1;
-            t = ++resume;
+/* Is the name what the pattern, up to its end, describes? The last * takes one character more
+ * whenever what follows it does not fit. Cost: the product of the lengths. */
+static bool fits(const char *pattern, const char *end, const char *name, size_t length) {
+    const char *stop = name + length, *star = NULL, *from = NULL;
+    while (name < stop) {
+        if (pattern < end && *pattern == '*') {
+            star = pattern++;
+            from = name;
+        } else if (pattern < end && (*pattern == '?' || *pattern == *name)) {
+            pattern++;
+            name++;
+        } else if (star != NULL) {
+            pattern = star + 1;
+            name = ++from;
         } else {
             return false;
         }
     }
-    while (p < pattern_length && pattern[p] == '*')
-        p++;
-    return p == pattern_length;
+    while (pattern < end && *pattern == '*')
+        pattern++;
+    return pattern == end;
 }
 
-bool starg_values_know(starg_face_values *values, const char *name, size_t length) {
+bool starg_values_want(starg_face_values *values, const char *name, size_t length) {
+    bool wanted = fits(values->pattern, values->pattern + strlen(values->pattern), name, length);
+    values->found = values->found || wanted;
+    return wanted;
+}
+
+bool starg_values_want_property(starg_face_values *values, const char *name, size_t length) {
+    if (values->equals == NULL)
+        return starg_values_want(values, name, length);
+    bool wanted = fits(values->pattern, values->equals, name, length);
+    values->found = values->compared = values->found || wanted;
+    return wanted;
+}
+
+void starg_values_note(starg_face_values *values, const char *name, size_t length) {
     size_t used = strlen(values->others);
-    if (values->pattern ? fits(values->name, values->length, name, length)
-                        : length == values->length && memcmp(name, values->name, length) == 0)
-        return values->found = true;
-    if (used + length + 3 < sizeof values->others) {
-        char quoted[sizeof values->others];
-        snprintf(quoted, sizeof quoted, "%s%.*s", used > 0 ? ", " : "", (int)length, name);
-        const char *at = strstr(values->others, quoted + (used > 0 ? 2 : 0));
-        if (at == NULL)
-            strcat(values->others, quoted);
-    }
-    return false;
+    char quoted[sizeof values->others];
+    if (used + length + 3 >= sizeof values->others)
+        return;
+    snprintf(quoted, sizeof quoted, "%s%.*s", used > 0 ? ", " : "", (int)length, name);
+    if (strstr(values->others, quoted + (used > 0 ? 2 : 0)) == NULL)
+        strcat(values->others, quoted);
+}
+
+void starg_values_take(starg_face_values *values, double value) {
+    if (values->equals != NULL)
+        values->current = values->current != 0 || value == values->wanted;
+    else if (value != 0)
+        values->current = value;
 }
 
 static starg_status fail_unknown(starg_context *context, const starg_face_values *values,
                                  const char *path) {
     bool any = values->others[0] != '\0';
     return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                      "no file, and no group, material or property of faces in '%.200s', is called "
-                      "'%.*s'%s%s",
-                      path, (int)(values->length < 100 ? values->length : 100), values->name,
+                      "no file, and no group, object, material or property of faces in '%.200s', "
+                      "is called '%.100s'%s%s",
+                      path, values->pattern,
                       any ? "; there are " : "; it names no faces: give a file of face numbers",
                       values->others);
 }
 
-/* 1 where the value is the one wanted. */
-static starg_status compare(starg_context *context, starg_face_values *values) {
+static starg_status take_pattern(starg_context *context, const char *name,
+                                 starg_face_values *values) {
     starg_status status = STARG_OK;
     starg_c_locale locale = {0};
-    double wanted;
+    values->pattern = name;
+    values->equals = strchr(name, '=');
     if (values->equals == NULL)
         return STARG_OK;
     STARG_TRY(starg_c_locale_enter(context, &locale));
-    if (!starg_parse_real(values->equals, values->equals_length, &wanted))
-        status = starg_fail(
-            context, STARG_ERROR_ARGUMENT, STAGE, "'%.*s' is not a number that a property can have",
-            (int)(values->equals_length < 100 ? values->equals_length : 100), values->equals);
-    for (size_t i = 0; status == STARG_OK && i < values->data.count; i++)
-        values->data.data[i] = values->data.data[i] == wanted;
+    if (!starg_parse_real(values->equals + 1, strlen(values->equals + 1), &values->wanted))
+        values->wanted = NAN;
 done:
     starg_c_locale_leave(&locale);
     return status;
 }
 
-/* A model's file, read once. */
-typedef struct named_file {
-    starg_context *context;
-    const char *path;
-    char *bytes;
-    size_t size, faces;
-} named_file;
-
-/* Raises the values of faces to those by a name; `found` is false if the file does not have it. */
-static starg_status raise_values(const named_file *file, starg_face_values *values, double *out) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    STARG_TRY(
-        starg_mesh_read_with(file->context, file->bytes, file->size, file->path, values, &mesh));
-    if (values->found && values->data.count != file->faces)
-        status = starg_fail(file->context, STARG_ERROR_ARGUMENT, STAGE,
-                            "'%.200s' has %zu faces, and the model %zu", file->path,
-                            values->data.count, file->faces);
-    STARG_TRY(status);
-    if (values->found)
-        STARG_TRY(compare(file->context, values));
-    for (size_t f = 0; f < file->faces && values->found; f++)
-        if (out[f] == 0 || values->data.data[f] > out[f])
-            out[f] = values->data.data[f];
-done:
-    STARG_ARRAY_FREE(file->context, &values->data);
-    starg_mesh_free(mesh);
-    return status;
-}
-
-/* A name with a list's other names left out: NAME or NAME=VALUE, either a pattern. */
-static starg_face_values part_of(const char *text, size_t length) {
-    const char *equals = memchr(text, '=', length);
-    starg_face_values part = {.name = text, .length = length, .pattern = true};
-    if (equals == NULL)
-        return part;
-    part.length = (size_t)(equals - text);
-    part.equals = equals + 1;
-    part.equals_length = length - part.length - 1;
-    return part;
-}
-
-/* The name as it stands first, as names may hold any characters; else it is a list. */
 starg_status starg_faces_named(starg_context *context, const char *model_file, const char *name,
                                size_t face_count, double **weights) {
     starg_status status = STARG_OK;
-    named_file file = {.context = context, .path = model_file, .faces = face_count};
-    starg_face_values values = {.name = name, .length = strlen(name)};
-    double *out = NULL;
+    starg_mesh *mesh = NULL;
+    char *bytes = NULL;
+    size_t size = 0;
+    starg_face_values values = {0};
     *weights = NULL;
-    STARG_TRY(starg_file_read(context, STAGE, model_file, &file.bytes, &file.size));
-    STARG_NEW_ZERO(context, STAGE, out, face_count);
-    STARG_TRY(raise_values(&file, &values, out));
-    for (const char *at = name; !values.found && at != NULL;) {
-        const char *comma = strchr(at, ',');
-        starg_face_values part = part_of(at, comma != NULL ? (size_t)(comma - at) : strlen(at));
-        STARG_TRY(raise_values(&file, &part, out));
-        if (!part.found) {
-            status = fail_unknown(context, &part, model_file);
-            goto done;
-        }
-        at = comma != NULL ? comma + 1 : NULL;
-    }
-    *weights = out;
-    out = NULL;
+    STARG_TRY(take_pattern(context, name, &values));
+    STARG_TRY(starg_file_read(context, STAGE, model_file, &bytes, &size));
+    STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
+    if (!values.found)
+        status = fail_unknown(context, &values, model_file);
+    else if (values.data.count != face_count)
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "'%.200s' has %zu faces, and the model %zu", model_file,
+                            values.data.count, face_count);
+    else if (values.compared && isnan(values.wanted))
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "'%.100s' is not a number that a property can have", values.equals + 1);
+    STARG_TRY(status);
+    *weights = values.data.data;
+    values.data.data = NULL;
 done:
-    starg_release(context, out);
-    starg_release(context, file.bytes);
+    STARG_ARRAY_FREE(context, &values.data);
+    starg_mesh_free(mesh);
+    starg_release(context, bytes);
     return status;
 }
 

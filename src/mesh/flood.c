@@ -29,8 +29,7 @@ static size_t cell_at(const flood_cells *f, const size_t at[3]) {
     return at[0] + f->count[0] * (at[1] + f->count[1] * at[2]);
 }
 
-/* False where p is out of the grid. */
-static bool locate(const flood_cells *f, const double p[3], size_t at[3]) {
+bool flood_locate(const flood_cells *f, const double p[3], size_t at[3]) {
     for (int k = 0; k < 3; k++) {
         double x = floor((p[k] - f->origin[k]) / f->size);
         if (!(x >= 0 && x < (double)f->count[k]))
@@ -154,27 +153,30 @@ done:
     return status;
 }
 
+static starg_status fail_beyond(const flood_cells *f, const starg_solid *scene,
+                                const double from[3]) {
+    bvh_box box;
+    solid_reach(scene, &box);
+    return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
+                      "nobody can stand at (%g, %g, %g): it is not in the box where guards may be, "
+                      "from (%g, %g, %g) to (%g, %g, %g); choose a point in it, or another box "
+                      "(--within)",
+                      from[0], from[1], from[2], box.lower[0], box.lower[1], box.lower[2],
+                      box.upper[0], box.upper[1], box.upper[2]);
+}
+
 static starg_status spread(flood_cells *f, const starg_solid *scene, const double from[3]) {
     starg_status status = STARG_OK;
     cell_stack stack = {0};
     size_t at[3];
     const size_t step[3] = {1, f->count[0], f->count[0] * f->count[1]};
-    if (!locate(f, from, at)) {
-        bvh_box box;
-        solid_reach(scene, &box);
-        return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
-                          "nobody can stand at (%g, %g, %g): it is not in the box where guards may "
-                          "be, from (%g, %g, %g) to (%g, %g, %g)%s; choose a point in it, or "
-                          "another box",
-                          from[0], from[1], from[2], box.lower[0], box.lower[1], box.lower[2],
-                          box.upper[0], box.upper[1], box.upper[2],
-                          space_is_bounded(&scene->space) ? "" : ", around the model");
-    }
+    if (!flood_locate(f, from, at))
+        return fail_beyond(f, scene, from);
     if (starg_bit_test(f->taken, cell_at(f, at)))
         return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
-                          "nobody can stand at (%g, %g, %g): a face meets its cube; choose another "
-                          "point or smaller cubes",
-                          from[0], from[1], from[2]);
+                          "nobody can stand at (%g, %g, %g): a face meets its cube of the size %g; "
+                          "choose another point or smaller cubes",
+                          from[0], from[1], from[2], f->size);
     if (!starg_solid_contains(scene, from))
         return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
                           "nobody can stand at (%g, %g, %g): it is within matter, or outside of "
@@ -223,7 +225,7 @@ void flood_free(flood_cells *f) {
 
 bool flood_reaches(const flood_cells *f, const double p[3]) {
     size_t at[3];
-    return locate(f, p, at) && starg_bit_test(f->bits, cell_at(f, at));
+    return flood_locate(f, p, at) && starg_bit_test(f->bits, cell_at(f, at));
 }
 
 bool flood_meets(const flood_cells *f, const bvh_box *box) {

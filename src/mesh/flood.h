@@ -5,12 +5,15 @@
 
 #include "mesh/solid.h"
 
-struct flood_cells {
+typedef struct flood_cells {
     starg_context *context;
     double origin[3], size;
     size_t count[3], reached;
     uint64_t *taken, *bits; /* met by a face; reached */
-};
+} flood_cells;
+
+/* The cube of p; false where p is out of the grid. */
+bool flood_locate(const flood_cells *cells, const double p[3], size_t at[3]);
 
 /* The cubes of `size` in the reach of a scene (solid_reach) that are connected to that of `from`
  * over sides, through cubes that no face meets. Errors: ARGUMENT (`from` is out of reach or in a
@@ -27,11 +30,5 @@ bool flood_meets(const flood_cells *cells, const bvh_box *box);
 
 /* Their volume. */
 double flood_volume(const flood_cells *cells);
-
-/* The way from `from` out of the model's bounding box, or to space behind gaps about as wide as a
- * cube (leak.c); of no points if the cubes do neither. Free its points. Errors: MEMORY, CANCELLED.
- */
-starg_status flood_find_leak(starg_context *context, const starg_solid *scene, const double from[3],
-                             const flood_cells *cells, flood_leak *leak);
 
 #endif

@@ -1,275 +1,272 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Leaks of the space that is reached from a point.
+/* Where the space that is reached from a point leaks.
  *
- * Problem: who floods a soup of triangles from within a room expects to stay there. Where a wall
- * has a gap that cubes pass, the flood gets out, and guards with it; where a gap is about as wide
- * as a cube, what is behind it is reached or not by chance. Both are shown by a path, as compilers
- * of game levels do.
+ * Problem: whoever stands in a room of a soup means that room. Through a hole that nobody saw, the
+ * flood (mesh/flood.h) reaches the outside of the model, or other rooms, and guards stand there.
+ * Compilers of game levels show the way to such a hole; so does this.
  *
- * Stages: the clearance of each cube, in cubes, from those that faces meet (two passes over the
- * grid); whether a cube that is reached touches the model's bounding box, from within or without:
- * it has left; else, whether more than a hundredth of the roomy cubes (clearance 2 or more) are
- * reached through cubes of clearance 1 only. A shortest path there, among those with the largest
- * least clearance, as far as the start has that.
+ * Stages: a flood by breadth from the point, which notes how each cube was reached; another from
+ * its first roomy cube through roomy ones, which have no taken cube about them. A leak to the
+ * outside: the first cube at the boundary of the model's own box, a roomy one of the second flood if
+ * there is one, which the first flood, done again, finds. A leak through a gap: the second flood
+ * does not come to the outside that the first one reaches, or misses roomy cubes, more than a small
+ * part of all; so what leads there is one or two cubes wide. The way leads back from there.
  *
- * Invariant: a path goes through reached cubes only. Cost: linear in the cubes, two bytes each,
- * times the logarithm of the clearance of the start. */
-#include <math.h>
+ * Invariant: the way goes through centres of cubes that are reached, so it meets no face. The same
+ * scene gives the same way. Cost: linear in the cubes, a byte and a bit each. */
+#include "mesh/leak.h"
+
 #include <string.h>
 
 #include "core/memory.h"
-#include "geometry/vec3.h"
-#include "mesh/flood.h"
 
 static const char STAGE[] = "scene";
 
-static const double SMALL_SHARE = 0.01; /* of roomy cubes behind narrow gaps: no word about it */
+enum { START = 7, SMALL_PART = 64 };
 
-enum { ROOMY = 2, MOST_CLEAR = 255, START = 7 };
+typedef STARG_ARRAY(size_t) cell_list;
 
-typedef struct leak_search {
-    const flood_cells *flood;
-    size_t cells, start, step[3];
-    bvh_box model;
-    uint8_t *clear; /* by cube: its distance in cubes from the next one that a face meets */
-    uint8_t *came;  /* by cube: 1 + 2 axis + (1: from above), START; 0: not visited */
-    bool *roomy;    /* by cube: reached through roomy cubes; NULL: the goal is to get out */
-    STARG_ARRAY(size_t) queue;
-} leak_search;
+typedef struct search {
+    const flood_cells *cells;
+    const bvh_box *model;
+    size_t step[3];
+    uint8_t *way;            /* by cube: 0 not reached, 1 + 2 axis + (upwards), or START */
+    uint64_t *roomy;         /* reached by the second flood */
+    size_t exit, first, far; /* cubes, or NONE: at the outside; roomy; roomy and missed */
+    int side;                /* of the exit, like a way */
+    bool inner;              /* exits have to be roomy ones */
+} search;
 
-static void cell_place(const leak_search *s, size_t cell, size_t at[3]) {
-    for (int k = 0; k < 3; k++)
-        at[k] = cell / s->step[k] % s->flood->count[k];
+static const size_t NONE = SIZE_MAX;
+
+static size_t coordinate(const search *s, size_t cell, int k) {
+    return cell / s->step[k] % s->cells->count[k];
 }
 
-static void cell_centre(const leak_search *s, size_t cell, double centre[3]) {
-    size_t at[3];
-    cell_place(s, cell, at);
-    for (int k = 0; k < 3; k++)
-        centre[k] = s->flood->origin[k] + ((double)at[k] + 0.5) * s->flood->size;
+/* The cube beside it, NONE beyond the grid; `way` as above. */
+static size_t beside(const search *s, size_t cell, int way) {
+    int k = (way - 1) / 2;
+    size_t x = coordinate(s, cell, k);
+    if ((way - 1) % 2 != 0)
+        return x + 1 < s->cells->count[k] ? cell + s->step[k] : NONE;
+    return x > 0 ? cell - s->step[k] : NONE;
 }
 
-/* ---- clearance ---- */
-
-/* One pass: `turn` -1 looks at the thirteen neighbours before each cube, 1 at those behind. */
-static void spread_clearance(leak_search *s, int turn) {
-    const size_t *count = s->flood->count;
-    for (size_t i = 0; i < s->cells; i++) {
-        size_t cell = turn < 0 ? i : s->cells - 1 - i, at[3];
-        int least = s->clear[cell];
-        cell_place(s, cell, at);
-        for (int n = 0; n < 13 && least > 0; n++) {
-            const int d[3] = {turn * (1 - n % 3), turn * (1 - n / 3 % 3), turn * (1 - n / 9)};
-            bool inside = true;
-            size_t other = 0;
-            for (int k = 0; k < 3; k++) {
-                /* the numbers -n run over (1, 1, 1) to (1, 0, 0), all on one side of (0, 0, 0) */
-                inside = inside && (d[k] < 0 ? at[k] > 0 : d[k] == 0 || at[k] + 1 < count[k]);
-                other += (at[k] + (size_t)d[k]) * s->step[k];
-            }
-            if (inside && s->clear[other] + 1 < least)
-                least = s->clear[other] + 1;
-        }
-        s->clear[cell] = (uint8_t)least;
-    }
-}
-
-static void find_clearance(leak_search *s) {
-    for (size_t i = 0; i < s->cells; i++)
-        s->clear[i] = starg_bit_test(s->flood->taken, i) ? 0 : MOST_CLEAR;
-    spread_clearance(s, -1);
-    spread_clearance(s, 1);
-}
-
-/* ---- paths ---- */
-
-/* Does the cube touch the box, from within, or lie beyond? */
-static bool is_out(const leak_search *s, size_t cell) {
-    size_t at[3];
-    bool out = false;
-    cell_place(s, cell, at);
+/* Does a cube that has the property touch this one, or is it this one? */
+static bool touches(const search *s, size_t cell, bool (*has)(const search *, size_t)) {
+    size_t low[3], high[3];
     for (int k = 0; k < 3; k++) {
-        double low = s->flood->origin[k] + (double)at[k] * s->flood->size;
-        out = out || low <= s->model.lower[k] || low + s->flood->size >= s->model.upper[k];
+        size_t x = coordinate(s, cell, k);
+        low[k] = x > 0 ? x - 1 : 0;
+        high[k] = x + 1 < s->cells->count[k] ? x + 1 : x;
     }
-    return out;
-}
-
-static bool is_goal(const leak_search *s, size_t cell) {
-    return s->roomy == NULL ? is_out(s, cell) : s->clear[cell] >= ROOMY && !s->roomy[cell];
-}
-
-static starg_status visit(leak_search *s, size_t cell, int came, int least) {
-    starg_status status = STARG_OK;
-    if (s->came[cell] != 0 || s->clear[cell] < least || !starg_bit_test(s->flood->bits, cell))
-        return STARG_OK;
-    s->came[cell] = (uint8_t)came;
-    STARG_PUSH(s->flood->context, STAGE, &s->queue, cell);
-done:
-    return status;
-}
-
-/* Breadth first from a cube through those with a clearance of at least `least`, up to the first
- * goal; SIZE_MAX: there is none. */
-static starg_status walk(leak_search *s, size_t from, int least, bool stops, size_t *goal) {
-    starg_status status = STARG_OK;
-    *goal = SIZE_MAX;
-    s->queue.count = 0;
-    memset(s->came, 0, s->cells);
-    STARG_TRY(visit(s, from, START, 0));
-    for (size_t head = 0; head < s->queue.count; head++) {
-        size_t cell = s->queue.data[head], at[3];
-        if (stops && is_goal(s, cell)) {
-            *goal = cell;
-            break;
-        }
-        cell_place(s, cell, at);
-        for (int k = 0; k < 3; k++) {
-            if (at[k] > 0)
-                STARG_TRY(visit(s, cell - s->step[k], 2 + 2 * k, least));
-            if (at[k] + 1 < s->flood->count[k])
-                STARG_TRY(visit(s, cell + s->step[k], 1 + 2 * k, least));
-        }
-    }
-    status = starg_check_cancel(s->flood->context, STAGE);
-done:
-    return status;
-}
-
-static size_t cell_before(const leak_search *s, size_t cell) {
-    int way = s->came[cell] - 1;
-    return way % 2 == 1 ? cell + s->step[way / 2] : cell - s->step[way / 2];
-}
-
-/* How many cubes in a row along an axis are free, about one that is. */
-static size_t width_along(const leak_search *s, size_t cell, int k) {
-    size_t at[3], low, high;
-    cell_place(s, cell, at);
-    for (low = 0; low < at[k] && s->clear[cell - (low + 1) * s->step[k]] > 0;)
-        low++;
-    for (high = 0;
-         at[k] + high + 1 < s->flood->count[k] && s->clear[cell + (high + 1) * s->step[k]] > 0;)
-        high++;
-    return low + 1 + high;
-}
-
-/* The least such width: that of a gap is small, beside a single wall it is large. */
-static size_t width_at(const leak_search *s, size_t cell) {
-    size_t least = SIZE_MAX;
-    for (int k = 0; k < 3; k++) {
-        size_t width = width_along(s, cell, k);
-        least = width < least ? width : least;
-    }
-    return least;
-}
-
-/* The path of the last walk, corners only, and its narrowest cube, the first of these. */
-static starg_status keep_path(leak_search *s, size_t goal, const double from[3], flood_leak *leak) {
-    starg_status status = STARG_OK;
-    size_t count = 1, narrow = goal, narrowest = SIZE_MAX;
-    for (size_t c = goal; s->came[c] != START; c = cell_before(s, c))
-        count++;
-    STARG_NEW(s->flood->context, STAGE, leak->points, 3 * (count + 1));
-    memcpy(leak->points, from, 3 * sizeof *from);
-    leak->count = 1;
-    s->queue.count = 0;
-    for (size_t c = goal, i = 0; i < count; i++) {
-        STARG_PUSH(s->flood->context, STAGE, &s->queue, c);
-        size_t width = width_at(s, c);
-        if (width <= narrowest) {
-            narrow = c;
-            narrowest = width;
-        }
-        c = i + 1 < count ? cell_before(s, c) : c;
-    }
-    for (size_t i = count; i-- > 0;) {
-        size_t c = s->queue.data[i];
-        if (i == 0 || i + 1 == count || s->came[c] != s->came[s->queue.data[i - 1]])
-            cell_centre(s, c, leak->points + 3 * leak->count++);
-    }
-    cell_centre(s, narrow, leak->place);
-    cell_centre(s, goal, leak->end);
-    if (2 * narrowest < width_at(s, s->start)) /* else the space is open */
-        leak->width = (double)narrowest * s->flood->size;
-done:
-    return status;
-}
-
-/* A path to the goal that stays as clear of faces as it can, at most as the start is. */
-static starg_status find_path(leak_search *s, const double from[3], flood_leak *leak) {
-    starg_status status = STARG_OK;
-    size_t goal;
-    int low = 1, high = s->clear[s->start];
-    while (low < high) {
-        int middle = (low + high + 1) / 2;
-        STARG_TRY(walk(s, s->start, middle, true, &goal));
-        if (goal != SIZE_MAX)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    STARG_TRY(walk(s, s->start, low, true, &goal));
-    if (goal != SIZE_MAX)
-        status = keep_path(s, goal, from, leak);
-done:
-    return status;
-}
-
-/* ---- narrow gaps ---- */
-
-/* The share of roomy cubes that are reached through narrow gaps only; sets `roomy`. */
-static starg_status find_narrow(leak_search *s, double *share) {
-    starg_status status = STARG_OK;
-    size_t first, all = 0, behind = 0;
-    STARG_NEW_ZERO(s->flood->context, STAGE, s->roomy, s->cells);
-    *share = 0;
-    STARG_TRY(walk(s, s->start, 1, true, &first));
-    if (first == SIZE_MAX)
-        goto done;
-    STARG_TRY(walk(s, first, ROOMY, false, &first));
-    for (size_t i = 0; i < s->queue.count; i++)
-        s->roomy[s->queue.data[i]] = true;
-    for (size_t i = 0; i < s->cells; i++) {
-        bool counts = starg_bit_test(s->flood->bits, i) && s->clear[i] >= ROOMY;
-        all += counts;
-        behind += counts && !s->roomy[i];
-    }
-    *share = (double)behind / (double)all;
-done:
-    return status;
-}
-
-/* ---- the call ---- */
-
-static bool gets_out(const leak_search *s) {
-    for (size_t i = 0; i < s->cells; i++)
-        if (starg_bit_test(s->flood->bits, i) && is_out(s, i))
-            return true;
+    for (size_t z = low[2]; z <= high[2]; z++)
+        for (size_t y = low[1]; y <= high[1]; y++)
+            for (size_t x = low[0]; x <= high[0]; x++)
+                if (has(s, x + s->step[1] * y + s->step[2] * z))
+                    return true;
     return false;
 }
 
-starg_status flood_find_leak(starg_context *context, const starg_solid *scene, const double from[3],
-                             const flood_cells *flood, flood_leak *leak) {
+static bool is_taken(const search *s, size_t cell) {
+    return starg_bit_test(s->cells->taken, cell);
+}
+
+static bool is_roomy(const search *s, size_t cell) {
+    return !touches(s, cell, is_taken);
+}
+
+/* Does the grid end where the model does? */
+static bool is_outside(const search *s, int way) {
+    const flood_cells *f = s->cells;
+    int k = (way - 1) / 2;
+    if ((way - 1) % 2 == 0)
+        return f->origin[k] <= s->model->lower[k];
+    return f->origin[k] + (double)f->count[k] * f->size >= s->model->upper[k];
+}
+
+/* Notes a cube when it is reached: those that matter, and that it is reached. */
+static void note(search *s, size_t cell, int way) {
+    s->way[cell] = (uint8_t)way;
+    if (s->first == NONE && is_roomy(s, cell))
+        s->first = cell;
+    if (s->inner && !starg_bit_test(s->roomy, cell))
+        return;
+    for (int side = 1; side < START && s->exit == NONE; side++)
+        if (beside(s, cell, side) == NONE && is_outside(s, side)) {
+            s->exit = cell;
+            s->side = side;
+        }
+}
+
+static starg_status spread_by_breadth(search *s, size_t from) {
     starg_status status = STARG_OK;
-    const size_t *count = flood->count;
-    leak_search s = {.flood = flood, .step = {1, count[0], count[0] * count[1]}};
-    *leak = (flood_leak){0};
-    s.cells = s.step[2] * count[2];
-    s.model = (scene->model_tree != NULL ? scene->model_tree : scene->tree)->nodes[0].box;
-    for (int k = 0; k < 3; k++)
-        s.start += (size_t)((from[k] - flood->origin[k]) / flood->size) * s.step[k];
-    STARG_NEW(context, STAGE, s.clear, s.cells);
-    STARG_NEW(context, STAGE, s.came, s.cells);
-    find_clearance(&s);
-    leak->outside = gets_out(&s);
-    if (!leak->outside)
-        STARG_TRY(find_narrow(&s, &leak->share));
-    if (leak->outside || leak->share > SMALL_SHARE)
-        status = find_path(&s, from, leak);
+    cell_list now = {0}, next = {0};
+    note(s, from, START);
+    STARG_PUSH(s->cells->context, STAGE, &now, from);
+    while (now.count > 0) {
+        next.count = 0;
+        for (size_t i = 0; i < now.count; i++)
+            for (int way = 1; way < START; way++) {
+                size_t cell = beside(s, now.data[i], way);
+                if (cell == NONE || s->way[cell] != 0 || !starg_bit_test(s->cells->bits, cell))
+                    continue;
+                note(s, cell, way);
+                STARG_PUSH(s->cells->context, STAGE, &next, cell);
+            }
+        cell_list swap = now;
+        now = next;
+        next = swap;
+        STARG_TRY(starg_check_cancel(s->cells->context, STAGE));
+    }
 done:
-    starg_release(context, s.clear);
-    starg_release(context, s.came);
-    starg_release(context, s.roomy);
-    STARG_ARRAY_FREE(context, &s.queue);
+    STARG_ARRAY_FREE(s->cells->context, &now);
+    STARG_ARRAY_FREE(s->cells->context, &next);
+    return status;
+}
+
+static starg_status spread_roomy(search *s) {
+    starg_status status = STARG_OK;
+    cell_list stack = {0};
+    starg_bit_set(s->roomy, s->first);
+    STARG_PUSH(s->cells->context, STAGE, &stack, s->first);
+    while (stack.count > 0) {
+        size_t at = stack.data[--stack.count];
+        for (int way = 1; way < START; way++) {
+            size_t cell = beside(s, at, way);
+            if (cell == NONE || starg_bit_test(s->roomy, cell) || s->way[cell] == 0 ||
+                !is_roomy(s, cell))
+                continue;
+            starg_bit_set(s->roomy, cell);
+            STARG_PUSH(s->cells->context, STAGE, &stack, cell);
+        }
+    }
+done:
+    STARG_ARRAY_FREE(s->cells->context, &stack);
+    return status;
+}
+
+/* The nearest exit that the second flood comes to; without one, the exit stays. */
+static starg_status find_wide_exit(search *s, size_t start, size_t cells) {
+    size_t exit = s->exit;
+    if (exit == NONE)
+        return STARG_OK;
+    memset(s->way, 0, cells);
+    s->exit = NONE;
+    s->inner = true;
+    starg_status status = spread_by_breadth(s, start);
+    s->inner = s->exit != NONE;
+    s->exit = s->inner ? s->exit : exit;
+    return status;
+}
+
+/* The first roomy cube that the second flood missed, if they are no small part. */
+static void find_far(search *s, size_t cells) {
+    size_t missed = 0, found = NONE;
+    for (size_t cell = 0; cell < cells; cell++) {
+        if (s->way[cell] == 0 || starg_bit_test(s->roomy, cell) || !is_roomy(s, cell))
+            continue;
+        found = found == NONE ? cell : found;
+        missed++;
+    }
+    s->far = missed > s->cells->reached / SMALL_PART ? found : NONE;
+}
+
+/* ---- the way ---- */
+
+static void centre_of(const search *s, size_t cell, double p[3]) {
+    for (int k = 0; k < 3; k++)
+        p[k] = s->cells->origin[k] + ((double)coordinate(s, cell, k) + 0.5) * s->cells->size;
+}
+
+static starg_status push_point(const search *s, const double p[3], flood_leak *out) {
+    starg_status status = STARG_OK;
+    for (int k = 0; k < 3; k++)
+        STARG_PUSH(s->cells->context, STAGE, &out->way, p[k]);
+done:
+    return status;
+}
+
+/* The cubes from `end` back to the first one. */
+static starg_status trace(const search *s, size_t end, cell_list *out) {
+    starg_status status = STARG_OK;
+    for (size_t cell = end; cell != NONE;) {
+        STARG_PUSH(s->cells->context, STAGE, out, cell);
+        int way = s->way[cell];
+        cell = way == START ? NONE : beside(s, cell, way % 2 != 0 ? way + 1 : way - 1);
+    }
+done:
+    return status;
+}
+
+/* The middle of the cubes that touch no roomy one, between those of the second flood and others; of
+ * a short gap, the last cube before those. */
+static void place_gap(const search *s, const cell_list *back, double place[3]) {
+    size_t inner = 0, first = NONE, last = NONE;
+    while (inner + 1 < back->count && !starg_bit_test(s->roomy, back->data[inner]))
+        inner++;
+    for (size_t i = inner; i-- > 0 && !is_roomy(s, back->data[i]);)
+        if (!touches(s, back->data[i], is_roomy)) {
+            last = last != NONE ? last : i;
+            first = i;
+        }
+    if (first == NONE)
+        first = last = inner;
+    centre_of(s, back->data[(first + last) / 2], place);
+}
+
+/* From the point, with a point wherever the way turns, to the last cube, and out of the box. */
+static starg_status draw(const search *s, const cell_list *back, const double from[3],
+                         flood_leak *out) {
+    starg_status status = STARG_OK;
+    double p[3] = {0};
+    STARG_TRY(push_point(s, from, out));
+    for (size_t i = back->count; i-- > 0;) {
+        centre_of(s, back->data[i], p);
+        if (i == 0 || s->way[back->data[i]] != s->way[back->data[i - 1]])
+            STARG_TRY(push_point(s, p, out));
+    }
+    if (!out->outside)
+        goto done;
+    p[(s->side - 1) / 2] += s->side % 2 != 0 ? -s->cells->size : s->cells->size;
+    status = push_point(s, p, out);
+done:
+    if (!out->gap)
+        memcpy(out->place, p, sizeof p);
+    return status;
+}
+
+starg_status flood_find_leak(const flood_cells *f, const bvh_box *model, const double from[3],
+                             flood_leak *out) {
+    starg_status status = STARG_OK;
+    search s = {.cells = f, .model = model, .exit = NONE, .first = NONE, .far = NONE};
+    size_t cells = f->count[0] * f->count[1] * f->count[2], at[3];
+    cell_list back = {0};
+    *out = (flood_leak){0};
+    s.step[0] = 1;
+    s.step[1] = f->count[0];
+    s.step[2] = f->count[0] * f->count[1];
+    STARG_NEW_ZERO(f->context, STAGE, s.way, cells);
+    STARG_NEW_ZERO(f->context, STAGE, s.roomy, starg_bit_words(cells));
+    flood_locate(f, from, at);
+    const size_t start = at[0] + s.step[1] * at[1] + s.step[2] * at[2];
+    STARG_TRY(spread_by_breadth(&s, start));
+    out->outside = s.exit != NONE;
+    if (s.first != NONE) {
+        STARG_TRY(spread_roomy(&s));
+        STARG_TRY(find_wide_exit(&s, start, cells));
+        find_far(&s, cells);
+    }
+    out->gap = s.first != NONE && (out->outside ? !s.inner : s.far != NONE);
+    if (out->outside || out->gap) {
+        STARG_TRY(trace(&s, out->outside ? s.exit : s.far, &back));
+        if (out->gap)
+            place_gap(&s, &back, out->place);
+        status = draw(&s, &back, from, out);
+    }
+done:
+    STARG_ARRAY_FREE(f->context, &back);
+    starg_release(f->context, s.way);
+    starg_release(f->context, s.roomy);
     return status;
 }

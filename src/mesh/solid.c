@@ -14,8 +14,19 @@ static const starg_finding_kind FATAL[] = {
     STARG_FINDING_REPEATED_CORNER, STARG_FINDING_OPEN_EDGE, STARG_FINDING_NONMANIFOLD_EDGE,
     STARG_FINDING_NONMANIFOLD_VERTEX, STARG_FINDING_INCONSISTENT_EDGE};
 
-static starg_status fail_unusable(starg_context *context, const starg_mesh *mesh,
-                                  const starg_check *check) {
+/* What helps: faces that bound nothing are taken for what they are, anything else is repaired. */
+static const char *advice_for(const starg_check *check) {
+    if (check->one_sided_faces == check->faces)
+        return "its surfaces are one-sided, which cannot be repaired; 'starguard guard' and "
+               "'visible' take them as triangles, with --soup";
+    if (check->findings[STARG_FINDING_OPEN_EDGE].count > check->faces)
+        return "most of its faces are loose triangles: 'starguard guard' and 'visible' take them "
+               "as they are, with --soup; corners that should be one are joined by 'starguard "
+               "repair --merge-distance D'";
+    return "try 'starguard repair'";
+}
+
+static starg_status fail_unusable(starg_context *context, const starg_check *check) {
     char list[256] = "";
     size_t used = 0;
     const starg_finding *first = NULL;
@@ -32,11 +43,12 @@ static starg_status fail_unusable(starg_context *context, const starg_mesh *mesh
         return starg_fail_at(
             context, STARG_ERROR_MESH, "solid", first->element, first->first, first->shown,
             "the mesh does not bound a solid (%s); 'starguard check' shows where; %s", list,
-            starg_check_advice(mesh, check));
+            advice_for(check));
     if (check->faces == 0)
         return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh has no faces");
     return starg_fail(context, STARG_ERROR_MESH, "solid",
-                      "the mesh is closed but encloses no volume: its shells are flat or doubled");
+                      "the mesh is closed but encloses no volume: its shells are flat or doubled; "
+                      "'starguard guard' and 'visible' take it as triangles, with --soup");
 }
 
 /* ---- vertices at one position ---- */
@@ -167,7 +179,7 @@ starg_status solid_make_facing(starg_context *context, const starg_mesh *mesh, s
     if (!all.check->usable)
         STARG_TRY(mend_vertices(context, solid, &all));
     if (!all.check->usable) {
-        status = fail_unusable(context, mesh, all.check);
+        status = fail_unusable(context, all.check);
         goto done;
     }
     if (facing != SHELLS_AS_GIVEN)
@@ -266,7 +278,7 @@ void starg_solid_free(starg_solid *solid) {
     starg_release(context, solid->other_side);
     starg_release(context, solid->once_twin);
     flood_free(solid->reached);
-    starg_release(solid->context, solid->leak.points);
+    starg_release(context, solid->leak);
     near_faces_free(context, &solid->over);
     near_faces_free(context, &solid->mount);
     starg_release(context, solid->importance);

@@ -11,18 +11,6 @@
 #include "starguard/solid.h"
 #include "starguard/space.h"
 
-typedef struct flood_cells flood_cells;
-
-/* Where space that is reached from a point leaks. */
-typedef struct flood_leak {
-    double *points;         /* count x 3: the way */
-    size_t count;           /* 0: it does not leak */
-    double place[3], width; /* of the narrowest gap on the way, 0: none */
-    double end[3];
-    bool outside; /* out of the model's box; else behind narrow gaps: */
-    double share; /* of the space that is reached */
-} flood_leak;
-
 /* Free space: winding number of the mesh plus `ambient` at least 1. */
 struct starg_solid {
     starg_context *context;
@@ -44,11 +32,12 @@ struct starg_solid {
     size_t once_faces;      /* those before the backs, and their halfedges across edges of two
                                of them; NULL: there are no backs */
     uint32_t *once_twin;
-    flood_cells *reached;   /* where guards may stand; NULL: anywhere */
-    flood_leak leak;        /* of a soup */
-    near_faces over, mount; /* faces that guards are bound to */
-    double *importance;     /* by face; NULL: 1 each */
-    uint64_t *targets[2];   /* bits of the faces, and of the vertices, to be seen; NULL: all */
+    struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
+    double *leak;                /* a way out of there, leak_points x 3; NULL: none is known */
+    size_t leak_points;
+    near_faces over, mount;      /* faces that guards are bound to */
+    double *importance;          /* by face; NULL: 1 each */
+    uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */
     starg_space_options space;
     starg_mesh *model; /* the model that distances are measured from, and its tree; NULL: `mesh` */
     bvh *model_tree;
@@ -67,9 +56,6 @@ static inline bool solid_is_two_sided(const starg_solid *solid) {
 /* Gives faces that count from either side the bits of their other sides, and clears the bits of a
  * row, by face or by vertex, that are no targets. */
 void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row);
-
-/* Is a box set in which guards stand? */
-bool space_is_bounded(const starg_space_options *options);
 
 /* Bounding box of all places where guards may stand. */
 void solid_reach(const starg_solid *solid, bvh_box *out);

@@ -14,7 +14,6 @@
  *
  * Cost: that of the examinations. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "core/bits.h"
@@ -22,6 +21,7 @@
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/flood.h"
+#include "mesh/leak.h"
 #include "mesh/solid.h"
 
 static const char STAGE[] = "scene";
@@ -30,7 +30,7 @@ void starg_space_options_default(starg_space_options *options) {
     *options = (starg_space_options){0};
 }
 
-bool space_is_bounded(const starg_space_options *o) {
+static bool is_bounded(const starg_space_options *o) {
     bool any = false;
     for (int k = 0; k < 6; k++)
         any = any || o->within[k] != 0;
@@ -61,7 +61,7 @@ static starg_status check_options(starg_context *context, const starg_space_opti
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "faces of a solid have the free space on one side; only a soup is seen "
                           "from both");
-    for (int k = 0; space_is_bounded(o) && k < 3; k++)
+    for (int k = 0; is_bounded(o) && k < 3; k++)
         if (!(fabs(o->within[k]) < 1e100 && fabs(o->within[k + 3]) < 1e100 &&
               o->within[k] < o->within[k + 3]))
             return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
@@ -372,47 +372,32 @@ done:
     return status;
 }
 
-/* ---- leaks ---- */
+/* ---- what is reached ---- */
 
-static void tell_leak(starg_context *context, const flood_leak *l, const double from[3]) {
-    const double *p = l->place, *e = l->end;
-    char gap[160] = "";
-    if (l->count == 0)
-        return;
-    if (l->width > 0)
-        snprintf(gap, sizeof gap, " through a gap about %.3g wide at (%g, %g, %g)", l->width, p[0],
-                 p[1], p[2]);
-    if (l->outside)
-        starg_log(
-            context, STARG_LOG_WARNING,
-            "the space that is reached from (%g, %g, %g) leaks out of the model's box at (%g, "
-            "%g, %g)%s; close the gap, take cubes that do not pass, or bound the space by a "
-            "box",
-            from[0], from[1], from[2], e[0], e[1], e[2], gap);
-    else
-        starg_log(context, STARG_LOG_WARNING,
-                  "%.3g %% of the space that is reached from (%g, %g, %g) lies behind gaps about "
-                  "as wide as a cube, as at (%g, %g, %g); take smaller cubes to be sure to get "
-                  "there, or larger ones to stay out",
-                  100 * l->share, from[0], from[1], from[2], p[0], p[1], p[2]);
-}
-
-/* Only a soup: the surface of a solid has no gaps. */
-static starg_status reach_space(starg_context *context, starg_solid *scene) {
+/* A solid has an inside that cannot leak; a soup's is what is reached. */
+static starg_status reach_from(starg_context *context, starg_solid *scene) {
     starg_status status = STARG_OK;
     const starg_space_options *o = &scene->space;
-    STARG_TRY(flood_create(context, scene, o->from, o->cell, &scene->reached));
+    const double *from = o->from;
+    flood_leak leak;
+    STARG_TRY(flood_create(context, scene, from, o->cell, &scene->reached));
     if (!o->soup)
-        goto done;
-    STARG_TRY(flood_find_leak(context, scene, o->from, scene->reached, &scene->leak));
-    tell_leak(context, &scene->leak, o->from);
+        return STARG_OK;
+    STARG_TRY(flood_find_leak(scene->reached, &scene->tree->nodes[0].box, from, &leak));
+    scene->leak = leak.way.data;
+    scene->leak_points = leak.way.count / 3;
+    if (scene->leak_points > 0)
+        starg_log(context, STARG_LOG_WARNING,
+                  "the space that is reached from (%g, %g, %g) leaks %s%s at (%g, %g, %g): guards "
+                  "may stand there, too; --leak FILE writes the way; close it, or choose other "
+                  "cubes (--cell) or a box (--within)",
+                  from[0], from[1], from[2], leak.outside ? "to the outside of the model" : "",
+                  !leak.gap      ? ","
+                  : leak.outside ? ", through a gap hardly wider than a cube"
+                                 : "through a gap hardly wider than a cube",
+                  leak.place[0], leak.place[1], leak.place[2]);
 done:
     return status;
-}
-
-size_t starg_space_leak(const starg_solid *scene, const double **points) {
-    *points = scene->leak.points;
-    return scene->leak.count;
 }
 
 /* ---- the call ---- */
@@ -451,7 +436,7 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     if (scene->mesh->face_count > scene->model_faces)
         STARG_TRY(starg_space_weigh(scene, NULL));
     if (o->cell > 0)
-        STARG_TRY(reach_space(context, scene));
+        STARG_TRY(reach_from(context, scene));
     *out = scene;
     scene = NULL;
 done:
@@ -470,11 +455,16 @@ size_t starg_space_model_faces(const starg_solid *scene) {
     return scene->scene ? scene->model_faces : scene->mesh->face_count;
 }
 
+const double *starg_space_leak(const starg_solid *scene, size_t *count) {
+    *count = scene->leak_points;
+    return scene->leak;
+}
+
 bool starg_space_admits(const starg_solid *scene, const double p[3]) {
     const starg_space_options *o = &scene->space;
     if (!scene->scene)
         return starg_solid_contains(scene, p);
-    for (int k = 0; space_is_bounded(o) && k < 3; k++)
+    for (int k = 0; is_bounded(o) && k < 3; k++)
         if (p[k] < o->within[k] || p[k] > o->within[k + 3])
             return false;
     if (scene->reached != NULL && !flood_reaches(scene->reached, p))
@@ -532,12 +522,12 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
     for (int k = 0; k < 3; k++) {
         out->lower[k] -= grow;
         out->upper[k] += grow;
-        if (space_is_bounded(o)) {
+        if (is_bounded(o)) {
             out->lower[k] = open ? o->within[k] : fmax(out->lower[k], o->within[k]);
             out->upper[k] = open ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
         }
         if (near) { /* beside a soup's own box, too */
-            bool own = open && grow == 0 && !space_is_bounded(o);
+            bool own = open && grow == 0 && !is_bounded(o);
             out->lower[k] = own ? bound.lower[k] : fmax(out->lower[k], bound.lower[k]);
             out->upper[k] = own ? bound.upper[k] : fmin(out->upper[k], bound.upper[k]);
         }

@@ -377,7 +377,7 @@ static starg_status divide(subdivision *s, size_t t) {
     if (count > 2)
         return starg_fail(s->context, STARG_ERROR_MESH, STAGE,
                           "tetrahedron %zu of A has all corners on the surface and is too thin for "
-                          "a vertex inside; 'starguard remesh', or a finer A (--density), may help",
+                          "a vertex inside; a finer A (--density) may help",
                           t);
     for (int k = 0; k < 4; k++)
         fresh[k] = s->renumbered[corners[k]];

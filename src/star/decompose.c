@@ -6,7 +6,6 @@
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
-#include "mesh/topology.h"
 #include "star/angles.h"
 #include "star/balls.h"
 #include "star/decomposition.h"
@@ -224,39 +223,29 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
     return status;
 }
 
-static starg_status count_open_edges(starg_context *context, const starg_mesh *mesh,
-                                     size_t *count) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    *count = 0;
-    STARG_TRY(topology_create(context, mesh, &topology));
-    for (uint32_t h = 0; h < 3 * mesh->face_count; h++)
-        *count += topology->ring[h] == h;
-done:
-    topology_free(topology);
-    return status;
-}
-
-/* Where a surface is more hole than surface, what it winds around has little to do with it. */
+/* Where a surface is more hole than surface, or turns to and fro, what it winds around has little to
+ * do with it. */
 static starg_status check_filling(starg_context *context, const starg_mesh *surface,
                                   const starg_tetra_report *report) {
     starg_status status = STARG_OK;
-    size_t open;
+    starg_check *check = NULL;
     double lower[3], upper[3], off = fmax(report->to_surface, report->from_surface) + report->step;
     starg_mesh_bounds(surface, lower, upper);
     double share = off / vec3_distance(lower, upper);
     if (share <= STARG_DECOMPOSE_FILL_MOST)
         return STARG_OK;
-    STARG_TRY(count_open_edges(context, surface, &open));
+    STARG_TRY(starg_mesh_check(context, surface, &check));
+    bool holes = check->findings[STARG_FINDING_OPEN_EDGE].count > 0;
     status = starg_fail(
         context, STARG_ERROR_MESH, STAGE,
         "the volume that fills the surface is up to %.2g of its diagonal away from it, more than "
-        "%g: %s, or set --fill",
+        "%g: %s with 'starguard repair', or set --fill",
         share, STARG_DECOMPOSE_FILL_MOST,
-        open > 0 ? "its holes are too large; close them with 'starguard repair'"
-                 : "its faces are not turned alike, or meet where they should not; try 'starguard "
-                   "repair --union'");
+        holes ? "its holes are too large; close them"
+              : "edges with more than two faces, or faces that are turned differently, leave open "
+                "what is inside; mend them");
 done:
+    starg_check_free(context, check);
     return status;
 }
 
@@ -317,8 +306,7 @@ static starg_status decompose_union(starg_context *context, const starg_solid *s
                                     starg_decomposition **out) {
     starg_status status = STARG_OK;
     starg_solid *united = NULL;
-    double rounding;
-    STARG_TRY(united_make(context, solid, &united, &rounding));
+    STARG_TRY(united_make(context, solid, &united));
     if (united == NULL)
         goto done;
     STARG_TRY(decompose_surface(context, united, options, out));
@@ -326,7 +314,7 @@ static starg_status decompose_union(starg_context *context, const starg_solid *s
         goto done;
     (*out)->lower_bound = 0; /* it is that of the union */
     (*out)->optimal = false;
-    STARG_TRY(united_report(context, solid, united, rounding, *out));
+    STARG_TRY(united_report(context, solid, united, *out));
 done:
     starg_solid_free(united);
     return status;

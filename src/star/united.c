@@ -2,23 +2,21 @@
 /* A surface that intersects itself is replaced by the boundary of what it encloses (mesh/union),
  * from which strict pieces are made. The pieces then have that boundary: faces of the
  * model that meet no others, exactly, parts of the others up to the rounding of new vertices, and
- * nothing of what lies inside. How far that is from the boundary is measured at points some
- * thousandth of the diagonal apart. */
+ * nothing of what lies inside. How far the one is from the other is bounded for all points, to a
+ * thousandth of the diagonal (star/deviation.h). */
 #include "star/united.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
+#include "star/deviation.h"
 #include "starguard/repair.h"
-#include "tetra/generate.h"
 
 static const char STAGE[] = "pieces";
 
-static const double STEP = 1e-3;     /* of the diagonal */
-static const double DOUBT = 0x1p-44; /* likewise: what distances may be off that are computed */
+static const double STEP = 1e-3; /* of the diagonal */
 
 /* ---- what is kept ---- */
 
@@ -77,37 +75,27 @@ done:
     return status;
 }
 
-/* How far vertices of the pieces' boundary are from the model: those of the union, and those of
- * cuts, are rounded; facets between them lie in faces of the model. */
-static starg_status measure_rounding(starg_context *context, const starg_solid *solid,
-                                     const starg_decomposition *pieces, double *farthest) {
-    starg_status status = STARG_OK;
-    starg_mesh *boundary = NULL;
-    STARG_TRY(starg_tetmesh_surface(context, pieces->mesh, &boundary, NULL));
-    for (size_t v = 0; v < boundary->vertex_count; v++)
-        *farthest = fmax(*farthest, bvh_distance(solid->tree, boundary->vertices + 3 * v));
-done:
-    starg_mesh_free(boundary);
-    return status;
-}
-
 starg_status united_report(starg_context *context, const starg_solid *solid,
-                           const starg_solid *united, double rounding, starg_decomposition *out) {
+                           const starg_solid *united, starg_decomposition *out) {
     starg_status status = STARG_OK;
-    starg_mesh lost = {0};
-    double step = STEP * solid->check->diagonal, farthest = 0;
-    STARG_TRY(measure_rounding(context, solid, out, &rounding));
+    starg_mesh lost = {0}, *boundary = NULL;
+    bvh *tree = NULL;
+    double extent = solid->check->diagonal;
     STARG_TRY(find_lost(context, solid->mesh, united->mesh, &lost));
-    if (lost.face_count > 0)
-        STARG_TRY(tetra_measure_one_way(context, &lost, united->tree, step, &farthest));
     out->faces_kept = solid->mesh->face_count - lost.face_count;
-    rounding += DOUBT * solid->check->diagonal;
-    farthest = fmax(rounding, lost.face_count > 0 ? farthest + step : 0);
-    out->tetra = (starg_tetra_report){.to_surface = rounding,
-                                      .from_surface = farthest,
-                                      .distance = rounding,
-                                      .distance_back = farthest};
+    STARG_TRY(starg_tetmesh_surface(context, out->mesh, &boundary, NULL));
+    STARG_TRY(
+        bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
+    out->tetra = (starg_tetra_report){0};
+    STARG_TRY(deviation_bound(context, boundary, solid->tree, extent, STEP * extent,
+                              &out->tetra.distance));
+    STARG_TRY(deviation_bound(context, solid->mesh, tree, extent, STEP * extent,
+                              &out->tetra.distance_back));
+    out->tetra.to_surface = out->tetra.distance;
+    out->tetra.from_surface = out->tetra.distance_back;
 done:
+    bvh_free(tree);
+    starg_mesh_free(boundary);
     starg_release(context, lost.faces);
     return status;
 }
@@ -120,8 +108,7 @@ static bool is_refusal(starg_status status) {
            status == STARG_ERROR_SOLVER;
 }
 
-static starg_status make(starg_context *context, const starg_solid *solid, double *rounding,
-                         starg_solid **out) {
+static starg_status make(starg_context *context, const starg_solid *solid, starg_solid **out) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     starg_repair_options options;
@@ -129,22 +116,20 @@ static starg_status make(starg_context *context, const starg_solid *solid, doubl
     starg_repair_options_default(&options);
     options.unite = true;
     STARG_TRY(starg_mesh_repair(context, solid->mesh, &options, &mesh, &report));
-    *rounding = report.rounding + report.largest_move;
     STARG_TRY(solid_make(context, mesh, out));
 done:
     starg_mesh_free(mesh);
     return status;
 }
 
-starg_status united_make(starg_context *context, const starg_solid *solid, starg_solid **out,
-                         double *rounding) {
+starg_status united_make(starg_context *context, const starg_solid *solid, starg_solid **out) {
     const starg_finding *found = solid->check->findings;
     *out = NULL;
     if (found[STARG_FINDING_SELF_INTERSECTION].count == 0 &&
         found[STARG_FINDING_SELF_CONTACT].count == 0 &&
         found[STARG_FINDING_DEGENERATE_FACE].count == 0)
         return STARG_OK;
-    starg_status status = make(context, solid, rounding, out);
+    starg_status status = make(context, solid, out);
     if (!is_refusal(status))
         return status;
     starg_log(context, STARG_LOG_NOTICE, "the surface cannot be cut where it intersects: %s",

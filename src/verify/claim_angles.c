@@ -161,13 +161,12 @@ static starg_status claim_made(const verify_context *own, const double *angles, 
         if (angles[t] < given[t] * (1 + DOUBT))
             perhaps = fmin(perhaps, angles[t]);
     }
-    verify_claim(
-        own->verdict,
-        agree(claimed, surely) || agree(claimed, perhaps) ||
-            (claimed >= perhaps && claimed <= surely),
-        "the smallest dihedral angle that faces of the model do not force is %.17g degrees "
-        "(found: %.17g)",
-        claimed, surely);
+    verify_claim(own->verdict,
+                 agree(claimed, surely) || agree(claimed, perhaps) ||
+                     (claimed >= perhaps && claimed <= surely),
+                 "the smallest dihedral angle that faces of the model do not force is %.9g degrees "
+                 "(found: %.9g)",
+                 claimed, surely);
 done:
     return status;
 }
@@ -196,8 +195,8 @@ starg_status verify_claim_angles(const verify_context *own) {
     verify_claim(own->verdict,
                  agree(report->smallest_angle, angles[0]) &&
                      agree(report->median_angle, angles[count / 2]),
-                 "the smallest dihedral angle is %.17g degrees, the median of the smallest of each "
-                 "tetrahedron %.17g (found: %.17g, %.17g)",
+                 "the smallest dihedral angle is %.9g degrees, the median of the smallest of each "
+                 "tetrahedron %.9g (found: %.9g, %.9g)",
                  report->smallest_angle, report->median_angle, angles[0], angles[count / 2]);
 done:
     starg_release(own->context, angles);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Claims about boundary and volume. If the boundary is the model's surface, it is matched with it
  * (verify/boundary.c), and the volumes agree; if it only approximates the surface, the distance is
- * measured (verify/nearness.c) and volumes are not compared. */
+ * measured (verify/nearness.c). Either way the pieces fill what the model encloses, as far as
+ * points show (verify/enclosed.c). */
 #include <math.h>
 
 #include "verify/context.h"
@@ -11,6 +12,8 @@ static const double TOLERANCE = 1e-9; /* relative */
 /* Relative to the diagonal: larger distances do not count as near. A surface winds only around
  * points of its convex hull, which are hardly farther from it. */
 static const double FARTHEST = 0.5;
+
+static const double MUCH = 4; /* times what was measured: nowhere is the boundary so far away */
 
 /* ---- the boundary ---- */
 
@@ -33,12 +36,12 @@ static void claim_covered(const verify_context *own, const verify_match *match) 
     int scale = own->pieces->scale;
     if (match->uneven == 0)
         verify_claim(own->verdict, true,
-                     "the boundary covers each of the model's %zu shells once (area %.17g)",
+                     "the boundary covers each of the model's %zu shells once (area %.9g)",
                      match->shells, ldexp(match->area, -2 * scale));
     else
         verify_claim(own->verdict, false,
                      "the boundary covers each of the model's %zu shells once: not so for %zu, "
-                     "first that of face %zu, of area %.17g, covered %.17g",
+                     "first that of face %zu, of area %.9g, covered %.9g",
                      match->shells, match->uneven, match->shell,
                      ldexp(match->shell_area, -2 * scale), ldexp(match->shell_covered, -2 * scale));
 }
@@ -51,25 +54,24 @@ static void claim_near(const verify_context *own, const verify_nearness *nearnes
     bool told = report->distance_back != INFINITY;
     if (nearness->to.farthest <= limit * (1 + TOLERANCE) + rounding)
         verify_claim(own->verdict, true,
-                     "the boundary is at most %.17g from the model's surface (%.17g at %zu points)",
+                     "the boundary is at most %.9g from the model's surface (%.9g at %zu points)",
                      limit, nearness->to.farthest, nearness->to.points);
     else
         verify_claim(own->verdict, false,
-                     "the boundary is at most %.17g from the model's surface: %s is %.17g away",
+                     "the boundary is at most %.9g from the model's surface: %s is %.9g away",
                      limit, verify_outer_words(own, nearness->to.face).text, nearness->to.farthest);
     verify_claim(own->verdict,
                  !(limit > most) && nearness->from.farthest <= most &&
                      !(told && report->distance_back > most),
-                 "boundary and model are the same but for a part of the diagonal: %.17g and %.17g "
-                 "are at most %.17g, half of it",
+                 "boundary and model are the same but for a part of the diagonal: %.9g and %.9g "
+                 "are at most %.9g, half of it",
                  limit, told ? report->distance_back : nearness->from.farthest, most);
     verify_leave(own->verdict, "points of either surface between those that were measured");
-    verify_leave(own->verdict, "the volume: the boundary is not the model's surface");
     if (!told)
         return;
     limit = report->distance_back;
     verify_claim(own->verdict, nearness->from.farthest <= limit * (1 + TOLERANCE) + rounding,
-                 "the model's surface is at most %.17g from the boundary (%.17g at %zu points, in "
+                 "the model's surface is at most %.9g from the boundary (%.9g at %zu points, in "
                  "face %zu)",
                  limit, nearness->from.farthest, nearness->from.points, nearness->from.face);
 }
@@ -115,8 +117,35 @@ static void claim_volume(const verify_context *own) {
     double expected = verify_volume_value(&solid);
     double slack = solid.slack + area * ldexp(verify_rounding(model), scale);
     verify_claim(own->verdict, verify_same_volume(&tetrahedra, expected, slack),
-                 "the tetrahedra have the volume of the model (%.17g and %.17g)",
+                 "the tetrahedra have the volume of the model (%.9g and %.9g)",
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
+}
+
+/* Beyond `near` of the model's surface the two are the same. If that is more than rounding, what
+ * was measured may be less than what there is: then a hundredth of the points may be wrong. */
+static starg_status claim_enclosed(const verify_context *own, double near) {
+    verify_enclosed found;
+    double skin = TOLERANCE * verify_diagonal(own->model) + verify_rounding(own->model);
+    if (own->solid == NULL) {
+        verify_leave(own->verdict, "the volume: the model is not closed");
+        return STARG_OK;
+    }
+    starg_status status = verify_compare_enclosed(own->pieces, own->solid, near + skin, &found);
+    if (status != STARG_OK)
+        return status;
+    size_t wrong = found.missing + found.excess, most = near > skin ? found.inside / 100 : 0;
+    if (wrong <= most)
+        verify_claim(own->verdict, true,
+                     "the pieces fill what the model encloses, once (%zu points, %zu inside)",
+                     found.points, found.inside);
+    else
+        verify_claim(own->verdict, false,
+                     "the pieces fill what the model encloses, once: of %zu points %zu inside the "
+                     "model are in no piece, %zu others are in a piece or in several, for instance "
+                     "(%g, %g, %g)",
+                     found.points, found.missing, found.excess, found.place[0], found.place[1],
+                     found.place[2]);
+    return STARG_OK;
 }
 
 /* ---- public function ---- */
@@ -128,7 +157,7 @@ static starg_status claim_nearness(const verify_context *own) {
         return status;
     claim_near(own, &nearness);
     claim_simple(own, &nearness);
-    return STARG_OK;
+    return claim_enclosed(own, fmin(own->report->distance, MUCH * nearness.to.farthest));
 }
 
 static starg_status claim_match(const verify_context *own) {
@@ -139,7 +168,7 @@ static starg_status claim_match(const verify_context *own) {
     claim_on_model(own, &match);
     claim_covered(own, &match);
     claim_volume(own);
-    return STARG_OK;
+    return claim_enclosed(own, 0);
 }
 
 starg_status verify_claim_once(const verify_context *own) {

@@ -14,6 +14,23 @@ static void claim_size(const verify_context *own) {
                  own->mesh->count);
 }
 
+/* Numbers that are not told are no claim; a report read from a file tells them. */
+static void claim_model(const verify_context *own) {
+    const starg_pieces_report *report = own->report;
+    const verify_surface *model = own->model;
+    if (report->model_vertices == 0) {
+        verify_leave(own->verdict, "of which model the pieces are: the report does not tell it");
+        return;
+    }
+    bool solid = own->model_tetrahedra > 0;
+    size_t told = solid ? report->model_tetrahedra : report->model_faces;
+    size_t found = solid ? own->model_tetrahedra : model->model_faces;
+    verify_claim(own->verdict, report->model_vertices == model->model_vertices && told == found,
+                 "the model has %zu vertices and %zu %s (the mesh: %zu and %zu)",
+                 report->model_vertices, told, solid ? "tetrahedra" : "faces",
+                 model->model_vertices, found);
+}
+
 static void claim_counts(const verify_context *own) {
     const starg_pieces_report *report = own->report;
     size_t bad = 0, first = 0;
@@ -54,7 +71,7 @@ static starg_status claim_volumes(const verify_context *own) {
     else
         verify_claim(own->verdict, false,
                      "each piece has the volume that is claimed: %zu have not, first piece %zu, "
-                     "claimed %.17g, found %.17g",
+                     "claimed %.9g, found %.9g",
                      bad, first, report->pieces[first].volume,
                      ldexp(verify_volume_value(&volumes[first]), -3 * scale));
 done:
@@ -72,7 +89,7 @@ static starg_status claim_contacts(const verify_context *own) {
     else
         verify_claim(own->verdict, false,
                      "the %zu contacts of pieces and their areas are right: %zu are wrong, twice "
-                     "or missing, first %u-%u, claimed %.17g, found %.17g",
+                     "or missing, first %u-%u, claimed %.9g, found %.9g",
                      own->report->contact_count, contacts.wrong, contacts.first, contacts.second,
                      contacts.listed, contacts.found);
 done:
@@ -133,7 +150,7 @@ static void claim_radius(const verify_context *own) {
     if (bad > 0)
         verify_claim(own->verdict, false,
                      "guards are as far from the planes of their pieces' faces as claimed: %zu are "
-                     "not, first piece %zu, claimed %.17g, found %.17g",
+                     "not, first piece %zu, claimed %.9g, found %.9g",
                      bad, first, report->pieces[first].radius, found);
     else if (told > 0)
         verify_claim(own->verdict, true,
@@ -214,8 +231,8 @@ static void claim_flattest(const verify_context *own) {
         for (size_t t = 0; t < own->mesh->count; t++)
             found = fmin(found, flatness_of(own, t));
         verify_claim(own->verdict, fabs(claimed - found) <= 1e-9 * claimed + 1e-12,
-                     "the flattest tetrahedron has a height of %.17g of its longest edge (found: "
-                     "%.17g)",
+                     "the flattest tetrahedron has a height of %.9g of its longest edge (found: "
+                     "%.9g)",
                      claimed, found);
     } else {
         verify_leave(own->verdict, "the flattest tetrahedron: the report does not tell it");
@@ -225,6 +242,7 @@ static void claim_flattest(const verify_context *own) {
 
 starg_status verify_claim_numbers(const verify_context *own) {
     starg_status status = STARG_OK;
+    claim_model(own);
     claim_size(own);
     claim_flattest(own);
     if (!own->pieces->labels.good)

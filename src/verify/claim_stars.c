@@ -74,7 +74,7 @@ static starg_status claim_seen(const verify_context *own, const verify_certifica
     if (seen.looked > 0)
         share = (double)seen.seen / (double)seen.looked;
     verify_claim(own->verdict, agrees(&seen, own->report->visible_vertices),
-                 "guards see a fraction of %.17g of their pieces' vertices (found: %.17g; %zu of "
+                 "guards see a fraction of %.9g of their pieces' vertices (found: %.9g; %zu of "
                  "%zu lines tested)",
                  own->report->visible_vertices,
                  ((double)seen.proven + share * open) / (double)seen.pairs, seen.looked,

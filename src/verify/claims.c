@@ -21,6 +21,7 @@ done:
 }
 
 void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {
+    verdict->passed = verdict->passed && holds;
     if (verdict->count == VERIFY_CLAIMS)
         return;
     starg_claim *claim = &verdict->claims[verdict->count++];
@@ -29,7 +30,6 @@ void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {
     vsnprintf(claim->text, sizeof claim->text, format, arguments);
     va_end(arguments);
     claim->holds = holds;
-    verdict->passed = verdict->passed && holds;
 }
 
 void verify_claim_all(starg_verdict *verdict, size_t bad, size_t first, const char *format, ...) {
@@ -44,13 +44,25 @@ void verify_claim_all(starg_verdict *verdict, size_t bad, size_t first, const ch
         verify_claim(verdict, false, "%.180s (not: %zu, the first is %zu)", text, bad, first);
 }
 
-void verify_leave(starg_verdict *verdict, const char *format, ...) {
+static void leave(starg_verdict *verdict, bool asked, const char *format, va_list arguments) {
     if (verdict->not_checked_count == VERIFY_UNCHECKED)
         return;
     starg_unchecked *claim = &verdict->not_checked[verdict->not_checked_count++];
+    vsnprintf(claim->text, sizeof claim->text, format, arguments);
+    claim->asked = asked;
+}
+
+void verify_leave(starg_verdict *verdict, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(claim->text, sizeof claim->text, format, arguments);
+    leave(verdict, false, format, arguments);
+    va_end(arguments);
+}
+
+void verify_leave_asked(starg_verdict *verdict, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    leave(verdict, true, format, arguments);
     va_end(arguments);
 }
 

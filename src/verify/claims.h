@@ -7,7 +7,7 @@
 #include "starguard/verify.h"
 
 /* Limits on the claims of a verdict, and on those left unchecked. */
-enum { VERIFY_CLAIMS = 32, VERIFY_UNCHECKED = 16 };
+enum { VERIFY_CLAIMS = 64, VERIFY_UNCHECKED = 32 };
 
 starg_status verify_verdict_create(starg_context *context, starg_verdict **out);
 
@@ -20,8 +20,10 @@ void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...)
 void verify_claim_all(starg_verdict *verdict, size_t bad, size_t first, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* Adds a statement of the result that is not checked. */
+/* Adds a statement of the result that is not checked; the second one, that the verdict is about. */
 void verify_leave(starg_verdict *verdict, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void verify_leave_asked(starg_verdict *verdict, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 #endif

@@ -12,6 +12,8 @@ typedef struct verify_context {
     const starg_pieces_mesh *mesh;
     const starg_pieces_report *report; /* or NULL */
     const verify_surface *model;
+    size_t model_tetrahedra;     /* of a tetrahedral model, or 0 */
+    const verify_surface *solid; /* the same, closed and oriented; NULL: it is not closed */
     const starg_certificate *certificate; /* of the report's lower bound, or NULL */
     verify_pieces *pieces;
     starg_verdict *verdict;

@@ -66,7 +66,7 @@ verify_view verify_view_around(const starg_guards *guards) {
 }
 
 /* The view of a guard; a file without directions is wrong, which is told elsewhere. */
-static verify_view view_of(const starg_guards *guards, size_t guard) {
+verify_view verify_view_of(const starg_guards *guards, size_t guard) {
     const starg_visibility_options *o = &guards->options.visibility;
     verify_view view = verify_view_around(guards);
     if (o->cone < 360 && guards->directions != NULL) {
@@ -99,7 +99,7 @@ static starg_status examine_guard(starg_context *context, void *shared, void *sc
         return STARG_OK;
 
     const uint8_t *vertices, *faces;
-    const verify_view view = view_of(known->guards, g);
+    const verify_view view = verify_view_of(known->guards, g);
     starg_status status = verify_look(scratch, p, &view, &vertices, &faces);
     if (status != STARG_OK)
         return status;

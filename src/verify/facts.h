@@ -68,8 +68,12 @@ static inline const starg_bits *verify_rows(const verify_facts *known) {
 /* Number of rows that contain each column; the caller releases `held`. Errors: MEMORY. */
 starg_status verify_count_held(const verify_facts *known, uint32_t **held);
 
-/* The view of a guard that looks all around. */
+/* The view of a guard that looks all around, and that of one of the result. */
 verify_view verify_view_around(const starg_guards *guards);
+verify_view verify_view_of(const starg_guards *guards, size_t guard);
+
+/* May a guard stand at p, with its clearance and in the space? But for what can be reached. */
+bool verify_admits(const verify_facts *known, const double p[3]);
 
 /* Does a guard look in one direction? */
 static inline bool verify_is_aimed(const verify_facts *known) {
@@ -93,16 +97,17 @@ starg_status verify_find_needed(const verify_facts *known, size_t *needed);
 /* How many faces do two guards see that are the baseline apart (verify/baseline.c)? */
 size_t verify_count_paired(const verify_facts *known);
 
-/* Points that are drawn for that. */
-enum { VERIFY_PLACES = 12 };
-
 /* Columns seen by fewer guards than redundancy requires (verify/redundancy.c). */
+#define VERIFY_NO_COLUMN SIZE_MAX
 typedef struct verify_lack {
-    size_t lacking; /* seen by some guard, but by too few */
-    size_t points;  /* sampled interior points; 0: none needed */
-    size_t meeting; /* those of them that see a lacking column */
+    size_t lacking;  /* seen by some guard, but by too few */
+    size_t shown;    /* one of them that another guard could have seen, or VERIFY_NO_COLUMN */
+    double place[3]; /* where it could have stood */
 } verify_lack;
 starg_status verify_find_lack(const verify_facts *known, verify_lack *found);
+
+/* The numbers of faces that at least 1, 2, ... and `most` guards see. Errors: MEMORY. */
+starg_status verify_count_often(const verify_facts *known, size_t most, size_t *often);
 
 /* Consistency of levels and guards (verify/levels.c). */
 typedef struct verify_levels {

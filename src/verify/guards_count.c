@@ -72,24 +72,26 @@ starg_status verify_claim_count(starg_verdict *verdict, const verify_facts *know
     if (certificate != NULL)
         STARG_TRY(verify_claim_everywhere(verdict, known, certificate));
     else if (guards->lower_bound_everywhere > 0)
-        verify_leave(verdict,
-                     "that at least %zu guards are needed, wherever they stand: the certificate "
-                     "would say why",
-                     guards->lower_bound_everywhere);
+        verify_leave_asked(
+            verdict,
+            "that at least %zu guards are needed, wherever they stand: the certificate "
+            "would say why",
+            guards->lower_bound_everywhere);
     double seen = verify_fraction(known->covered_area, known->total_area);
     verify_claim(verdict, seen <= guards->area_bound * (1 + VERIFY_TOLERANCE),
-                 "the area seen, %.17g, is within its bound %.17g", seen, guards->area_bound);
+                 "the area seen, %.9g, is within its bound %.9g", seen, guards->area_bound);
     if (guards->area_bound < 1)
-        verify_leave(verdict, "that so many candidates see at most a fraction of %.17g of the area",
+        verify_leave(verdict, "that so many candidates see at most a fraction of %.9g of the area",
                      guards->area_bound);
     if (guards->area_bound_everywhere > 0) {
         verify_claim(verdict, seen <= guards->area_bound_everywhere * (1 + VERIFY_TOLERANCE),
-                     "the area seen, %.17g, is within the bound for guards anywhere, %.17g", seen,
+                     "the area seen, %.9g, is within the bound for guards anywhere, %.9g", seen,
                      guards->area_bound_everywhere);
-        verify_leave(verdict,
-                     "that so many guards see at most a fraction of %.17g of the area, wherever "
-                     "they stand",
-                     guards->area_bound_everywhere);
+        verify_leave_asked(
+            verdict,
+            "that so many guards see at most a fraction of %.9g of the area, wherever "
+            "they stand",
+            guards->area_bound_everywhere);
     }
 done:
     return status;

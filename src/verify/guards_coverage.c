@@ -65,8 +65,8 @@ static bool about_equal(double a, double b) {
 }
 
 static void claim_fraction(starg_verdict *verdict, const char *name, double claimed, double found) {
-    verify_claim(verdict, about_equal(claimed, found), "coverage by %s is %.17g (found: %.17g)",
-                 name, claimed, found);
+    verify_claim(verdict, about_equal(claimed, found), "coverage by %s is %.9g (found: %.9g)", name,
+                 claimed, found);
 }
 
 static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
@@ -170,6 +170,12 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
     verify_claim(verdict, goal.covered <= goal.coverable && goal.coverable <= goal.all,
                  "%zu of %zu %s can be seen (at least those %zu that are)", goal.coverable,
                  goal.all, goal.name, goal.covered);
+    if (verify_targets_vertices(known))
+        verify_claim(verdict,
+                     known->covered_faces <= known->guards->coverable_faces &&
+                         known->guards->coverable_faces <= known->wanted_faces,
+                     "%zu of %zu faces can be seen (at least those %zu that are)",
+                     known->guards->coverable_faces, known->wanted_faces, known->covered_faces);
     if (goal.coverable < goal.covered || goal.coverable >= goal.all)
         return STARG_OK;
     const char *excuse = reason_unchecked(known);
@@ -186,7 +192,7 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
     if (found.proven > rest)
         verify_claim(verdict, false,
                      "%zu of %zu %s can be seen: more can, %zu of those that no guard sees, first "
-                     "%zu from (%.17g, %.17g, %.17g)",
+                     "%zu from (%.9g, %.9g, %.9g)",
                      goal.coverable, goal.all, goal.name, found.proven, found.first, found.place[0],
                      found.place[1], found.place[2]);
     else
@@ -197,24 +203,51 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
     return STARG_OK;
 }
 
+/* How many faces at least 1, 2, ... guards see; files before 0.2 do not tell. */
+static starg_status claim_often(starg_verdict *verdict, const verify_facts *known) {
+    starg_status status = STARG_OK;
+    starg_context *context = known->surface->context;
+    const starg_guards *guards = known->guards;
+    bool told = guards->redundant_count > 0;
+    bool same = !told || guards->redundant_count == guards->options.redundancy;
+    size_t *often = NULL, most = guards->count + 1;
+    if (told || guards->options.redundancy < most)
+        most = told ? guards->redundant_count : guards->options.redundancy;
+    char list[96] = "";
+    STARG_NEW(context, STAGE, often, most);
+    STARG_TRY(verify_count_often(known, most, often));
+    for (size_t k = 0, length = 0; k < most; k++) {
+        same = same && (!told || guards->redundant_faces[k] == often[k]);
+        if (length < sizeof list)
+            length += (size_t)snprintf(list + length, sizeof list - length, "%s%zu",
+                                       k > 0 ? ", " : "", often[k]);
+    }
+    verify_claim(verdict, same, "at least 1, 2, ... %zu guards see as many faces as told: %s%s",
+                 most, list, told ? "" : " (the file does not tell)");
+done:
+    starg_release(context, often);
+    return status;
+}
+
 static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
-    verify_lack found;
-    starg_status status = verify_find_lack(known, &found);
+    verify_lack found = {0};
+    starg_status status = guards->options.redundancy > 1 ? claim_often(verdict, known) : STARG_OK;
+    if (status == STARG_OK)
+        status = verify_find_lack(known, &found);
     if (status != STARG_OK || found.lacking == 0)
         return status;
     const char *name = verify_target_of(known).name;
-    bool anywhere = !verify_space_is_narrow(&guards->space);
-    if (anywhere && 4 * found.meeting >= 3 * found.points && 2 * found.points > VERIFY_PLACES)
+    if (found.shown != VERIFY_NO_COLUMN)
         verify_claim(verdict, false,
-                     "what fewer than %u guards see, %zu %s, no other of %zu candidates sees: "
-                     "%zu of %zu points drawn inside see some",
-                     guards->options.redundancy, found.lacking, name, guards->candidate_count,
-                     found.meeting, found.points);
+                     "what fewer than %u guards see, %zu %s, no other place would see: number %zu "
+                     "is seen from many places beside a guard, one is (%.6g, %.6g, %.6g)",
+                     guards->options.redundancy, found.lacking, name, found.shown, found.place[0],
+                     found.place[1], found.place[2]);
     else
-        verify_leave(verdict,
-                     "that no other candidate sees the %zu %s that fewer than %u guards see",
-                     found.lacking, name, guards->options.redundancy);
+        verify_leave_asked(verdict,
+                           "that no other candidate sees the %zu %s that fewer than %u guards see",
+                           found.lacking, name, guards->options.redundancy);
     return STARG_OK;
 }
 
@@ -258,7 +291,7 @@ static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
         wanted = options->coverage * (known->covered_area + least_unseen_area(known, rest));
     }
     verify_claim(verdict, reached >= wanted * (1 - VERIFY_TOLERANCE),
-                 "guards see a fraction of at least %.17g of what can be seen (%zu of %zu %s)",
+                 "guards see a fraction of at least %.9g of what can be seen (%zu of %zu %s)",
                  options->coverage, goal.covered, goal.coverable, goal.name);
 }
 

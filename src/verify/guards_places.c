@@ -36,7 +36,7 @@ static void claim_inside(starg_verdict *verdict, const verify_facts *known) {
     const double *p = guards->positions + 3 * bad.first;
     verify_claim(verdict, false,
                  "all %zu guards are strictly inside: %zu are not, first guard %zu at "
-                 "(%.17g, %.17g, %.17g)",
+                 "(%.9g, %.9g, %.9g)",
                  guards->count, bad.count, bad.first, p[0], p[1], p[2]);
 }
 
@@ -50,18 +50,16 @@ static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
         return;
     const exceptions bad = find_exceptions(known, keeps_clearance);
     if (bad.count == 0)
-        verify_claim(verdict, true, "guards keep a clearance of %.17g", wanted);
+        verify_claim(verdict, true, "guards keep a clearance of %.9g", wanted);
     else
         verify_claim(verdict, false,
-                     "guards keep a clearance of %.17g: %zu do not, first guard %zu at a distance "
-                     "of %.17g",
+                     "guards keep a clearance of %.9g: %zu do not, first guard %zu at a distance "
+                     "of %.9g",
                      wanted, bad.count, bad.first, known->distance[bad.first]);
 }
 
-static bool stands_within(const verify_facts *known, size_t g) {
+static bool is_within(const verify_facts *known, const double p[3], double distance) {
     const starg_space_options *o = &known->guards->space;
-    const double *p = known->guards->positions + 3 * g;
-    double distance = known->standoff[g];
     bool in = distance >= o->standoff_least * (1 - VERIFY_TOLERANCE) &&
               (o->standoff_most == 0 || distance <= o->standoff_most * (1 + VERIFY_TOLERANCE));
     bool boxed = false;
@@ -70,6 +68,10 @@ static bool stands_within(const verify_facts *known, size_t g) {
     for (int k = 0; boxed && k < 3; k++)
         in = in && p[k] >= o->within[k] && p[k] <= o->within[k + 3];
     return in;
+}
+
+static bool stands_within(const verify_facts *known, size_t g) {
+    return is_within(known, known->guards->positions + 3 * g, known->standoff[g]);
 }
 
 static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
@@ -81,14 +83,13 @@ static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
     else
         verify_claim(verdict, false,
                      "guards keep their distances from the model, and to their box: %zu do not, "
-                     "first guard %zu at a distance of %.17g",
+                     "first guard %zu at a distance of %.9g",
                      bad.count, bad.first, known->standoff[bad.first]);
 }
 
-/* Is the guard straight above a listed face, and near one? Lists are searched one by one. */
-static bool stands_by_faces(const verify_facts *known, size_t g) {
+/* Is p straight above a listed face, and near one? Lists are searched one by one. */
+static bool is_by_faces(const verify_facts *known, const double p[3]) {
     const starg_space_options *o = &known->guards->space;
-    const double *p = known->guards->positions + 3 * g;
     double foot[3], up[3] = {0, 1, 0}, length = 0, least = INFINITY;
     bool over = o->over_count == 0;
     for (int k = 0; k < 3; k++)
@@ -108,6 +109,22 @@ static bool stands_by_faces(const verify_facts *known, size_t g) {
                                                o->mount_distance * (1 + VERIFY_TOLERANCE));
 }
 
+static bool stands_by_faces(const verify_facts *known, size_t g) {
+    return is_by_faces(known, known->guards->positions + 3 * g);
+}
+
+bool verify_admits(const verify_facts *known, const double p[3]) {
+    const verify_surface *surface = known->surface;
+    bool on_surface;
+    int winding = verify_tree_winding(known->tree, p, &on_surface);
+    if (on_surface || winding + surface->ambient < 1 ||
+        verify_tree_distance(known->tree, p, known->scale) < known->guards->options.clearance)
+        return false;
+    return !verify_space_is_narrow(&known->guards->space) ||
+           (is_within(known, p, verify_distance(surface, p, surface->model_faces, known->scale)) &&
+            is_by_faces(known, p));
+}
+
 static starg_status claim_reached(starg_verdict *verdict, const verify_facts *known) {
     const double *from = known->guards->space.from;
     bool known_cubes;
@@ -119,17 +136,16 @@ static starg_status claim_reached(starg_verdict *verdict, const verify_facts *kn
         return status;
     if (!known_cubes)
         verify_leave(verdict,
-                     "that guards can be reached from (%.17g, %.17g, %.17g): the cubes are "
+                     "that guards can be reached from (%.9g, %.9g, %.9g): the cubes are "
                      "too small",
                      from[0], from[1], from[2]);
     else if (bad == 0)
-        verify_claim(verdict, true, "guards can be reached from (%.17g, %.17g, %.17g)", from[0],
+        verify_claim(verdict, true, "guards can be reached from (%.9g, %.9g, %.9g)", from[0],
                      from[1], from[2]);
     else
-        verify_claim(
-            verdict, false,
-            "guards can be reached from (%.17g, %.17g, %.17g): %zu cannot, first guard %zu",
-            from[0], from[1], from[2], bad, first);
+        verify_claim(verdict, false,
+                     "guards can be reached from (%.9g, %.9g, %.9g): %zu cannot, first guard %zu",
+                     from[0], from[1], from[2], bad, first);
     return STARG_OK;
 }
 

@@ -157,8 +157,9 @@ static starg_status claim_distinct(const verify_map *own) {
         verify_claim(own->verdict, false,
                      "no two vertices go to the same point: %zu do, for instance %zu and %zu",
                      shared, first, second);
-    verify_leave(own->verdict, "where the map takes what lies between vertices, and so that it is "
-                               "a bijection: the file has no directions and no overlay");
+    verify_leave_asked(own->verdict,
+                       "where the map takes what lies between vertices, and so that it is "
+                       "a bijection: the file has no directions and no overlay");
 done:
     starg_release(own->context, images);
     return status;

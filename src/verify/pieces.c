@@ -64,18 +64,14 @@ done:
 
 /* ---- all of it ---- */
 
-static starg_status verify_against(starg_context *context, const verify_surface *model,
-                                   const starg_certificate *certificate,
-                                   const starg_pieces_mesh *mesh, const starg_pieces_report *report,
-                                   starg_verdict **out) {
+/* `given` has the model, and what is to be compared with it. */
+static starg_status verify_against(const verify_context *given, starg_verdict **out) {
     starg_status status = STARG_OK;
-    verify_context own = {.context = context,
-                          .mesh = mesh,
-                          .report = report,
-                          .model = model,
-                          .certificate = certificate};
-    STARG_TRY(verify_check_arrays(context, mesh, report));
-    STARG_TRY(verify_pieces_create(context, mesh, report, &own.pieces));
+    verify_context own = *given;
+    starg_context *context = own.context;
+    const starg_pieces_report *report = own.report;
+    STARG_TRY(verify_check_arrays(context, own.mesh, report));
+    STARG_TRY(verify_pieces_create(context, own.mesh, report, &own.pieces));
     STARG_TRY(verify_verdict_create(context, &own.verdict));
     STARG_TRY(verify_claim_tetrahedra(&own));
     STARG_TRY(verify_claim_boundary(&own));
@@ -117,17 +113,24 @@ starg_status starg_verify_pieces_with(starg_context *context, const starg_mesh *
                                       const starg_pieces_mesh *pieces,
                                       const starg_pieces_report *report, starg_verdict **out) {
     starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    verify_surface *closed = NULL, *surface = NULL;
+    verify_context own = {
+        .context = context, .mesh = pieces, .report = report, .certificate = certificate};
+    bool approximated = report != NULL && report->approximated;
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    if (report != NULL && report->approximated)
+    status = verify_surface_create(context, model, &closed);
+    if (status != STARG_ERROR_MESH || !approximated)
+        STARG_TRY(status);
+    if (approximated)
         STARG_TRY(wrap_model(context, model, &surface));
-    else
-        STARG_TRY(verify_surface_create(context, model, &surface));
-    STARG_TRY(verify_against(context, surface, certificate, pieces, report, out));
+    own.model = approximated ? surface : closed;
+    own.solid = closed;
+    STARG_TRY(verify_against(&own, out));
 done:
     starg_time_end(context, former);
     verify_surface_free(surface);
+    verify_surface_free(closed);
     return status;
 }
 
@@ -163,10 +166,15 @@ starg_status starg_verify_pieces_of_tetmesh(starg_context *context, const starg_
                                             starg_verdict **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
+    verify_context own = {.context = context,
+                          .mesh = pieces,
+                          .report = report,
+                          .model_tetrahedra = starg_tetmesh_count(model)};
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(wrap_boundary(context, model, &surface));
-    STARG_TRY(verify_against(context, surface, NULL, pieces, report, out));
+    own.model = own.solid = surface;
+    STARG_TRY(verify_against(&own, out));
 done:
     starg_time_end(context, former);
     verify_surface_free(surface);

@@ -98,6 +98,19 @@ typedef struct verify_nearness {
 starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
                                      verify_nearness *nearness);
 
+/* Points that were drawn, off the surface. */
+typedef struct verify_enclosed {
+    size_t points, inside; /* those in the model                                  */
+    size_t missing;        /* that the model encloses and the pieces do not       */
+    size_t excess;         /* the other way round, or that pieces enclose twice   */
+    double place[3];       /* the first of either                                 */
+} verify_enclosed;
+
+/* Do the pieces fill what the model encloses, but for what is as near to its surface as said?
+ * Errors: MEMORY, CANCELLED. */
+starg_status verify_compare_enclosed(const verify_pieces *pieces, const verify_surface *model,
+                                     double near, verify_enclosed *found);
+
 /* ---- star-shapedness ---- */
 
 typedef enum verify_proof {

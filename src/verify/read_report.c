@@ -4,6 +4,7 @@
  *
  * Independent of starg_decomposition_read, which uses the same field table as the writer. The two
  * share only the JSON parser, so a mistake in the table shows here. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,6 +43,11 @@ static double read_real(reader *r, const json_t *object, const char *key) {
         return json_number_value(value);
     reject(r, key, "a number");
     return 0;
+}
+
+/* Of what is 0 if it is not given: a number that is told is above. */
+static double read_told(reader *r, const json_t *object, const char *key) {
+    return fmax(read_real(r, object, key), DBL_MIN);
 }
 
 static bool read_bool(reader *r, const json_t *object, const char *key) {
@@ -90,10 +96,8 @@ static void read_pieces(reader *r, const json_t *list, starg_pieces_report *repo
         piece->tetrahedra = read_count(r, object, "tetrahedra");
         piece->volume = read_real(r, object, "volume");
         piece->star = read_bool(r, object, "star");
-        piece->radius =
-            json_object_get(object, "radius") != NULL ? read_real(r, object, "radius") : NAN;
-        piece->margin =
-            json_object_get(object, "margin") != NULL ? read_real(r, object, "margin") : NAN;
+        piece->radius = read_real(r, object, "radius");
+        piece->margin = read_real(r, object, "margin");
     }
 done:
     if (status != STARG_OK)
@@ -135,13 +139,17 @@ static void read_surface(reader *r, const json_t *root, starg_pieces_report *rep
     if (!report->approximated)
         return;
     report->distance = read_real(r, root, "distance");
-    if (json_object_get(root, "distance_back") != NULL)
-        report->distance_back = read_real(r, root, "distance_back");
+    report->distance_back = read_real(r, root, "distance_back");
 }
 
 static void read_model(reader *r, const json_t *model, starg_pieces_report *report) {
     starg_status status = STARG_OK;
     const char *file = json_string_value(json_object_get(model, "file"));
+    report->model_vertices = read_count(r, model, "vertices");
+    if (json_object_get(model, "tetrahedra") != NULL)
+        report->model_tetrahedra = read_count(r, model, "tetrahedra");
+    else
+        report->model_faces = read_count(r, model, "faces");
     if (file == NULL)
         return;
     size_t size = strlen(file) + 1;
@@ -177,15 +185,12 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     read_contacts(r, json_object_get(root, "adjacency"), report);
     report->strictly_star = read_count(r, root, "strictly_star");
     report->visible_vertices = read_real(r, root, "visible_vertices");
-    if (json_object_get(root, "flattest") != NULL)
-        report->flattest = read_real(r, root, "flattest");
-    if (json_object_get(root, "smallest_angle") != NULL) {
-        report->smallest_angle = read_real(r, root, "smallest_angle");
-        report->median_angle = read_real(r, root, "median_angle");
-    }
-    if (json_object_get(root, "smallest_angle_made") != NULL)
-        report->smallest_angle_made = read_real(r, root, "smallest_angle_made");
+    report->flattest = read_told(r, root, "flattest");
+    report->smallest_angle = read_told(r, root, "smallest_angle");
+    report->median_angle = read_told(r, root, "median_angle");
     read_surface(r, root, report);
+    if (json_object_get(root, "smallest_angle_made") != NULL)
+        report->smallest_angle_made = read_told(r, root, "smallest_angle_made");
     if (json_object_get(root, "lower_bound") != NULL) {
         report->lower_bound = read_count(r, root, "lower_bound");
         report->optimal = read_bool(r, root, "optimal");

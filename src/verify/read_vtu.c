@@ -4,8 +4,9 @@
  *     VTKFile > UnstructuredGrid > FieldData: distortion (3), guard (3 p), guard_image (3 p)
  *                                             time (k)
  *                                  Piece > PointData: image (3 n), key_0000 (3 n) ...
- *                                          CellData: piece (m)
- *                                          Points (3 n); Cells: connectivity (4 m), types (m: 10)
+ *                                          CellData: piece (m), ratio (m)
+ *                                          Points (3 n); Cells: connectivity (4 m),
+ *                                          offsets (m: 4, 8, ...), types (m: 10)
  *
  * Elements are taken in any order, arrays of other names are skipped, and numbers are text
  * (format="ascii"). Nothing else of XML is understood: neither entities nor sections of raw text.
@@ -31,8 +32,10 @@ typedef enum vtu_name {
     POINTS,
     IMAGE,
     CONNECTIVITY,
+    OFFSETS,
     TYPES,
     PIECE,
+    RATIO,
     DISTORTION,
     GUARD,
     GUARD_IMAGE,
@@ -48,8 +51,10 @@ static const vtu_array WANTED[NAMES] = {
     [POINTS] = {"Points", NULL},
     [IMAGE] = {"PointData", "image"},
     [CONNECTIVITY] = {"Cells", "connectivity"},
+    [OFFSETS] = {"Cells", "offsets"},
     [TYPES] = {"Cells", "types"},
     [PIECE] = {"CellData", "piece"},
+    [RATIO] = {"CellData", "ratio"},
     [DISTORTION] = {"FieldData", "distortion"},
     [GUARD] = {"FieldData", "guard"},
     [GUARD_IMAGE] = {"FieldData", "guard_image"},
@@ -267,6 +272,7 @@ static starg_status take_cells(const reader *r, starg_solid_map *map) {
     starg_status status = STARG_OK;
     STARG_NEW(r->context, STAGE, map->tetrahedra, 4 * r->cells);
     STARG_NEW(r->context, STAGE, map->labels, r->cells);
+    STARG_NEW(r->context, STAGE, map->ratios, r->cells);
     for (size_t t = 0; t < r->cells; t++) {
         double label = r->numbers[PIECE].data[t];
         if (r->numbers[TYPES].data[t] != TETRAHEDRON)
@@ -281,6 +287,9 @@ static starg_status take_cells(const reader *r, starg_solid_map *map) {
         if (!(label >= 0 && label < (double)map->piece_count && label == floor(label)))
             return reject_cell(r, t, "belongs to a piece that is not there", label);
         map->labels[t] = (int32_t)label;
+        map->ratios[t] = r->numbers[RATIO].data[t];
+        if (r->numbers[OFFSETS].data[t] != (double)(4 * t + 4) && map->misplaced++ == 0)
+            map->first_misplaced = t;
     }
     map->count = r->cells;
 done:
@@ -318,8 +327,10 @@ static starg_status take_map(const reader *r, starg_solid_map *map) {
     STARG_TRY(expect_count(r, POINTS, 3 * r->points));
     STARG_TRY(expect_count(r, IMAGE, 3 * r->points));
     STARG_TRY(expect_count(r, CONNECTIVITY, 4 * r->cells));
+    STARG_TRY(expect_count(r, OFFSETS, r->cells));
     STARG_TRY(expect_count(r, TYPES, r->cells));
     STARG_TRY(expect_count(r, PIECE, r->cells));
+    STARG_TRY(expect_count(r, RATIO, r->cells));
     STARG_TRY(expect_count(r, DISTORTION, 3));
     STARG_TRY(expect_count(r, GUARD, 3 * pieces));
     STARG_TRY(expect_count(r, GUARD_IMAGE, 3 * pieces));
@@ -379,8 +390,9 @@ done:
 void starg_solid_map_free(starg_context *context, starg_solid_map *map) {
     if (map == NULL)
         return;
-    void *const blocks[] = {map->vertices, map->images,       map->tetrahedra, map->labels,
-                            map->guards,   map->guard_images, map->times,      map->keys};
+    void *const blocks[] = {map->vertices, map->images, map->tetrahedra,
+                            map->labels,   map->guards, map->guard_images,
+                            map->ratios,   map->times,  map->keys};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(context, blocks[i]);
     starg_release(context, map);

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Redundancy: what fewer guards see than requested must be seen by no other candidate. The
- * candidates are unknown, except for their number and that they are spread over the whole solid.
+ * candidates are not in the file. But where one of them sees an element, the solver looks for more
+ * beside it: at random places in cubes around it whose sizes are halved from round to round.
  *
- * If more than a tenth of what is seen lacks guards, points are sampled at random in the solid.
- * Every candidate that is not a guard must see nothing that lacks guards. If three of four sample
- * points see some, no set of at least MANY other candidates avoids it: a single cover posing as a
- * double one. If guards are lacking only because candidates are few, the lacking places are hard to
- * see and few points see any.
- *
- * Cost: that of VERIFY_PLACES guards, if needed. */
+ * So places around the guards that see the most of such elements are drawn in the same way. If a
+ * guard may stand at a quarter of them and sees an element from there, the search for candidates
+ * cannot have missed all of them: two admissible places are shown for the element, and the result
+ * is refuted. Signs are exact. Cost: that of HOSTS x ROUNDS x PLACES guards, if anything lacks. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -18,75 +16,131 @@
 
 static const char STAGE[] = "verify";
 
-enum { ATTEMPTS = 4096, MANY = 20, RNG_STAGE = 0x7265646e };
+enum { HOSTS = 3, ROUNDS = 30, PLACES = 2, ENOUGH = ROUNDS * PLACES / 4, RNG_STAGE = 0x7265646e };
 
-static bool is_place(const verify_facts *known, const double p[3]) {
-    bool on_surface;
-    int winding = verify_tree_winding(known->tree, p, &on_surface);
-    return !on_surface && winding + known->surface->ambient >= 1 &&
-           verify_tree_distance(known->tree, p, known->scale) >= known->guards->options.clearance;
-}
+static const double FIRST_DISTANCE = 1.0 / 64; /* of the diagonal */
 
-/* Are there other candidates, and do the options give no excuse for the lack? */
+/* Do the options leave no excuse for the lack? */
 static bool must_hold(const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const starg_guard_options *o = &guards->options;
     return o->candidates != STARG_CANDIDATES_GIVEN && !(o->coverage < 1) && o->max_guards == 0 &&
-           !verify_is_aimed(known) && !guards->time_limited &&
-           guards->candidate_count >= guards->count + MANY;
+           !guards->time_limited;
 }
 
-static starg_status look_about(const verify_facts *known, const uint8_t *lacks,
-                               verify_lack *found) {
+/* The guard that sees the most lacking elements that are not looked at yet; these are marked. */
+static bool take_host(const verify_facts *known, const uint8_t *lacks, uint8_t *looked,
+                      size_t *host) {
+    const starg_bits *rows = verify_rows(known);
+    size_t most = 0;
+    for (size_t g = 0; g < rows->rows; g++) {
+        size_t seen = 0;
+        for (size_t j = 0; j < rows->columns; j++)
+            seen += lacks[j] && !looked[j] && starg_bits_test(rows, g, j);
+        if (seen > most) {
+            most = seen;
+            *host = g;
+        }
+    }
+    for (size_t j = 0; j < rows->columns && most > 0; j++)
+        looked[j] = looked[j] || starg_bits_test(rows, *host, j);
+    return most > 0;
+}
+
+/* From how many places beside a guard are the lacking elements seen that it sees? */
+static starg_status look_beside(const verify_facts *known, verify_sight *sight, size_t host,
+                                const uint8_t *lacks, uint32_t *times, verify_lack *found) {
     starg_status status = STARG_OK;
     const verify_surface *surface = known->surface;
-    const verify_view view = verify_view_around(known->guards);
-    size_t columns = verify_rows(known)->columns;
-    verify_sight *sight = NULL;
-    starg_rng rng = starg_rng_make(0, RNG_STAGE, 0);
-    STARG_TRY(verify_sight_create(surface, &sight));
-    for (int i = 0; i < ATTEMPTS && found->points < VERIFY_PLACES; i++) {
+    const starg_bits *rows = verify_rows(known);
+    const verify_view view = verify_view_of(known->guards, host);
+    starg_rng rng = starg_rng_make(0, RNG_STAGE, host);
+    double distance = FIRST_DISTANCE * verify_diagonal(surface);
+    memset(times, 0, rows->columns * sizeof *times);
+    for (int i = 0; i < ROUNDS * PLACES && found->shown == VERIFY_NO_COLUMN; i++) {
         const uint8_t *vertices, *faces;
         double p[3];
-        for (int k = 0; k < 3; k++)
+        for (size_t k = 0; k < 3; k++)
             p[k] =
-                surface->lower[k] + starg_rng_unit(&rng) * (surface->upper[k] - surface->lower[k]);
+                known->guards->positions[3 * host + k] + distance * (2 * starg_rng_unit(&rng) - 1);
+        distance /= i % PLACES == PLACES - 1 ? 2 : 1;
         STARG_TRY(starg_check_cancel(surface->context, STAGE));
-        if (!is_place(known, p))
+        if (!verify_admits(known, p))
             continue;
         STARG_TRY(verify_look(sight, p, &view, &vertices, &faces));
         const uint8_t *seen = verify_targets_vertices(known) ? vertices : faces;
-        bool meets = false;
-        for (size_t j = 0; j < columns && !meets; j++)
-            meets = seen[j] && lacks[j];
-        found->points++;
-        found->meeting += meets;
+        for (size_t j = 0; j < rows->columns && found->shown == VERIFY_NO_COLUMN; j++) {
+            times[j] += seen[j] && lacks[j] && starg_bits_test(rows, host, j);
+            if (times[j] < ENOUGH)
+                continue;
+            found->shown = j;
+            memcpy(found->place, p, sizeof p);
+        }
     }
 done:
+    return status;
+}
+
+static starg_status show_places(const verify_facts *known, const uint8_t *lacks,
+                                verify_lack *found) {
+    starg_status status = STARG_OK;
+    starg_context *context = known->surface->context;
+    size_t columns = verify_rows(known)->columns, host = 0;
+    verify_sight *sight = NULL;
+    uint32_t *times = NULL;
+    uint8_t *looked = NULL;
+    STARG_TRY(verify_sight_create(known->surface, &sight));
+    STARG_NEW(context, STAGE, times, columns);
+    STARG_NEW_ZERO(context, STAGE, looked, columns);
+    for (int i = 0; i < HOSTS && found->shown == VERIFY_NO_COLUMN; i++)
+        if (take_host(known, lacks, looked, &host))
+            STARG_TRY(look_beside(known, sight, host, lacks, times, found));
+done:
     verify_sight_free(sight);
+    starg_release(context, times);
+    starg_release(context, looked);
     return status;
 }
 
 starg_status verify_find_lack(const verify_facts *known, verify_lack *found) {
     starg_status status = STARG_OK;
     starg_context *context = known->surface->context;
-    size_t columns = verify_rows(known)->columns, seen = 0;
+    uint32_t redundancy = known->guards->options.redundancy;
+    size_t columns = verify_rows(known)->columns;
     uint32_t *held = NULL;
     uint8_t *lacks = NULL;
-    *found = (verify_lack){0};
-    if (known->guards->options.redundancy < 2)
+    *found = (verify_lack){.shown = VERIFY_NO_COLUMN};
+    if (redundancy < 2)
         return STARG_OK;
     STARG_TRY(verify_count_held(known, &held));
     STARG_NEW(context, STAGE, lacks, columns);
     for (size_t j = 0; j < columns; j++) {
-        lacks[j] = held[j] > 0 && held[j] < known->guards->options.redundancy;
+        lacks[j] = held[j] > 0 && held[j] < redundancy;
         found->lacking += lacks[j];
-        seen += held[j] > 0;
     }
-    if (10 * found->lacking > seen && must_hold(known))
-        STARG_TRY(look_about(known, lacks, found));
+    if (found->lacking > 0 && must_hold(known))
+        STARG_TRY(show_places(known, lacks, found));
 done:
     starg_release(context, held);
     starg_release(context, lacks);
+    return status;
+}
+
+starg_status verify_count_often(const verify_facts *known, size_t most, size_t *often) {
+    starg_status status = STARG_OK;
+    starg_context *context = known->surface->context;
+    const starg_bits *rows = known->faces;
+    uint32_t *held = NULL;
+    STARG_NEW_ZERO(context, STAGE, held, rows->columns);
+    memset(often, 0, most * sizeof *often);
+    for (size_t g = 0; g < rows->rows; g++)
+        for (size_t w = 0; w < rows->words; w++)
+            STARG_FOR_BITS (bit, starg_bits_row(rows, g)[w]) {
+                size_t times = held[64 * w + bit]++;
+                if (times < most)
+                    often[times]++;
+            }
+done:
+    starg_release(context, held);
     return status;
 }

@@ -104,9 +104,9 @@ static starg_status claim_surface(end *e) {
         goto done;
     }
     STARG_TRY(verify_surface_create(e->own.context, e->model, &surface));
-    e->own.model = surface;
+    e->own.model = e->own.solid = surface;
     STARG_TRY(verify_claim_boundary(&e->own));
-    e->own.model = NULL;
+    e->own.model = e->own.solid = NULL;
 done:
     verify_surface_free(surface);
     return status;
@@ -133,18 +133,21 @@ done:
     return status;
 }
 
+static void add_tetrahedron(verify_distortion *sum, const starg_solid_map *map, const end ends[2],
+                            size_t t) {
+    const double *from[4], *to[4];
+    for (size_t k = 0; k < 4; k++) {
+        from[k] = verify_point(&ends[0].mesh, map->tetrahedra[4 * t + k]);
+        to[k] = verify_point(&ends[1].mesh, map->tetrahedra[4 * t + k]);
+    }
+    verify_add_distortion(sum, from, ends[0].own.pieces->scale, to, ends[1].own.pieces->scale);
+}
+
 static void claim_distortion(starg_verdict *verdict, const starg_solid_map *map,
                              const end ends[2]) {
     verify_distortion found = {0};
-    for (size_t t = 0; t < map->count; t++) {
-        const double *from[4], *to[4];
-        for (size_t k = 0; k < 4; k++) {
-            from[k] = verify_point(&ends[0].mesh, map->tetrahedra[4 * t + k]);
-            to[k] = verify_point(&ends[1].mesh, map->tetrahedra[4 * t + k]);
-        }
-        verify_add_distortion(&found, from, ends[0].own.pieces->scale, to,
-                              ends[1].own.pieces->scale);
-    }
+    for (size_t t = 0; t < map->count; t++)
+        add_tetrahedron(&found, map, ends, t);
     double mean = found.sum / found.all, above = found.above / found.all;
     verify_claim(verdict, verify_near_distortion(map->worst, found.worst, found.worst_room),
                  "tetrahedra are stretched by a ratio of %.9g at most (found: %.9g)", map->worst,
@@ -154,6 +157,23 @@ static void claim_distortion(starg_verdict *verdict, const starg_solid_map *map,
     verify_claim(
         verdict, verify_near_distortion(map->above_10, above, found.above_room / found.all),
         "a share of %.9g of A's volume has a ratio above 10 (found: %.9g)", map->above_10, above);
+}
+
+/* What the file says of single tetrahedra, and where their corners end in its list. */
+static void claim_cells(starg_verdict *verdict, const starg_solid_map *map, const end ends[2]) {
+    size_t wrong = 0, first = 0;
+    verify_claim_all(verdict, map->misplaced, map->first_misplaced,
+                     "the offsets of cells are 4, 8, 12 and so on");
+    for (size_t t = map->count; map->ratios != NULL && t-- > 0;) {
+        verify_distortion found = {0};
+        add_tetrahedron(&found, map, ends, t);
+        if (verify_near_distortion(map->ratios[t], found.worst, found.worst_room))
+            continue;
+        wrong++;
+        first = t;
+    }
+    if (map->ratios != NULL)
+        verify_claim_all(verdict, wrong, first, "tetrahedra are stretched by the ratios told");
 }
 
 /* ---- all of it ---- */
@@ -173,6 +193,7 @@ starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
     for (int side = 0; side < 2; side++)
         STARG_TRY(claim_end(&ends[side], verdict));
     claim_distortion(verdict, map, ends);
+    claim_cells(verdict, map, ends);
     STARG_TRY(verify_claim_path(context, map, verdict));
     *out = verdict;
     verdict = NULL;

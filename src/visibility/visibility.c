@@ -336,8 +336,34 @@ done:
     return status;
 }
 
+/* A vertex that parts share is seen if one of its copies is; these have no columns. */
+static starg_status join_copies(starg_context *context, const starg_solid *solid,
+                                starg_bits **rows) {
+    starg_status status = STARG_OK;
+    const starg_mesh *own = solid->mesh, *given = solid->shared;
+    starg_bits *joined = NULL;
+    STARG_TRY(starg_bits_create(context, (*rows)->rows, given->vertex_count, &joined));
+    for (size_t i = 0; i < joined->rows; i++)
+        for (size_t k = 0; k < 3 * own->face_count; k++)
+            if (starg_bits_test(*rows, i, own->faces[k]))
+                starg_bit_set(starg_bits_row_mutable(joined, i), given->faces[k]);
+    starg_bits_free(*rows);
+    *rows = joined;
+done:
+    return status;
+}
+
 starg_status starg_visibility(starg_context *context, const starg_solid *solid,
                               const double *points, size_t count,
                               const starg_visibility_options *options, starg_bits **out) {
-    return visibility_rows(context, solid, points, count, options, NULL, out);
+    starg_status status = visibility_rows(context, solid, points, count, options, NULL, out);
+    if (status != STARG_OK || solid->shared == NULL || options == NULL ||
+        options->target != STARG_TARGET_VERTICES)
+        return status;
+    status = join_copies(context, solid, out);
+    if (status != STARG_OK) {
+        starg_bits_free(*out);
+        *out = NULL;
+    }
+    return status;
 }

@@ -301,8 +301,23 @@ class Guard(support.Case):
 
     def test_text(self):
         text = self.run_text("guard", self.room, "-o", "g.json")[0]
-        for line in ["guards", "lower bound", "coverage", "uncovered", "candidates"]:
+        for line in ["guards", "coverage", "uncovered", "candidates"]:
             self.assertRegex(text, rf"(?m)^{line} +\d")
+        self.assertNotIn("lower bound", text)
+        for more in (["--verbose"], ["--candidates", "g.json"]):
+            text = self.run_text("guard", self.room, "-o", "h.json", *more)[0]
+            self.assertRegex(text, r"(?m)^lower bound +\d+ of these candidates \(")
+
+    def test_without_a_bound(self):
+        """There is a bound for all places in the line of the guards, or the reason why not."""
+        for words, says in [(["--no-refine", "--target", "vertices"], r"was not sought \(--prove does\)"),
+                            (["--coverage", "0.9"], r"is not sought for a part of the area \(--prove does\)"),
+                            (["--coverage", "0.9", "--prove", "--prove-work", "100000"], None), ([], None)]:
+            text = self.run_text("guard", self.sample("gallery"), "-o", "g.json", "--count", "60", *words)[0]
+            known = "lower_bound_everywhere" in json.loads(self.read("g.json"))
+            self.assertEqual(known, says is None, words)
+            self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed) wherever they "
+                             "stand$" if known else rf"(?m)^guards +\d+; how many are needed wherever they stand {says}$")
 
     def test_anywhere(self):
         maze = self.sample("gallery")
@@ -318,9 +333,8 @@ class Guard(support.Case):
         self.run_text("verify", maze, "p.json")
         text = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
                              "--prove-work", "100000")[0]
-        self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed), "
+        self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed) "
                                "wherever they stand$")
-        self.assertRegex(text, r"(?m)^lower bound +\d+ of these candidates \(")
 
     def test_anywhere_of_other_questions(self):
         maze = self.sample("gallery")
@@ -333,7 +347,7 @@ class Guard(support.Case):
             report = json.loads(self.read("p.json"))
             if options[0] == "--max-guards":
                 self.assertRegex(out, r"(?m)^guards +2 of at most 2$")
-                self.assertRegex(out, r"(?m)^area +\S+ % seen, at most \S+ % possible with 2 guards, "
+                self.assertRegex(out, r"(?m)^area +\S+ % seen, at most \S+ % possible with 2 guards "
                                       "wherever they stand$")
                 self.assertNotIn("fewe", out)
                 self.assertNotIn("lower", out)
@@ -405,7 +419,7 @@ class Guard(support.Case):
         out, err = self.run_text("guard", "-", "-o", "-", input=model)
         result = json.loads(out)
         self.assertEqual(result["model"]["file"], "-")
-        self.assertIn("lower bound", err)
+        self.assertIn("guards  ", err)
         self.assertEqual(self.names(), [self.room])
         claims = self.run_text("verify", self.room, "-", input=out.encode())[0]
         self.assertIn("verified", claims)

@@ -2,9 +2,11 @@
 """Scenes: obstacles, shells as given, outsides, soups, targets; and what is wrong with them."""
 import json
 import os
+import random
+import re
 import struct
 
-from support import Case, main
+from support import OPEN, TETRAHEDRON, Case, main
 
 
 def box(low, high, n=1, inward=False):
@@ -240,10 +242,13 @@ class Scenes(Case):
     def test_two_sided(self):
         """A sheet is seen from either side only where that is asked for."""
         self.write("wall.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 4 0\n0 4 0\n3 0 1 2\n3 0 2 3\n")
-        for words, unseen in ([], [0, 1]), (["--two-sided"], []):
-            result = self.guards("wall.off", "--soup", "--within", "0,0,-3,4,4,-1", *words)
-            self.assertEqual(result["coverage"]["uncovered_faces"], unseen)
-            self.verified("wall.off")
+        behind = ["wall.off", "--soup", "--within", "0,0,-3,4,4,-1"]
+        _, errors = self.run_bytes("guard", *behind, "-o", "g.json", status=2)
+        self.assertIn(b"no candidate sees any target", errors)
+        self.assertIn(b"two-sided", errors)
+        result = self.guards(*behind, "--two-sided")
+        self.assertEqual(result["coverage"]["uncovered_faces"], [])
+        self.verified("wall.off")
 
     def test_unseen(self):
         """A box in a closed box is proven unseen from outside of both, and seen from between them."""
@@ -356,74 +361,111 @@ class Scenes(Case):
             self.assertIn(name, err)
         self.assertNotIn("n.json", self.names())
 
-    def test_names_of_any_kind(self):
-        """Names with dots, slashes, blanks and commas, lists, patterns; several options are a union."""
-        vertices, faces = box((0, 0, 0), (4, 5, 3))
-        names = "Floor.001", "IfcSlab/Ceiling", "Wall, north", "0-3", "wall a", "wall b"
+    def test_leak(self):
+        """Two rooms of a soup: what is reached leaks through narrow gaps and out of the box, and the way shows it."""
+        def rooms(gap, door):
+            """Of 4 by 6 by 3 each, with openings of these widths in the wall between and to the outside."""
+            corners, quads = [], []
+            def add(*quad):
+                quads.append("4 " + " ".join(str(len(corners) + i) for i in range(4)))
+                corners.extend(quad)
+            for z in (0, 3):
+                add((0, 0, z), (8, 0, z), (8, 6, z), (0, 6, z))
+            for y in (0, 6):
+                add((0, y, 0), (8, y, 0), (8, y, 3), (0, y, 3))
+            for x, width in ((0, 0), (4, gap), (8, door)):
+                for a, b in ((0, 3 - width / 2), (3 + width / 2, 6)):
+                    add((x, a, 0), (x, b, 0), (x, b, 3), (x, a, 3))
+            lines = [" ".join(map(str, c)) for c in corners] + quads
+            return f"OFF\n{len(corners)} {len(quads)} 0\n" + "\n".join(lines) + "\n"
+        cell = 0.01 * (64 + 36 + 9) ** 0.5
+        for gap, door, says in [(6, 0, None), (1, 0, None), (0, 0, None), (0, 1, None), (6, 1, "outside of the model, at"),
+                                (1, 1, "outside of the model, at"), (0.25, 0, "leaks through a gap"),
+                                (0.25, 1, "outside of the model, through a gap"),
+                                (6, 0.25, "outside of the model, through a gap")]:
+            self.write("rooms.off", rooms(gap, door))
+            words = ["rooms.off", "--soup", "--two-sided", "--from", "1.1,1,1", "--leak", "way.obj", "-o", "g.json",
+                     "--no-refine", "--count", "30"]
+            log = [line["message"] for line in self.run_json("guard", *words)["log"] if line["level"] == "warning"]
+            self.assertEqual(len(log), says is not None, log)
+            self.assertEqual("way.obj" in self.names(), says is not None)
+            if says is None:
+                continue
+            self.assertIn(says, log[0])
+            place = [float(x) for x in re.search(r" at \((.*?)\)", log[0])[1].split(",")]
+            wall, width = (4, gap) if gap < 1 else (8, door)
+            self.assertLess(abs(place[0] - wall), 2 * cell)
+            self.assertLess(abs(place[1] - 3), width / 2)
+            lines = [line.split() for line in self.read("way.obj").decode().splitlines()]
+            way = [[float(x) for x in line[1:]] for line in lines if line[0] == "v"]
+            self.assertEqual(way[0], [1.1, 1, 1])
+            self.assertEqual([line[1:] for line in lines if line[0] == "l"],
+                             [[str(i), str(i + 1)] for i in range(1, len(way))])
+            self.assertEqual(way[-1][0] > 8, "outside" in says) # past the walls by their openings only
+            for x, width in ((4, gap), (8, door)):
+                for (p, q) in zip(way, way[1:]):
+                    if (p[0] < x) != (q[0] < x):
+                        self.assertLess(abs(p[1] - 3), width / 2)
+            os.remove(os.path.join(self.folder, "way.obj"))
+        self.usage_error("guard", "room.off", "--leak", "way.obj", "-o", "n.json", says="--soup --from")
+        self.usage_error("guard", "rooms.off", "--soup", "--from", "1,1,1", "--leak", "w.txt", "-o", "n.json", says=".vtk")
+
+    def test_advice(self):
+        """A refused mesh is told of what helps, and of nothing else."""
+        chance = random.Random(1)
+        loose = "".join("%g %g %g\n" % tuple(chance.random() for _ in range(3)) for _ in range(90))
+        self.write("loose.off", f"OFF\n90 30 0\n{loose}" + "".join(f"3 {i} {i + 1} {i + 2}\n" for i in range(0, 90, 3)))
+        self.write("open.off", OPEN)
+        self.write("mid.txt", "4 3 1.5\n")
+        triple = TETRAHEDRON.replace("4 4 6", "5 7 6").replace("0 0 1\n", "0 0 1\n0 0 -1\n")
+        self.write("triple.off", triple + "3 0 1 4\n3 0 4 2\n3 1 2 4\n")
+        for model, says, never in [("loose.off", "--soup", "try 'starguard repair'"), ("open.off", "repair", "--soup"),
+                                   ("triple.off", "repair", "--soup")]:
+            _, err = self.run_text("guard", model, "-o", "n.json", status=2)
+            self.assertIn(says, err)
+            self.assertNotIn(never, err)
+        self.run_text("guard", "loose.off", "--soup", "--two-sided", "-o", "n.json", "--no-refine", "--count", "50")
+        for model, holes in [("loose.off", True), ("triple.off", False)]:
+            _, err = self.run_text("decompose", model, "-o", "p.vtk", status=2)
+            self.assertIn("of its diagonal away", err)
+            self.assertEqual("its holes are too large" in err, holes, err)
+        _, err = self.run_text("guard", "room.off", "--soup", "--range", "0.5", "-o", "n.json", "--candidates", "mid.txt",
+                               status=2)
+        self.assertRegex(err, "try a larger range, or other candidates\n")
+        self.write("out.txt", "9 9 9\n1 1 1\n")
+        for words, says in [([], ": not inside\n"), (["--clearance", "0.1"], ": not inside, or nearer")]:
+            _, err = self.run_text("guard", "room.off", "--candidates", "out.txt", "-o", "n.json", *words)
+            self.assertIn(says, err)
+
+    def test_many_names(self):
+        """Lists, patterns and repeated options are unions; names may have dots, slashes, spaces and commas."""
+        vertices, faces = box((0, 0, 0), (8, 6, 3))
+        given = ["Floor.001", "IfcSlab/Ceiling", "Wall, north", "wall_e", "0-3", "a*b=2"]
         lines = [f"v {x} {y} {z}" for x, y, z in vertices]
         for f, face in enumerate(faces):
-            lines += [f"o {names[f // 2]}", "f " + " ".join(str(v + 1) for v in face)]
-        self.write("room.obj", "\n".join(lines) + "\n")
-        for words, groups in [(["Floor.001"], [0]), (["IfcSlab/Ceiling"], [1]), (["Wall, north"], [2]),
-                              (["wall b"], [5]), (["wall*"], [4, 5]), (["?all*"], [2, 4, 5]),
-                              (["?-3"], [3]), (["0-3"], [0, 1]), (["Floor.001,*/*"], [0, 1]),
-                              (["Floor.001", "wall a", "wall a"], [0, 4])]:
-            see = [word for name in words for word in ("--see", name)]
-            result = self.guards("room.obj", *see)
-            wanted = [f for group in groups for f in (2 * group, 2 * group + 1)]
-            self.assertEqual([face for face, _ in result["scene"]["targets"]], wanted, words)
-        result = self.guards("room.obj", "--mount", "Floor.001", "--mount", "8-9", "--clearance", "0.1")
-        self.assertEqual(result["scene"]["mount"], [0, 1, 8, 9])
-        for name, status in ("flor", 1), ("Floor.1", 2), ("wall*,flor", 1):
-            _, err = self.run_text("guard", "room.obj", "-o", "n.json", "--see", name, status=status)
-            self.assertIn("there are Floor.001", err)
-        _, err = self.run_text("guard", "room.obj", "-o", "n.json", "--see", "0-3")
-        self.assertIn("'?-3'", err)
-
-    def test_leak(self):
-        """A gap in a wall is found, a closed room has none, and the way there goes through the gap."""
-        def room(low, high):  # a wall at x = 4 with a gap in y from low to high, over all of z
-            vertices, faces = box((0, 0, 0), (4, 4, 2), inward=True)
-            faces = [f for f in faces if any(vertices[v][0] < 4 for v in f)]
-            ends = [(4, 0, 0), (4, low, 0), (4, low, 2), (4, 0, 2), (4, high, 0), (4, 4, 0), (4, 4, 2),
-                    (4, high, 2)]
-            walls = [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)]
-            return off((vertices, faces), (ends, walls), box((6, 1, 0), (7, 2, 1)))
-
-        words = "room.off", "--soup", "--two-sided", "--from", "1,1,1", "--cell", "0.1", "--leak", "leak.obj"
-        for low, high in (1.5, 2.5), (2, 2.4):
-            self.write("room.off", room(low, high))
-            report = self.run_json("guard", *words, "-o", "g.json")
-            said = [entry["message"] for entry in report["log"] if "leaks out" in entry["message"]]
-            self.assertEqual(len(said), 1)
-            gap = [float(x) for x in said[0].split("wide at (")[1].split(")")[0].split(",")]
-            self.assertAlmostEqual(gap[0], 4, delta=0.2)
-            self.assertTrue(low < gap[1] < high, gap)
-            lines = self.read("leak.obj").decode().split("\n")
-            way = [tuple(map(float, line.split()[1:])) for line in lines if line.startswith("v ")]
-            self.assertEqual(way[0], (1, 1, 1))
-            crossing = [(a, b) for a, b in zip(way, way[1:]) if (a[0] < 4) != (b[0] < 4)]
-            self.assertEqual(len(crossing) % 2, 1)
-            self.assertTrue(all(low < p[1] < high for pair in crossing for p in pair), crossing)
-            os.remove(self.path("leak.obj"))
-        for low, high in (2, 2), (2, 2.08):  # closed, and a gap that no cube passes
-            self.write("room.off", room(low, high))
-            report = self.run_json("guard", *words, "-o", "g.json")
-            self.assertFalse([entry for entry in report["log"] if "leaks out" in entry["message"]])
-            self.assertNotIn("leak.obj", self.names())
-        self.usage_error("guard", "room.off", "--leak", "l.obj", "-o", "g.json", says="--from")
-
-    def test_narrow_gap(self):
-        """Half of what is reached lies behind a gap two cubes wide; behind one of eight it is plain space."""
-        for width, said in (0.2, 1), (0.8, 0):
-            vertices, faces = box((0, 0, 0), (4, 4, 2), inward=True)
-            ends = [(2, 0, 0), (2, 2, 0), (2, 2, 2), (2, 0, 2), (2, 2 + width, 0), (2, 4, 0), (2, 4, 2),
-                    (2, 2 + width, 2)]
-            self.write("two.off", off((vertices, faces), (ends, [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)])))
-            report = self.run_json("guard", "two.off", "--soup", "--two-sided", "--from", "1,1,1", "--cell",
-                                   "0.09", "-o", "g.json")
-            found = [e["message"] for e in report["log"] if "as wide as a cube" in e["message"]]
-            self.assertEqual(len(found), said, report["log"])
+            if f % 2 == 0:
+                lines.append(f"o {given[f // 2]}")
+            lines.append("f " + " ".join(str(v + 1) for v in face))
+        self.write("named.obj", "\n".join(lines) + "\n")
+        self.write("wall_e", "11")
+        for words, names in [
+                (["--see", "Floor.001"], [0]), (["--see", "IfcSlab/Ceiling"], [1]), (["--see", "Wall, north"], [2]),
+                (["--see", "Floor.001,a*b=2"], [0, 5]), (["--see", "Floor.001, Ifc*"], [0, 1]),
+                (["--see", "[Ww]all*", "--see", "Wall*"], None), (["--see", "?all*"], [2, 3]),
+                (["--see", "*o*"], [0, 2]), (["--see", "0?3"], [4]), (["--see", "0-3"], [0, 1]),
+                (["--see", "0-1,Wall*"], [0, 2]), (["--see", "Floor.001", "--see", "0?3", "--see", "2-3"], [0, 1, 4]),
+                (["--ignore", "*all*", "--ignore", "Floor.001"], [1, 4, 5])]:
+            if names is None:
+                self.usage_error("guard", "named.obj", "-o", "n.json", *words, says="is called '[Ww]all*'")
+                continue
+            targets = [face for face, _ in self.guards("named.obj", *words)["scene"]["targets"]]
+            self.assertEqual(targets, [f for n in names for f in (2 * n, 2 * n + 1)], words)
+        wall = self.guards("named.obj", "--see", "wall_e")["scene"]["targets"]
+        self.assertEqual([face for face, _ in wall], [11]) # the file
+        _, err = self.run_text("guard", "named.obj", "-o", "n.json", "--see", "Floor.002", status=2)
+        self.assertIn("there are Floor.001, IfcSlab/Ceiling, Wall, north, wall_e, 0-3", err)
+        mounted = self.guards("named.obj", "--mount", "Floor.001", "--mount", "0-3", "--clearance", "0.1")
+        self.assertEqual(mounted["scene"]["mount"], [0, 1, 2, 3])
 
     def test_obstacles_in_exports(self):
         """Scenes show what stands in the way, as a part of its own."""
@@ -455,10 +497,14 @@ class Scenes(Case):
         found = self.guards("room.ply", "--weights", "care")["scene"]["targets"]
         self.assertEqual(found, [[2 * q + i, q / 5] for q in range(1, 6) for i in range(2)])
         self.verified("room.ply")
+        targets = lambda pairs: [face for face, _ in pairs]
         kinds = self.guards("room.ply", "--see", "kind=2")["scene"]["targets"]
         self.assertEqual([face for face, _ in kinds], [4, 5, 10, 11])
         _, err = self.run_text("guard", "room.ply", "-o", "n.json", "--see", "kind=x", status=1)
         self.assertIn("not a number", err)
+        several = targets(self.guards("room.ply", "--see", "kind=2,care")["scene"]["targets"])
+        self.assertEqual(several, list(range(2, 12)))
+        self.assertEqual(targets(self.guards("room.ply", "--see", "k*")["scene"]["targets"]), [2, 3, 4, 5, 8, 9, 10, 11])
 
     def test_views_in_exports(self):
         """Cones and pyramids of cameras are in VTU and PLY files, from the guard outwards."""
@@ -518,7 +564,7 @@ class Scenes(Case):
                 (["room.off", "--standoff", "5,6"], 2, "no candidate"),
                 (["room.off", "--cell", "1"], 1, "--from"),
                 (["room.off", "--soup", "--from", "1,1,0", "--cell", "0.1"], 1, "a face meets"),
-                (["room.off", "--soup", "--from", "50,1,1"], 1, "not in the box"),
+                (["room.off", "--soup", "--from", "50,1,1"], 1, "from (0, 0, 0) to (8, 6, 3)"),
                 (["room.off", "--soup", "--from", "1,1,1", "--cell", "1e-5"], 1, "2^30"),
                 (["room.off", "--obstacles", "crate.off", "--from", "4,3,0.7", "--cell", "0.2"], 1,
                  "within matter"),

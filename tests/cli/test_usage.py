@@ -100,6 +100,29 @@ class Mistakes(support.Case):
         self.usage_error("guard", "m.off", "-o", "--quiet", says="-o needs a value")
         self.usage_error("guard", "m.off", "-o", "", says="-o takes a name")
 
+    def test_options_given_twice(self):
+        """Of every option of every command: values add up or the second is refused, none replaces another."""
+        table = json.loads(self.run_text("help", "--json")[0])
+        adding = set()
+        for command in (c for c in table["commands"] if not c["group"]):
+            for option in command["options"] + (table["common_options"] if command["name"] == "check" else []):
+                if option["kind"] == "flag":
+                    continue
+                name = "--" + option["name"]
+                for value in option.get("choices", ["1", "0.5", "10000", "1,2", "1,2,3", "1,2,3,4,5,6"]):
+                    words = [f"{name}={value}"] * 2
+                    _, err = self.run_text(*command["name"].split(), *words, "--nonsense", status=1)
+                    if f"{name} takes" not in err:
+                        break
+                if f"{name} is given more than once" not in err:
+                    adding.add((command["name"], option["name"]))
+        self.assertEqual(adding, {("visible", "from"), ("visible", "box")} | {
+            (command, option) for command in ("visible", "guard") for option in ("obstacles", "see", "ignore")
+        } | {("guard", "over"), ("guard", "mount")})
+        self.usage_error("guard", "m.off", "-o", "a", "--output=b", says="more than once")
+        self.usage_error("visible", "m.off", "--unseen", "--outside", "--from=2,2,2", "--from=3,3,3", says="one point")
+        self.run_text("check", "m.off", "--quiet", "--quiet")
+
     def test_value_for_a_flag(self):
         self.usage_error("check", "m.off", "--quiet=yes", says="--quiet takes no value")
 
@@ -157,39 +180,6 @@ class Mistakes(support.Case):
         self.usage_error("sample", "hors", "-o", "h.off", says="did you mean 'horse'?")
         self.usage_error("sample", "zzzzzz", "-o", "h.off", says="--list")
 
-    def test_repeated_options(self):
-        """Each option of each command adds up, and says so, is a flag, or is refused when given twice."""
-        table = json.loads(self.run_text("help", "--json")[0])
-        values = ["7", "0.5", "80", "1,2", "1,2,3", "1,2,3,4,5,6", "name.json", "600"]
-        for command in table["commands"]:
-            for option in command["options"] + table["common_options"]:
-                name, kind = option["name"], option["kind"]
-                if command["group"] or kind == "flag" or "Repeatable" in option["help"]:
-                    self.assertIn(kind, ("flag", "points", "texts"))
-                    continue
-                said = []
-                for value in option.get("choices", values):
-                    twice = [f"--{name}={value}"] * 2
-                    said.append(self.run_text(*command["name"].split(), *twice, status=1)[1])
-                    if "more than once" in said[-1]:
-                        break
-                self.assertIn(f"--{name} is given more than once", said[-1], (command["name"], said))
-
-    def test_endings_of_other_formats(self):
-        """Files of one format are not written under the name of another."""
-        for words, says in [
-                (("guard", "m.off", "-o", "g.glb"), "'starguard export GUARDS.json -o g.glb'"),
-                (("guard", "m.off", "-o", "g.html"), "'starguard view GUARDS.json -o g.html'"),
-                (("guard", "m.off", "-o", "g.csv"), "--poses g.csv"),
-                (("guard", "m.off", "-o", "g.xyz"), "not 'g.xyz'\n"),
-                (("decompose", "m.off", "-o", "p.ply"), "'starguard export PIECES.vtk -o p.ply'"),
-                (("decompose", "m.off", "-o", "p.json"), "--report p.json"),
-                (("morph", "m.off", "m.off", "-o", "m.glb"), "--glb m.glb"),
-                (("map", "m.off", "m.off", "-o", "m.vtu"), "--solid"),
-                (("check", "m.off", "--marks", "m.json"), "--json")]:
-            self.usage_error(*words, says=says)
-            self.assertNotIn(words[-1], self.names())
-
     def test_endings(self):
         self.usage_error("sample", "horse", "-o", "h.xyz", says=".off, .obj, .ply or .stl")
         self.usage_error("repair", "m.off", "-o", "noextension", says=".off, .obj, .ply or .stl")
@@ -197,6 +187,19 @@ class Mistakes(support.Case):
         self.usage_error("visible", "m.off", "--from", "0,0,0", "-o", "v.off", says=".ply")
         self.usage_error("guard", "m.off", "-o", "g.json", "--picture", "p.jpg", says=".png")
         self.usage_error("guard", "m.off", "-o", "g.json", "--marks", ".ply", says=".ply")
+
+    def test_endings_of_others(self):
+        """An output is never written under the extension of another kind: the message names what writes that."""
+        for words, says in [("guard m.off -o x.glb", "starguard export RESULT"), ("guard m.off -o x.CSV", "--poses"),
+                            ("guard m.off -o x.png", "--picture FILE.png"), ("guard m.off -o x.html", "starguard view"),
+                            ("decompose m.off -o p.ply", "starguard export"), ("decompose m.off -o p.json", "--report"),
+                            ("decompose m.off -o p.vtk --report r.off", "starguard repair"),
+                            ("describe m.off -o d.vtk", "starguard decompose"), ("view g.json -o v.glb", "export"),
+                            ("repair m.off -o r.vtu", "export"), ("map m.off m.off -o m.vtu", "--solid"),
+                            ("map --solid m.off m.off -o m.json", "--solid"), ("db matrix d -o m.html", "view"),
+                            ("morph m.off m.off --frames 2 -o m.glb", "--glb FILE.glb")]:
+            self.usage_error(*words.split(), says=says)
+        self.run_text("guard", "m.off", "-o", "guards.txt")
 
     def test_two_results_on_standard_output(self):
         self.usage_error("guard", "m.off", "-o", "-", "--marks", "-", says="only one output")

@@ -2,7 +2,6 @@
 """What users of Python expect: pickles, sequences, notebooks, objects of other packages, help, examples."""
 import base64
 import concurrent.futures
-import copy
 import dataclasses
 import glob
 import importlib.util
@@ -79,27 +78,6 @@ class Pickles(Case):
                 result.write_report(f"{name}.json")
             self.assertEqual(self.read("a.vtk"), self.read("b.vtk"))
             self.assertEqual(self.read("a.json"), self.read("b.json"))
-
-    def test_every_type(self):
-        """Pickled, copied, or refused with what to do."""
-        a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
-        scene = starguard.Scene(ROOM, obstacles=[starguard.sample("star", vertices=500)], outside=True,
-                                standoff=(1, 2))
-        bits = starguard.visible(ROOM, GUARDS.positions)
-        for thing in (ROOM.solid, scene, bits, starguard.skeleton(ROOM, nodes=40), starguard.map_surface(a, b),
-                      starguard.describe(ROOM, effort=1), starguard.kernel(ROOM), ROOM.check()):
-            for again in (pickle.loads(pickle.dumps(thing)), copy.copy(thing), copy.deepcopy(thing)):
-                self.assertIs(type(again), type(thing))
-                self.assertEqual(repr(again), repr(thing))
-                if dataclasses.is_dataclass(thing):
-                    self.assertTrue(same(again, thing), thing)
-        again = pickle.loads(pickle.dumps(scene))
-        self.assertTrue(np.array_equal(again.mesh.vertices, scene.mesh.vertices))
-        self.assertTrue(np.array_equal(pickle.loads(pickle.dumps(bits)), bits))
-        with self.assertRaisesRegex(TypeError, "write it to a file"):
-            pickle.dumps(starguard.cover([[1]]))
-        with starguard.Database.create("s.db") as shapes, self.assertRaisesRegex(TypeError, "open it again"):
-            pickle.dumps(shapes)
 
     def test_other_processes(self):
         with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:

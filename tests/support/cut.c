@@ -313,17 +313,24 @@ cut_file cut_write_report(const starg_pieces_report *report) {
     FILE *file = open_memstream(&out.bytes, &out.size);
     fprintf(file, "{\"format\": \"starguard-pieces\", \"version\": 1, \"mode\": \"%s\",\n",
             report->mode == STARG_DECOMPOSE_PAPER ? "paper" : "strict");
+    fprintf(file, "\"model\": {\"vertices\": %zu, \"faces\": %zu},\n", report->model_vertices,
+            report->model_faces);
     fprintf(file, "\"tetrahedra\": %zu, \"pieces\": [", report->tetrahedra);
     for (size_t p = 0; p < report->piece_count; p++) {
         const starg_piece *piece = &report->pieces[p];
         fprintf(file,
                 "%s{\"guard\": [%.17g, %.17g, %.17g], \"tetrahedra\": %zu, \"volume\": %.17g, "
-                "\"star\": %s}",
+                "\"star\": %s, \"radius\": %.17g, \"margin\": 0}",
                 p > 0 ? ",\n" : "\n", piece->guard[0], piece->guard[1], piece->guard[2],
-                piece->tetrahedra, piece->volume, piece->star ? "true" : "false");
+                piece->tetrahedra, piece->volume, piece->star ? "true" : "false",
+                isnan(piece->radius) ? 0 : piece->radius);
     }
-    fprintf(file, "],\n\"strictly_star\": %zu, \"visible_vertices\": %.17g, \"adjacency\": [",
-            report->strictly_star, report->visible_vertices);
+    fprintf(file, "],\n\"strictly_star\": %zu, \"visible_vertices\": %.17g, \"flattest\": %.17g,\n",
+            report->strictly_star, report->visible_vertices, report->flattest);
+    fprintf(file,
+            "\"smallest_angle\": %.17g, \"median_angle\": %.17g, \"smallest_angle_made\": %.17g, "
+            "\"adjacency\": [",
+            report->smallest_angle, report->median_angle, report->smallest_angle_made);
     for (size_t i = 0; i < report->contact_count; i++)
         fprintf(file, "%s[%u, %u, %.17g]", i > 0 ? ", " : "", report->contacts[i].first,
                 report->contacts[i].second, report->contacts[i].area);

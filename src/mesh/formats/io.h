@@ -50,15 +50,14 @@ starg_status starg_source_fail(const starg_source *source, starg_place place, co
 
 /* Values of faces by a name in their file: groups, materials, properties. */
 typedef struct starg_face_values {
-    const char *name; /* wanted, `length` characters */
-    size_t length;
-    bool pattern;       /* * and ? in it stand for other characters */
-    const char *equals; /* text after "name=", `equals_length` characters, or NULL */
-    size_t equals_length;
-    bool found;               /* the name occurs in the file */
+    const char *pattern;      /* wanted; * stands for any characters, ? for one */
+    const char *equals;       /* in it, where "=value" begins, or NULL */
+    double wanted;            /* that value; NAN: no number */
+    bool compared;            /* a property is wanted where it has that value */
+    bool found;               /* a name in the file is wanted */
     double current;           /* of the next face */
     STARG_ARRAY(double) data; /* by triangle so far */
-    char others[160];         /* names that do, for messages */
+    char others[160];         /* names in the file, for messages */
 } starg_face_values;
 
 /* A mesh under construction. Every vertex and corner is checked on arrival, so that errors name
@@ -85,8 +84,15 @@ starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, s
 /* Closes the open face and triangulates it. Errors: FORMAT (fewer than 3 corners), MEMORY. */
 starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place);
 
-/* Notes a name of the file; is it the wanted one? */
-bool starg_values_know(starg_face_values *values, const char *name, size_t length);
+/* Is the name of a group, or of a property, wanted? */
+bool starg_values_want(starg_face_values *values, const char *name, size_t length);
+bool starg_values_want_property(starg_face_values *values, const char *name, size_t length);
+
+/* Notes a name of the file for messages. */
+void starg_values_note(starg_face_values *values, const char *name, size_t length);
+
+/* Takes the value of a wanted property for the next face; before the first one, `current` is 0. */
+void starg_values_take(starg_face_values *values, double value);
 
 /* Called once per item with the number of bytes read: progress and cancellation. */
 starg_status starg_builder_tick(starg_mesh_builder *builder, size_t done);

@@ -122,9 +122,11 @@ static starg_status read_property(ply_reader *ply) {
     STARG_TRY(read_type(ply, &property.type));
     STARG_TRY(header_word(ply, "the name of the property", &word));
     property.role = find_role(element->kind, property.list, word);
-    property.wanted = element->kind == PLY_FACES && !property.list &&
-                      ply->builder->values != NULL &&
-                      starg_values_know(ply->builder->values, word.text, word.length);
+    starg_face_values *values = element->kind == PLY_FACES ? ply->builder->values : NULL;
+    if (values != NULL && !property.list) {
+        starg_values_note(values, word.text, word.length);
+        property.wanted = starg_values_want_property(values, word.text, word.length);
+    }
     for (size_t i = 0; i < element->properties; i++)
         if (property.role != PLY_OTHER &&
             ply->properties.data[element->first + i].role == property.role)

@@ -117,27 +117,30 @@ done:
     return status;
 }
 
-/* Which of group, object and material have the wanted name at this line? A line names one object or
- * material, blanks and all, but several groups; many programs write one with blanks there, too. */
+/* Which of group, object and material have a wanted name at this line? A group may have several, and
+ * any name may have spaces. */
 enum { GROUP, OBJECT, MATERIAL, KEYWORDS };
 
 static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *values,
                        bool held[KEYWORDS]) {
     static const char *const keywords[KEYWORDS] = {"g", "o", "usemtl"};
     for (int k = 0; k < KEYWORDS; k++) {
-        starg_word name, line = {0};
+        starg_word name;
         if (!starg_word_is(keyword, keywords[k]))
             continue;
         held[k] = false;
+        const char *begin = NULL, *end = NULL;
         while (starg_scan_word_here(scan, &name)) {
+            begin = begin != NULL ? begin : name.text;
+            end = name.text + name.length;
+            held[k] = starg_values_want(values, name.text, name.length) || held[k];
             if (k == GROUP)
-                held[k] = starg_values_know(values, name.text, name.length) || held[k];
-            if (line.text == NULL)
-                line = name;
-            line.length = (size_t)(name.text + name.length - line.text);
+                starg_values_note(values, name.text, name.length);
         }
-        if (line.text != NULL)
-            held[k] = starg_values_know(values, line.text, line.length) || held[k];
+        if (begin != NULL && k != GROUP)
+            starg_values_note(values, begin, (size_t)(end - begin));
+        if (begin != NULL)
+            held[k] = starg_values_want(values, begin, (size_t)(end - begin)) || held[k];
     }
     values->current = held[GROUP] || held[OBJECT] || held[MATERIAL];
 }

@@ -136,7 +136,9 @@ done:
 static starg_status read_item(ply_reader *ply, const ply_element *element, bool skip) {
     starg_status status = STARG_OK;
     starg_place before = place_of(ply);
-    double point[3] = {0, 0, 0}, value = 0, largest = 0; /* of the wanted properties */
+    double point[3] = {0, 0, 0}, value;
+    if (ply->builder->values != NULL)
+        ply->builder->values->current = 0;
     for (size_t i = 0; i < element->properties; i++) {
         const ply_property *property = &ply->properties.data[element->first + i];
         if (property->list)
@@ -144,15 +146,12 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
         else if (property->role <= PLY_Z)
             STARG_TRY(
                 read_real(ply, property->type, "a coordinate of a vertex", &point[property->role]));
-        else if (property->wanted)
+        else if (property->wanted) {
             STARG_TRY(read_real(ply, property->type, "the value of a property", &value));
-        else
+            starg_values_take(ply->builder->values, value);
+        } else
             STARG_TRY(skip_values(ply, property->type, 1));
-        if (property->wanted && (largest == 0 || value > largest))
-            largest = value;
     }
-    if (element->kind == PLY_FACES && ply->builder->values != NULL)
-        ply->builder->values->current = largest;
     starg_place place = place_since(ply, before);
     if (element->kind == PLY_VERTICES)
         STARG_TRY(starg_builder_vertex(ply->builder, point, place));
