@@ -32,7 +32,7 @@ WITHOUT = {
     "starg_context_reset": "clears a flag",
     "starg_context_set_time_limit": "stores a time",
     "starg_context_peak_bytes": NUMBER, "starg_context_live_blocks": NUMBER,
-    "starg_context_work": NUMBER,
+    "starg_context_work": NUMBER, "starg_space_leak": NUMBER,
     "starg_context_error": NUMBER,
     "starg_context_set_ranks": "stores a pointer",
     "starg_context_shared_seconds": NUMBER, "starg_context_helped_items": NUMBER,
