@@ -290,10 +290,9 @@ static starg_status write_leak(cli_session *session, const char *name) {
     memcpy(way.positions, points, 3 * way.node_count * sizeof *points);
     for (uint32_t i = 0; i < 2 * way.edge_count; i++)
         way.edges[i] = (i + 1) / 2;
-    status = starg_skeleton_write(session->context, &way,
-                                  cli_outputs_place(&session->outputs, name),
-                                  cli_has_extension(name, ".obj") ? STARG_SKELETON_OBJ
-                                                                  : STARG_SKELETON_VTK);
+    status = starg_skeleton_write(
+        session->context, &way, cli_outputs_place(&session->outputs, name),
+        cli_has_extension(name, ".obj") ? STARG_SKELETON_OBJ : STARG_SKELETON_VTK);
 done:
     free(way.positions);
     free(way.edges);
@@ -388,7 +387,8 @@ const cli_command cli_command_guard = {
         "and chooses the fewest that together see every visible face. The result contains the "
         "guards, their coverage, and how many guards are needed at least: wherever they stand, as "
         "far as that is known, and of these candidates (--verbose). With --prove every point of "
-        "the solid is a candidate. Faces that no candidate sees are listed; they are not an error.\n"
+        "the solid is a candidate. Faces that no candidate sees are listed; they are not an "
+        "error.\n"
         "With --time-limit the best result so far is written with its bound.",
     .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"

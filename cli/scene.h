@@ -58,26 +58,24 @@ extern const char *const cli_orientation_words[];
 #define CLI_LIMIT_OPTIONS                                                                          \
     {CLI_OPTION("standoff", STARG_FIELD_PLACES, scene.standoff, "MIN,MAX",                         \
                 "Guards keep these distances from the model."),                                    \
-     .length = 2,                                                                                  \
-     .flags = STARG_FIELD_ONCE},                                                                   \
+     .length = 2, .flags = STARG_FIELD_ONCE},                                                      \
         {CLI_OPTION("within", STARG_FIELD_PLACES, scene.within, "X0,Y0,Z0,X1,Y1,Z1",               \
                     "Guards stand in this box."),                                                  \
-         .length = 6,                                                                              \
-         .flags = STARG_FIELD_ONCE},                                                               \
+         .length = 6, .flags = STARG_FIELD_ONCE},                                                  \
         CLI_POSITIVE_OPTION("cell", scene.cell, "D", 1e100, 0, "a hundredth of the diagonal",      \
                             "--from: size of the cubes.")
 
 /* The same for `guard`, which does not look from points. */
 #define CLI_PLACE_OPTIONS                                                                          \
     CLI_LIMIT_OPTIONS,                                                                             \
-        CLI_INPUTS_OPTION("over", scene.over, "FACES",                                              \
-                         "Guards stand straight above one of these faces, as floors, at most "     \
-                         "--height high; faces as with --see. What is up says --up."),             \
+        CLI_INPUTS_OPTION("over", scene.over, "FACES",                                             \
+                          "Guards stand straight above one of these faces, as floors, at most "    \
+                          "--height high; faces as with --see. What is up says --up."),            \
         CLI_POSITIVE_OPTION("height", scene.height, "H", 1e100, 0, NULL,                           \
                             "--over: how high above them guards may stand."),                      \
-        CLI_INPUTS_OPTION("mount", scene.mount, "FACES",                                            \
-                         "Guards hang at the distance --clearance from these faces only, as "      \
-                         "ceilings and masts; faces as with --see."),                              \
+        CLI_INPUTS_OPTION("mount", scene.mount, "FACES",                                           \
+                          "Guards hang at the distance --clearance from these faces only, as "     \
+                          "ceilings and masts; faces as with --see."),                             \
     {                                                                                              \
         CLI_OPTION("from", STARG_FIELD_PLACES, scene.from, "X,Y,Z",                                \
                    "Guards stand where one gets from this point through cubes that no face "       \
