@@ -67,6 +67,8 @@ static void tell(cli_session *session, const values *v, const cli_show *show) {
         size_t count;
     } parts[] = {{"model faces", "model_faces",
                   page->model != NULL ? starg_mesh_face_count(page->model) : 0},
+                 {"obstacle faces", "obstacle_faces",
+                  page->obstacles != NULL ? starg_mesh_face_count(page->obstacles) : 0},
                  {"guards", "guards", page->guards != NULL ? page->guards->count : 0},
                  {"tetrahedra", "tetrahedra", page->pieces != NULL ? page->pieces->count : 0},
                  {"skeleton nodes", "skeleton_nodes",
@@ -95,6 +97,7 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(cli_show_read(session, v->model, STARG_SIGNATURE_DEFAULT, &show));
     CLI_TRY(check_kinds(session, page));
     const starg_scene scene = {.model = page->model,
+                               .obstacles = page->obstacles,
                                .guards = page->guards,
                                .seen = page->seen,
                                .pieces = page->pieces,
@@ -112,15 +115,16 @@ const cli_command cli_command_export = {
     .name = "export",
     .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj [options]",
     .summary = "export a model with guards, pieces and skeleton for other programs",
-    .description = "Writes results and their model into one file. Inputs are recognized by "
-                   "content, at most one of each kind: GUARDS.json, PIECES.vtk and PIECES.json, a "
-                   "skeleton (.obj, .cg, .vtk), a model.\n"
-                   ".glb (Blender, browsers, three.js): a named node for the model, each guard, "
-                   "each piece and the skeleton; extras hold the data of guards and pieces.\n"
-                   ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "
-                   "data give the part, the piece, and the guard that sees a face.\n"
-                   ".ply (MeshLab): faces coloured by piece, or by the guard that sees them.\n"
-                   ".obj: one object per part.",
+    .description =
+        "Writes results and their model into one file. Inputs are recognized by "
+        "content, at most one of each kind: GUARDS.json, PIECES.vtk and PIECES.json, a "
+        "skeleton (.obj, .cg, .vtk), a model.\n"
+        ".glb (Blender, browsers, three.js): a named node for the model, obstacles, "
+        "each guard, each piece and the skeleton; extras hold the data of guards and pieces.\n"
+        ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "
+        "data give the part, the piece, and the guard that sees a face.\n"
+        ".ply (MeshLab): faces coloured by piece, or by the guard that sees them.\n"
+        ".obj: one object per part.",
     .examples = "# guards and pieces of a model for Blender\n"
                 "starguard guard horse.off -o guards.json\n"
                 "starguard decompose horse.off -o pieces.vtk --report pieces.json\n"

@@ -39,9 +39,10 @@ static const cli_option options[] = {
         "an interior lattice, or from a file: text with three numbers per line, or "
         "six with the direction in which a camera looks (--cone, --fov), or nine with what is up "
         "for it, a skeleton of 'starguard skeleton', or another GUARDS.json."),
-    CLI_TEXT_OPTION(
-        "picture", picture, "FILE.png",
-        "Picture of the translucent model with its guards; uncovered faces are dark red."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png",
+                    "Picture of the translucent model with its guards, and with --cone or --fov "
+                    "where they look; "
+                    "uncovered faces are dark red."),
     CLI_TEXT_OPTION("certificate", certificate, "FILE",
                     "With --prove: writes why the bound for guards anywhere holds, for 'starguard "
                     "verify' (docs/formats.md)."),
@@ -222,6 +223,7 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     picture.points = g->positions;
     picture.point_count = g->count;
     picture.point_numbers = true;
+    picture.views = g;
     starg_status status = starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
                                               cli_outputs_place(&session->outputs, name));
     free(colors);

@@ -388,3 +388,37 @@ starg_status cli_scene_read_obstacles(cli_session *session, const starg_guards *
 done:
     return status;
 }
+
+starg_status cli_scene_join(cli_session *session, starg_mesh *const *obstacles, size_t count,
+                            starg_mesh **out) {
+    starg_status status = STARG_OK;
+    size_t vertices = 0, faces = 0;
+    *out = NULL;
+    for (size_t i = 0; i < count; i++) {
+        vertices += starg_mesh_vertex_count(obstacles[i]);
+        faces += starg_mesh_face_count(obstacles[i]);
+    }
+    if (faces == 0)
+        return STARG_OK;
+    double *points = malloc(3 * vertices * sizeof *points);
+    uint32_t *corners = malloc(3 * faces * sizeof *corners);
+    if (points == NULL || corners == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    vertices = faces = 0;
+    for (size_t i = 0; i < count; i++) {
+        const starg_mesh *mesh = obstacles[i];
+        size_t own = starg_mesh_vertex_count(mesh), triangles = starg_mesh_face_count(mesh);
+        memcpy(points + 3 * vertices, starg_mesh_vertices(mesh), 3 * own * sizeof *points);
+        for (size_t k = 0; k < 3 * triangles; k++)
+            corners[3 * faces + k] = starg_mesh_faces(mesh)[k] + (uint32_t)vertices;
+        vertices += own;
+        faces += triangles;
+    }
+    status = starg_mesh_create(session->context, points, vertices, corners, faces, out);
+done:
+    free(points);
+    free(corners);
+    return status;
+}

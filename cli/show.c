@@ -265,6 +265,8 @@ static starg_status see(cli_session *session, cli_show *show) {
     CLI_TRY(cli_scene_read_obstacles(session, g, &obstacles));
     CLI_TRY(starg_guards_scene(session->context, show->model, (const starg_mesh *const *)obstacles,
                                g, &show->solid));
+    CLI_TRY(cli_scene_join(session, obstacles, g->obstacle_count, &show->obstacles));
+    show->page.obstacles = show->obstacles;
     CLI_TRY(starg_guards_see(session->context, show->solid, g, &show->seen));
     show->page.seen = show->seen;
     if (!g->time_limited) /* what a clock has stopped does not come again */
@@ -413,5 +415,6 @@ void cli_show_free(cli_session *session, cli_show *show) {
     starg_certificate_outline_free(context, show->proof);
     starg_solid_free(show->solid);
     starg_mesh_free(show->model);
+    starg_mesh_free(show->obstacles);
     starg_tetmesh_free(show->tetmesh);
 }

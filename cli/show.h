@@ -12,7 +12,7 @@ typedef struct cli_show {
     starg_page page; /* refers to the members below */
     const char *guards_file, *pieces_file, *report_file;
     starg_tetmesh *tetmesh;
-    starg_mesh *model, **frames;
+    starg_mesh *model, *obstacles, **frames;
     starg_solid *solid;
     starg_bits *seen;
     starg_certificate_outline *proof;

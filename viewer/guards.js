@@ -19,6 +19,7 @@ import {
 } from "./panel.js";
 import { PickPoints } from "./points.js";
 import { Proof } from "./proof.js";
+import { obstacleObject } from "./surface.js";
 import { amount, count, percent, point } from "./text.js";
 import { themeColor } from "./theme.js";
 import { following, View } from "./view.js";
@@ -49,6 +50,7 @@ export class GuardsView extends View {
         this.objects = [this.points.object];
         if (told.list[0]?.direction) this.objects.push((this.pointers = this.makePointers()));
         if (told.list[0]?.corners || told.cone) this.objects.push((this.cones = this.makeCones()));
+        if (page.obstacles) this.objects.push((this.obstacles = obstacleObject()));
         if (told.proof) {
             this.proof = new Proof(told.proof, indices("model-faces"), () => this.update());
             this.objects.push(this.proof.object);
@@ -115,6 +117,18 @@ export class GuardsView extends View {
 
     // ---- panel ----
 
+    makeSwitch() {
+        return check({
+            name: `Obstacles (${amount(page.obstacles, "face", "faces")})`,
+            id: "obstacles",
+            value: true,
+            change: (on) => {
+                this.obstacles.visible = on;
+                this.stage.request();
+            },
+        });
+    }
+
     makePanel() {
         const { told } = this;
         const number = told.list.length;
@@ -139,6 +153,7 @@ export class GuardsView extends View {
                     change: (on) => this.labels.want(on),
                 }),
             );
+        if (this.obstacles) node.append(this.makeSwitch());
         node.append(heading("Pick a guard to see what it sees"), this.list.node);
         this.place = note("");
         node.append(this.place);

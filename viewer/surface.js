@@ -87,6 +87,21 @@ export class Surface {
     }
 }
 
+/** What stands in the way: seen through a little, from both sides. */
+export function obstacleObject() {
+    const surface = shadedSurface(floats("obstacle-points"), indices("obstacle-faces"));
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(surface.position, 3));
+    geometry.setAttribute("normal", normalAttribute(surface.normal));
+    geometry.setIndex(new BufferAttribute(surface.index, 1));
+    const material = surfaceMaterial({ color: "#967d5f", opacity: 0.6 });
+    setCutOpen(material, true);
+    const object = new Mesh(geometry, material);
+    object.frustumCulled = false;
+    object.renderOrder = 4; // after what is inside, before the glass
+    return object;
+}
+
 /** Normals as bytes, four each for alignment. */
 export function normalAttribute(packed) {
     return new BufferAttribute(packed, 4, true);

@@ -32,6 +32,7 @@ typedef struct starg_page {
     const char *title; /* NULL: the model's name, or "starguard" */
     const starg_mesh *model;
     const char *model_name;
+    const starg_mesh *obstacles; /* all that stand in the way, in one mesh; with guards */
     const starg_guards *guards;
     const char *command;    /* line that makes the guards again, or NULL */
     const starg_bits *seen; /* with guards and model: one row per guard, one column per face */

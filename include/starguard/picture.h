@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "guard.h"
 #include "mesh.h"
 
 #ifdef __cplusplus
@@ -25,6 +26,7 @@ typedef struct starg_picture_options {
     const uint8_t *point_colors; /* point_count x 3, or NULL for distinct colours             */
     double point_radius;         /* as a fraction of the bounding box's diagonal              */
     bool point_numbers;          /* numbers beside points, where none covers a nearer one     */
+    const starg_guards *views;   /* outlines of where these look, if they look one way      */
 } starg_picture_options;
 
 /* 1200 x 900, azimuth 35, elevation 20, up axis 1 (y), opacity 0.35, radius 0.012. */

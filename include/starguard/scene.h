@@ -17,6 +17,7 @@ extern "C" {
 /* Contents of a scene. Parts may be NULL, but not all. */
 typedef struct starg_scene {
     const starg_mesh *model;
+    const starg_mesh *obstacles; /* all that stand in the way, in one mesh */
     const starg_guards *guards;
     const starg_bits *seen; /* with guards and model: one row per guard, one column per face */
     const starg_pieces_mesh *pieces;

@@ -161,7 +161,7 @@ class Guards:
 
         facts = {"guards": len(self), "lower bound": self.lower_bound,
                  "coverage": f"{self.coverage_area:.4%} of the area, {self.coverage_faces:.4%} of the faces"}
-        return _others.card(repr(self), self.model, facts, points=self.positions,
+        return _others.card(repr(self), self.model, facts, points=self.positions, views=self,
                             point_colors=distinct_colors(len(self)) if len(self) > 0 else None)
 
     @classmethod

@@ -2,7 +2,7 @@
 """Pictures of meshes with points, of matrices and of curves."""
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,12 +15,15 @@ from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .mesh import as_mesh
 
+if TYPE_CHECKING:
+    from .guards import Guards
+
 
 def _options(keep: list[Any], face_count: int, size: tuple[int, int] | None,
              azimuth: float | None, elevation: float | None, up: int | None,
              opacity: float | None, face_colors: ArrayLike | None, points: ArrayLike | None,
              point_colors: ArrayLike | None, point_radius: float | None,
-             point_numbers: bool = False) -> Any:
+             point_numbers: bool = False, views: Guards | None = None) -> Any:
     """starg_picture_options; `keep` holds objects that must live as long."""
     options = ffi.new("starg_picture_options *")
     lib.starg_picture_options_default(options)
@@ -29,6 +32,9 @@ def _options(keep: list[Any], face_count: int, size: tuple[int, int] | None,
     give(options, azimuth=azimuth, elevation=elevation, up=up, opacity=opacity,
          point_radius=point_radius)
     options.point_numbers = point_numbers
+    if views is not None:
+        keep.append(views)
+        options.views = views._handle
     keep.append(_arrays.colors(face_colors, face_count, "face_colors"))
     options.face_colors = keep[-1]
     if points is not None:
@@ -45,10 +51,11 @@ def write_picture(path: PathLike, model: Any, *, size: tuple[int, int] | None = 
                   up: int | None = None, opacity: float | None = None,
                   face_colors: ArrayLike | None = None, points: ArrayLike | None = None,
                   point_colors: ArrayLike | None = None, point_radius: float | None = None,
-                  point_numbers: bool = False, progress: Progress | None = None) -> None:
+                  point_numbers: bool = False, views: Guards | None = None,
+                  progress: Progress | None = None) -> None:
     """Draws a translucent mesh, with points as balls, as a PNG. Angles are in degrees, `up`
     is the axis that points up, `point_radius` a fraction of the diagonal; `point_numbers`
-    writes the points' numbers beside them.
+    writes the points' numbers beside them; `views` are guards that look one way, which it shows.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -59,7 +66,7 @@ def write_picture(path: PathLike, model: Any, *, size: tuple[int, int] | None = 
     session = Session()
     keep: list[Any] = []
     options = _options(keep, len(mesh.faces), size, azimuth, elevation, up, opacity, face_colors,
-                       points, point_colors, point_radius, point_numbers)
+                       points, point_colors, point_radius, point_numbers, views)
     session.call(lib.starg_picture_write, session.context, mesh._handle, options,
                  _arrays.path(path), progress=progress)
 
@@ -68,7 +75,8 @@ def picture(model: Any, *, size: tuple[int, int] | None = None, azimuth: float |
             elevation: float | None = None, up: int | None = None, opacity: float | None = None,
             face_colors: ArrayLike | None = None, points: ArrayLike | None = None,
             point_colors: ArrayLike | None = None, point_radius: float | None = None,
-            point_numbers: bool = False, progress: Progress | None = None) -> bytes:
+            point_numbers: bool = False, views: Guards | None = None,
+            progress: Progress | None = None) -> bytes:
     """The same picture as PNG bytes, for example for a notebook.
 
     >>> import starguard
@@ -79,7 +87,7 @@ def picture(model: Any, *, size: tuple[int, int] | None = None, azimuth: float |
     session = Session()
     keep: list[Any] = []
     options = _options(keep, len(mesh.faces), size, azimuth, elevation, up, opacity, face_colors,
-                       points, point_colors, point_radius, point_numbers)
+                       points, point_colors, point_radius, point_numbers, views)
     out, length = ffi.new("uint8_t **"), ffi.new("size_t *")
     try:
         session.call(lib.starg_picture_encode, session.context, mesh._handle, options, out, length,

@@ -17,6 +17,7 @@ from .guards import Guards
 from .mesh import Mesh, as_mesh
 from .pieces import Decomposition
 from .skeletons import Skeleton
+from .solid import Scene
 from .verification import Certificate, PiecesMesh, PiecesReport, pieces_mesh_of, pieces_report_of
 from .visibility import Bits, visible
 
@@ -24,8 +25,19 @@ _FORMATS = {"auto": lib.STARG_SCENE_AUTO, "glb": lib.STARG_SCENE_GLB, "vtu": lib
             "ply": lib.STARG_SCENE_PLY, "obj": lib.STARG_SCENE_OBJ}
 
 
-def _seen(mesh: Mesh, guards: Guards) -> Bits:
+def _joined(meshes: Sequence[Mesh]) -> Mesh:
+    """All in one."""
+    first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    return Mesh(np.vstack([mesh.vertices for mesh in meshes]),
+                np.vstack([mesh.faces + offset for mesh, offset in zip(meshes, first)]))
+
+
+def _seen(mesh: Any, guards: Guards) -> Bits:
     """What each guard sees with the options of the result."""
+    if isinstance(mesh, Scene):
+        session = Session()
+        return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_guards_see, session.context,
+                                 mesh._handle, guards._handle))
     names = ("faces", "range", "near", "incidence", "cone", "fov", "up")
     return visible(mesh, guards.positions, directions=guards.directions,
                    **{name: guards.options[name] for name in names})
@@ -37,13 +49,16 @@ def _fill(target: Any, model: Any, guards: Guards | None,
     """Fills the parts common to pages and scenes; the returned objects must live as long."""
     keep: list[Any] = []
     if model is not None:
-        mesh = as_mesh(model)
+        mesh = as_mesh(model.model if isinstance(model, Scene) else model)
         keep.append(mesh)
         target.model = mesh._handle
+    if isinstance(model, Scene) and model.obstacles:
+        keep.append(_joined(model.obstacles))
+        target.obstacles = keep[-1]._handle
     if guards is not None:
         target.guards = guards._handle
         if model is not None:
-            keep.append(_seen(mesh, guards))
+            keep.append(_seen(model if isinstance(model, Scene) else mesh, guards))
             target.seen = keep[-1]._handle
     if isinstance(pieces, Decomposition):
         keep += [pieces_mesh_of(pieces), pieces_report_of(pieces)]

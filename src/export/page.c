@@ -198,6 +198,8 @@ static void close_frame(frame *f) {
 static void find_frame(const starg_page *p, frame *f) {
     if (p->model != NULL)
         cover_mesh(f, p->model);
+    if (p->obstacles != NULL)
+        cover_mesh(f, p->obstacles);
     if (p->guards != NULL)
         cover_points(f, p->guards->positions, p->guards->count);
     if (p->pieces != NULL)
@@ -251,11 +253,11 @@ static void put_bits(FILE *stream, const char *name, const starg_bits *bits) {
     starg_page_block_close(&block);
 }
 
-static void put_surface(FILE *stream, const book *b) {
-    const starg_mesh *m = b->page->model;
-    put_points(stream, "model-points", STARG_PAGE_SINGLE, &b->frame, starg_mesh_vertices(m),
+static void put_surface(FILE *stream, const book *b, const starg_mesh *m, const char *points,
+                        const char *faces) {
+    put_points(stream, points, STARG_PAGE_SINGLE, &b->frame, starg_mesh_vertices(m),
                starg_mesh_vertex_count(m));
-    put_indices(stream, "model-faces", starg_mesh_faces(m), 3 * starg_mesh_face_count(m));
+    put_indices(stream, faces, starg_mesh_faces(m), 3 * starg_mesh_face_count(m));
 }
 
 static void put_guards(FILE *stream, const book *b) {
@@ -340,7 +342,9 @@ static void put_shapes(FILE *stream, const starg_page *p) {
 
 static void put_blocks(FILE *stream, const book *b) {
     if (b->page->model != NULL)
-        put_surface(stream, b);
+        put_surface(stream, b, b->page->model, "model-points", "model-faces");
+    if (b->page->obstacles != NULL)
+        put_surface(stream, b, b->page->obstacles, "obstacle-points", "obstacle-faces");
     if (b->page->guards != NULL)
         put_guards(stream, b);
     if (b->page->pieces != NULL)
@@ -545,6 +549,8 @@ static json_t *describe(book *b) {
                   b->frame.scale, "colors", colors_json(b));
     if (p->model != NULL)
         put(b, root, "model", model_json(b));
+    if (p->obstacles != NULL)
+        put(b, root, "obstacles", json_integer((json_int_t)starg_mesh_face_count(p->obstacles)));
     if (p->guards != NULL)
         put(b, root, "guards", guards_json(b));
     if (p->pieces != NULL)

@@ -16,6 +16,7 @@
 #include "export/lettering.h"
 #include "export/png.h"
 #include "export/raster.h"
+#include "export/scene.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 
@@ -218,6 +219,39 @@ done:
     return status;
 }
 
+/* ---- views of cameras ---- */
+
+/* A view's corners follow the vertices of the mesh: the camera, then the rim. */
+static void place_views(const scene_job *job, size_t sides, double *points) {
+    for (size_t i = 0; i < job->guards * (sides + 1); i++)
+        scene_view_corner(job, i / (sides + 1), i % (sides + 1), points + 3 * i);
+}
+
+/* Four of the rays, and the rim. */
+static starg_status join_views(starg_context *context, const scene_job *job, size_t sides,
+                               size_t base, starg_features *features) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < job->guards * sides; i++) {
+        size_t side = i % sides, apex = base + i / sides * (sides + 1);
+        const size_t ends[4] = {apex + 1 + side, apex + 1 + (side + 1) % sides, apex,
+                                apex + 1 + side};
+        for (size_t k = 0; k < (side % (sides / 4) == 0 ? 4 : 2); k++)
+            STARG_PUSH(context, STAGE, &features->lines, (uint32_t)ends[k]);
+    }
+done:
+    return status;
+}
+
+static scene_job job_of(const starg_mesh *mesh, const starg_guards *guards, starg_scene *scene) {
+    double lower[3], upper[3];
+    scene_job job = {.scene = scene, .guards = guards != NULL ? guards->count : 0};
+    *scene = (starg_scene){.guards = guards};
+    starg_mesh_bounds(mesh, lower, upper);
+    for (int k = 0; k < 3; k++)
+        job.size = fmax(job.size, upper[k] - lower[k]);
+    return job;
+}
+
 /* Draws into height rows of width x 3 bytes. */
 static starg_status draw(starg_context *context, const starg_mesh *mesh,
                          const starg_picture_options *o, uint8_t *rgb) {
@@ -226,18 +260,28 @@ static starg_status draw(starg_context *context, const starg_mesh *mesh,
     double *positions = NULL, *centers = NULL;
     starg_raster_ball *balls = NULL;
     camera c;
-    STARG_NEW(context, STAGE, positions, 3 * mesh->vertex_count);
+    starg_scene scene_of_views;
+    const scene_job job = job_of(mesh, o->views, &scene_of_views);
+    size_t sides = scene_view_sides(&job), count = mesh->vertex_count;
+    if (sides > 0)
+        count += job.guards * (sides + 1);
+    STARG_NEW(context, STAGE, positions, 3 * count);
     STARG_NEW(context, STAGE, centers, 3 * o->point_count);
     STARG_NEW(context, STAGE, balls, o->point_count);
 
     aim_camera(mesh, o, &c);
-    look(&c, mesh->vertices, mesh->vertex_count, positions);
+    memcpy(positions, mesh->vertices, 3 * mesh->vertex_count * sizeof *positions);
+    if (sides > 0)
+        place_views(&job, sides, positions + 3 * mesh->vertex_count);
+    look(&c, positions, count, positions);
     look(&c, o->points, o->point_count, centers);
     STARG_TRY(starg_features_create(context, positions, mesh->vertex_count, mesh->faces,
                                     mesh->face_count, &features));
+    if (sides > 0)
+        STARG_TRY(join_views(context, &job, sides, mesh->vertex_count, &features));
     double line_radius = fmax(1.0, 0.0008 * STARG_RASTER_SAMPLES * (double)o->height);
-    frame f = fit_frame(o, positions, mesh->vertex_count, centers, 2 * line_radius);
-    to_samples(&f, positions, mesh->vertex_count);
+    frame f = fit_frame(o, positions, count, centers, 2 * line_radius);
+    to_samples(&f, positions, count);
     to_samples(&f, centers, o->point_count);
     make_balls(o, centers, balls);
 

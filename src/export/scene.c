@@ -17,7 +17,7 @@
 static const char STAGE[] = "scene";
 
 const uint8_t SCENE_NEUTRAL[3] = {190, 195, 200}, SCENE_UNSEEN[3] = {139, 0, 0},
-              SCENE_CURVE[3] = {200, 30, 30};
+              SCENE_CURVE[3] = {200, 30, 30}, SCENE_IN_THE_WAY[3] = {150, 125, 95};
 
 /* ---- checks ---- */
 
@@ -107,6 +107,8 @@ static void find_box(scene_job *job) {
     box b = {.lower = {INFINITY, INFINITY, INFINITY}, .upper = {-INFINITY, -INFINITY, -INFINITY}};
     if (s->model != NULL)
         cover(&b, starg_mesh_vertices(s->model), job->model_vertices);
+    if (s->obstacles != NULL)
+        cover(&b, starg_mesh_vertices(s->obstacles), job->obstacle_vertices);
     for (size_t i = 0; i < job->surfaces.vertex_count; i++)
         cover(&b, scene_piece_vertex(job, i), 1);
     if (s->guards != NULL)
@@ -127,6 +129,8 @@ static starg_status prepare(starg_context *context, scene_job *job) {
     starg_status status = STARG_OK;
     job->model_vertices = s->model != NULL ? starg_mesh_vertex_count(s->model) : 0;
     job->model_faces = s->model != NULL ? starg_mesh_face_count(s->model) : 0;
+    job->obstacle_vertices = s->obstacles != NULL ? starg_mesh_vertex_count(s->obstacles) : 0;
+    job->obstacle_faces = s->obstacles != NULL ? starg_mesh_face_count(s->obstacles) : 0;
     job->guards = s->guards != NULL ? s->guards->count : 0;
     job->nodes = s->skeleton != NULL ? s->skeleton->node_count : 0;
     job->edges = s->skeleton != NULL ? s->skeleton->edge_count : 0;

@@ -14,18 +14,20 @@ typedef struct scene_job {
     double center[3]; /* of the box of all that is shown                                   */
     double size;      /* its largest side; above 0                                          */
     size_t model_vertices, model_faces, guards, nodes, edges; /* 0 where the part is not shown */
+    size_t obstacle_vertices, obstacle_faces;
 } scene_job;
 
-enum { SCENE_PARTS = 5 };
+enum { SCENE_PARTS = 6 };
 typedef enum scene_part {
     SCENE_MODEL,
     SCENE_PIECE,
     SCENE_GUARD,
     SCENE_SKELETON,
-    SCENE_VIEW
+    SCENE_VIEW,
+    SCENE_OBSTACLE
 } scene_part;
 
-extern const uint8_t SCENE_NEUTRAL[3], SCENE_UNSEEN[3], SCENE_CURVE[3];
+extern const uint8_t SCENE_NEUTRAL[3], SCENE_UNSEEN[3], SCENE_CURVE[3], SCENE_IN_THE_WAY[3];
 
 /* The colour of a face of the model: that of the guard that sees it first. */
 void scene_face_color(const scene_job *job, size_t face, uint8_t rgb[3]);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as binary glTF 2.0. Below the root, which is moved to the middle of all, stand the nodes
- * "model", "guards" with "guard_0000" and so on, each with its "camera_0000" if it looks one way,
- * "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard or a piece is in
- * the extras of its node.
+ * "model", "obstacles", "guards" with "guard_0000" and so on, each with its "camera_0000" if it
+ * looks one way, "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard
+ * or a piece is in the extras of its node.
  *
  * Numbers stand in one view for each kind, of which accessors take ranges: all pieces share their
  * vertices, and all guards one ball. There are no normals, so that programs shade each face flat,
@@ -25,6 +25,8 @@ enum { MODE_POINTS = 0, MODE_LINES = 1, MODE_TRIANGLES = 4 };
 typedef enum view_kind {
     VIEW_MODEL_POINTS,
     VIEW_MODEL_FACES,
+    VIEW_OBSTACLE_POINTS,
+    VIEW_OBSTACLE_FACES,
     VIEW_PIECE_POINTS,
     VIEW_PIECE_FACES,
     VIEW_BALL_POINTS,
@@ -54,8 +56,8 @@ typedef struct glb_scene {
 } glb_scene;
 
 static bool is_points(view_kind kind) {
-    return kind == VIEW_MODEL_POINTS || kind == VIEW_PIECE_POINTS || kind == VIEW_BALL_POINTS ||
-           kind == VIEW_NODE_POINTS;
+    return kind == VIEW_MODEL_POINTS || kind == VIEW_OBSTACLE_POINTS || kind == VIEW_PIECE_POINTS ||
+           kind == VIEW_BALL_POINTS || kind == VIEW_NODE_POINTS;
 }
 
 static void list_views(glb_scene *s) {
@@ -69,6 +71,13 @@ static void list_views(glb_scene *s) {
                                       .centered = true};
         v[VIEW_MODEL_FACES] =
             (view){.words = starg_mesh_faces(scene->model), .count = 3 * job->model_faces};
+    }
+    if (job->obstacle_faces > 0) {
+        v[VIEW_OBSTACLE_POINTS] = (view){.reals = starg_mesh_vertices(scene->obstacles),
+                                         .count = job->obstacle_vertices,
+                                         .centered = true};
+        v[VIEW_OBSTACLE_FACES] =
+            (view){.words = starg_mesh_faces(scene->obstacles), .count = 3 * job->obstacle_faces};
     }
     if (pieces->piece_count > 0) {
         v[VIEW_PIECE_POINTS] = (view){.reals = scene->pieces->vertices,
@@ -239,6 +248,17 @@ static void add_model(glb_scene *s) {
     add_node(s, s->root, "model", SIZE_MAX, add_mesh(s, points, faces, MODE_TRIANGLES, material));
 }
 
+/* A node of its own, which programs hide and show. */
+static void add_obstacles(glb_scene *s) {
+    if (s->job->obstacle_faces == 0)
+        return;
+    json_int_t points = add_reals(s, VIEW_OBSTACLE_POINTS);
+    json_int_t faces = add_indices(s, VIEW_OBSTACLE_FACES, 0, 3 * s->job->obstacle_faces);
+    json_int_t material = add_material(s, SCENE_IN_THE_WAY, 0.6);
+    add_node(s, s->root, "obstacles", SIZE_MAX,
+             add_mesh(s, points, faces, MODE_TRIANGLES, material));
+}
+
 static void describe_guard(glb_scene *s, json_t *node, size_t index) {
     const starg_guards *g = s->job->scene->guards;
     double place[3];
@@ -346,6 +366,7 @@ static json_t *describe(glb_scene *s) {
     append(s, s->nodes, s->root);
     describe_views(s);
     add_model(s);
+    add_obstacles(s);
     add_guards(s);
     add_pieces(s);
     add_skeleton(s);

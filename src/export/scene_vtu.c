@@ -3,9 +3,9 @@
  * tell apart. The numbers are appended raw behind the XML, as VTK's own writer does by default:
  * each array is 8 bytes of length and its numbers, little endian.
  *
- * Points: vertices of the model, of the tetrahedra, guards, nodes, corners of views. Cells: faces
- * of the model (5), tetrahedra (10), guards (1), edges of the skeleton (3), sides of views (5), in
- * this order. */
+ * Points: vertices of the model, of the tetrahedra, guards, nodes, corners of views, vertices of
+ * obstacles. Cells: faces of the model (5), tetrahedra (10), guards (1), edges of the skeleton (3),
+ * sides of views (5), faces of obstacles (5), in this order. */
 #include "core/file.h"
 #include "core/memory.h"
 #include "export/little.h"
@@ -59,7 +59,15 @@ static vtu_scene lay_out(const scene_job *job) {
     base += job->nodes;
     s.view_sides = scene_view_sides(job);
     s.parts[4] = (vtu_part){SCENE_VIEW, VTK_TRIANGLE, 3, s.view_sides * job->guards, base, NULL};
-    s.points = base + (s.view_sides > 0 ? (s.view_sides + 1) * job->guards : 0);
+    base += s.view_sides > 0 ? (s.view_sides + 1) * job->guards : 0;
+    s.parts[5] =
+        (vtu_part){SCENE_OBSTACLE,
+                   VTK_TRIANGLE,
+                   3,
+                   job->obstacle_faces,
+                   base,
+                   job->obstacle_faces > 0 ? starg_mesh_faces(job->scene->obstacles) : NULL};
+    s.points = base + job->obstacle_vertices;
     for (int p = 0; p < SCENE_PARTS; p++) {
         s.cells += s.parts[p].count;
         s.corners += s.parts[p].count * s.parts[p].corners;
@@ -93,6 +101,8 @@ static void put_points(FILE *stream, const vtu_scene *s) {
             scene_view_corner(s->job, g, k, p);
             put_doubles(stream, p, 3);
         }
+    if (scene->obstacles != NULL)
+        put_doubles(stream, starg_mesh_vertices(scene->obstacles), 3 * s->job->obstacle_vertices);
 }
 
 static void put_radii(FILE *stream, const vtu_scene *s) {
@@ -116,10 +126,14 @@ static void put_view_corners(FILE *stream, const vtu_scene *s, const vtu_part *p
 }
 
 static void put_connectivity(FILE *stream, const vtu_scene *s) {
-    for (const vtu_part *part = s->parts; part < s->parts + SCENE_VIEW; part++)
+    for (const vtu_part *part = s->parts; part < s->parts + SCENE_PARTS; part++) {
+        if (part->part == SCENE_VIEW) {
+            put_view_corners(stream, s, part);
+            continue;
+        }
         for (size_t i = 0; i < part->count * part->corners; i++)
             little_put_long(stream, part->base + (part->ends != NULL ? part->ends[i] : i));
-    put_view_corners(stream, s, &s->parts[SCENE_VIEW]);
+    }
 }
 
 static void put_offsets(FILE *stream, const vtu_scene *s) {

@@ -46,7 +46,8 @@ static starg_status read_source(const starg_source *source, const starg_source *
         if (format == NULL) {
             status = starg_source_fail(source, starg_at_file(),
                                        "unknown format; use MEDIT .mesh, legacy .vtk, Gmsh .msh, "
-                                       "or TetGen .node and .ele");
+                                       "or TetGen .node and .ele; 'meshio convert IN out.vtk' "
+                                       "converts others");
             goto done;
         }
         STARG_TRY(format->read(&builder));

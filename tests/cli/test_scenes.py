@@ -467,6 +467,22 @@ class Scenes(Case):
         mounted = self.guards("named.obj", "--mount", "Floor.001", "--mount", "0-3", "--clearance", "0.1")
         self.assertEqual(mounted["scene"]["mount"], [0, 1, 2, 3])
 
+    def test_obstacles_in_exports(self):
+        """Scenes show what stands in the way, as a part of its own."""
+        self.guards("room.off", "--obstacles", "crate.off")
+        crate = box(*CRATE, 2)
+        for name in ("g.vtu", "g.glb"):
+            self.run_text("export", "g.json", "-o", name)
+        vtu = self.read("g.vtu")
+        self.assertEqual(self.appended(vtu, b"part", "B").count(5), len(crate[1]))
+        points = self.appended(vtu, b"Points")
+        self.assertEqual(points[-3 * len(crate[0]):], tuple(x for p in crate[0] for x in p))
+        glb = self.read("g.glb")
+        head = json.loads(glb[20:20 + int.from_bytes(glb[12:16], "little")])
+        node = next(node for node in head["nodes"] if node["name"] == "obstacles")
+        indices = head["meshes"][node["mesh"]]["primitives"][0]["indices"]
+        self.assertEqual(head["accessors"][indices]["count"], 3 * len(crate[1]))
+
     def test_properties(self):
         """Weights are a property of the faces of a PLY file, also where these are polygons."""
         vertices, faces = box((0, 0, 0), (8, 6, 3))
@@ -516,12 +532,12 @@ class Scenes(Case):
                     self.assertGreater(ahead, 0)
                     self.assertAlmostEqual(sum(a * a for a in way) ** 0.5, 0.8, 6)
 
-    def appended(self, vtu, name):
-        """The doubles of an appended array."""
+    def appended(self, vtu, name, kind="d"):
+        """The numbers of an appended array."""
         place = int(vtu.split(b'Name="' + name + b'"')[1].split(b'offset="')[1].split(b'"')[0])
         data = vtu[vtu.index(b"_", vtu.index(b"<AppendedData")) + 1 + place:]
         size, = struct.unpack("<Q", data[:8])
-        return struct.unpack(f"<{size // 8}d", data[8:8 + size])
+        return struct.unpack(f"<{size // struct.calcsize(kind)}{kind}", data[8:8 + size])
 
     def test_bad_questions(self):
         for words, says in [

@@ -309,6 +309,46 @@ static void numbers_stand_beside_points(void **state) {
     test_context_free(context);
 }
 
+/* The outline of a camera's view changes pixels on the side to which it looks, and nothing on the
+ * other; who looks all around has none. */
+static void views_lie_where_cameras_look(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_mesh *mesh = make_cube(context, 1, 0);
+    double position[3] = {0, 0, 0}, direction[3] = {0, 0, 0};
+    starg_guards guards = {.count = 1, .positions = position};
+    starg_visibility_options_default(&guards.options.visibility);
+    starg_picture_options options = small_options();
+    image plain = draw(context, mesh, &options);
+    options.views = &guards;
+    image around = draw(context, mesh, &options);
+    size_t pixels = plain.width * plain.height;
+    assert_memory_equal(plain.rgb, around.rgb, 3 * pixels);
+    guards.directions = direction;
+    for (int look = 0; look < 4; look++) {
+        double way = look % 2 == 0 ? 1 : -1; /* right, left */
+        direction[0] = way;
+        guards.options.visibility.fov[0] = look < 2 ? 60 : 0;
+        guards.options.visibility.fov[1] = look < 2 ? 40 : 0;
+        guards.options.visibility.cone = look < 2 ? 360 : 60;
+        image with = draw(context, mesh, &options);
+        size_t changed = 0;
+        for (size_t p = 0; p < pixels; p++) {
+            if (memcmp(with.rgb + 3 * p, plain.rgb + 3 * p, 3) == 0)
+                continue;
+            double x = (double)(p % with.width) - 0.5 * (double)with.width;
+            assert_true(way * x > -4); /* lines are a few pixels wide */
+            changed++;
+        }
+        assert_true(changed > 20);
+        free(with.rgb);
+    }
+    free(plain.rgb);
+    free(around.rgb);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
 static void the_more_opaque_the_darker(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -582,6 +622,7 @@ int main(void) {
         cmocka_unit_test(the_camera_stands_where_it_should),
         cmocka_unit_test(balls_inside_show_through_but_not_through_opaque_walls),
         cmocka_unit_test(numbers_stand_beside_points),
+        cmocka_unit_test(views_lie_where_cameras_look),
         cmocka_unit_test(the_more_opaque_the_darker),
         cmocka_unit_test(flat_faces_have_no_seams),
         cmocka_unit_test(same_bytes_for_any_thread_count),
