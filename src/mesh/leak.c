@@ -265,6 +265,8 @@ starg_status flood_find_leak(const flood_cells *f, const bvh_box *model, const d
         status = draw(&s, &back, from, out);
     }
 done:
+    if (status != STARG_OK)
+        STARG_ARRAY_FREE(f->context, &out->way);
     STARG_ARRAY_FREE(f->context, &back);
     starg_release(f->context, s.way);
     starg_release(f->context, s.roomy);
