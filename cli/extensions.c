@@ -99,7 +99,8 @@ starg_status cli_check_extensions(cli_session *session, const char *values) {
     for (size_t i = 0; i < session->command->option_count && status == STARG_OK; i++) {
         const cli_option *o = &session->command->options[i];
         const char *name = is_output(o) ? *(const char *const *)(values + o->offset) : NULL;
-        if (name != NULL && strcmp(name, "-") != 0)
+        if (name != NULL && strcmp(name, "-") != 0 &&
+            !cli_outputs_reads(&session->outputs, name)) /* for which there is a better message */
             status = check_extension(session, o, name);
     }
     return status;

@@ -98,9 +98,9 @@ static bool is_taken(const cli_outputs *outputs, const cli_output *output) {
     return false;
 }
 
-static bool is_input(const cli_outputs *outputs, const cli_output *output) {
+static bool is_input(const cli_outputs *outputs, cli_file_id id) {
     for (size_t i = 0; i < outputs->input_count; i++)
-        if (is_same(outputs->inputs[i], output->id))
+        if (is_same(outputs->inputs[i], id))
             return true;
     return false;
 }
@@ -145,7 +145,12 @@ bool cli_outputs_add(cli_outputs *outputs, const char *name) {
         return fail(outputs, name, "it is a directory; choose a file in it");
     if (!is_writable(base, size))
         return fail(outputs, name, strerror(errno));
-    return !is_input(outputs, output) || fail_clash(outputs, name);
+    return !is_input(outputs, output->id) || fail_clash(outputs, name);
+}
+
+bool cli_outputs_reads(const cli_outputs *outputs, const char *name) {
+    struct stat info;
+    return stat(name, &info) == 0 && is_input(outputs, id_of(&info));
 }
 
 bool cli_outputs_add_input(cli_outputs *outputs, const char *name) {

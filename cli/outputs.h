@@ -45,6 +45,9 @@ bool cli_outputs_add_folder(cli_outputs *outputs, const char *name);
 /* Registers a file that the run reads ("-": standard input); fails if it is an output. */
 bool cli_outputs_add_input(cli_outputs *outputs, const char *name);
 
+/* Is it one of the files that the run reads? */
+bool cli_outputs_reads(const cli_outputs *outputs, const char *name);
+
 /* Where to write the output announced as `name`; returns "-" and unknown names unchanged. */
 const char *cli_outputs_place(const cli_outputs *outputs, const char *name);
 

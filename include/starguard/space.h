@@ -80,8 +80,8 @@ STARG_API starg_status starg_weights_read(starg_context *context, const char *pa
 /* The same for a name that the model's own file gives to faces: 1 for those of a group, an object
  * or a material (OBJ), the values of a property of faces (PLY), or 1 where such a property has the
  * value, for `name=value`. In the name * stands for any characters and ? for one: all names that
- * fit; of several properties, the last value that is not 0. Errors: READ, ARGUMENT (no such name, with those that there are; another
- * model), those of starg_mesh_read. */
+ * fit; of several properties, the last value that is not 0. Errors: READ, ARGUMENT (no such name,
+ * with those that there are; another model), those of starg_mesh_read. */
 STARG_API starg_status starg_faces_named(starg_context *context, const char *model_file,
                                          const char *name, size_t face_count, double **weights);
 STARG_API void starg_weights_free(starg_context *context, double *weights);

@@ -119,6 +119,9 @@ class Database:
         session.call(lib.starg_database_create, session.context, _arrays.path(path))
         return cls(path, threads=threads, seed=seed)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Database, (self.path,)  # the file is opened once more
+
     def close(self) -> None:
         """Closes the file; models already read remain valid."""
         with self._lock:

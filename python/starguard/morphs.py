@@ -219,6 +219,15 @@ class Morph:
         #: Number of faces that no candidate sees from their inner side at both ends.
         self.unguarded: int = lib.starg_morph_unguarded(m)
 
+    def __copy__(self) -> Morph:
+        return self  # it does not change
+
+    def __deepcopy__(self, memo: Any) -> Morph:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a morph cannot be pickled; pickle its mesh and the positions at times, or make it again")
+
     def _images(self, target: Any, **options: Any) -> Array:
         if isinstance(target, (np.ndarray, list)):
             images = _arrays.reals(target, 3, "target")

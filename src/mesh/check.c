@@ -379,6 +379,19 @@ done:
     return status;
 }
 
+/* Components are connected by edges, also by those of more than two faces. */
+static starg_status count_components(starg_context *context, const starg_mesh *mesh,
+                                     starg_check *check) {
+    mesh_topology *topology = NULL;
+    if (check->findings[STARG_FINDING_NONMANIFOLD_EDGE].count == 0)
+        return STARG_OK;
+    starg_status status = topology_create(context, mesh, &topology);
+    if (status == STARG_OK)
+        check->components = topology->component_count;
+    topology_free(topology);
+    return status;
+}
+
 starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, starg_check **out) {
     mesh_examination all;
     *out = NULL;
@@ -386,6 +399,8 @@ starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, st
     starg_status status = mesh_examine(context, mesh, &all);
     if (status == STARG_OK)
         status = check_parted(context, mesh, all.check);
+    if (status == STARG_OK)
+        status = count_components(context, mesh, all.check);
     starg_time_end(context, former);
     if (status == STARG_OK) {
         *out = all.check;

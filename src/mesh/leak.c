@@ -7,8 +7,8 @@
  *
  * Stages: a flood by breadth from the point, which notes how each cube was reached; another from
  * its first roomy cube through roomy ones, which have no taken cube about them. A leak to the
- * outside: the first cube at the boundary of the model's own box, a roomy one of the second flood if
- * there is one, which the first flood, done again, finds. A leak through a gap: the second flood
+ * outside: the first cube at the boundary of the model's own box, a roomy one of the second flood
+ * if there is one, which the first flood, done again, finds. A leak through a gap: the second flood
  * does not come to the outside that the first one reaches, or misses roomy cubes, more than a small
  * part of all; so what leads there is one or two cubes wide. The way leads back from there.
  *
@@ -265,6 +265,8 @@ starg_status flood_find_leak(const flood_cells *f, const bvh_box *model, const d
         status = draw(&s, &back, from, out);
     }
 done:
+    if (status != STARG_OK)
+        STARG_ARRAY_FREE(f->context, &out->way);
     STARG_ARRAY_FREE(f->context, &back);
     starg_release(f->context, s.way);
     starg_release(f->context, s.roomy);

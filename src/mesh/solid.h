@@ -35,9 +35,9 @@ struct starg_solid {
     struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
     double *leak;                /* a way out of there, leak_points x 3; NULL: none is known */
     size_t leak_points;
-    near_faces over, mount;      /* faces that guards are bound to */
-    double *importance;          /* by face; NULL: 1 each */
-    uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */
+    near_faces over, mount; /* faces that guards are bound to */
+    double *importance;     /* by face; NULL: 1 each */
+    uint64_t *targets[2];   /* bits of the faces, and of the vertices, to be seen; NULL: all */
     starg_space_options space;
     starg_mesh *model; /* the model that distances are measured from, and its tree; NULL: `mesh` */
     bvh *model_tree;

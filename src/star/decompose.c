@@ -223,8 +223,8 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
     return status;
 }
 
-/* Where a surface is more hole than surface, or turns to and fro, what it winds around has little to
- * do with it. */
+/* Where a surface is more hole than surface, or turns to and fro, what it winds around has little
+ * to do with it. */
 static starg_status check_filling(starg_context *context, const starg_mesh *surface,
                                   const starg_tetra_report *report) {
     starg_status status = STARG_OK;

@@ -3,8 +3,9 @@
  * that are perpendicular to the edge between two faces; and which of the small ones are the
  * model's, because the tetrahedron is over a whole face of the model that has an angle as small.
  *
- * Numbers are rounded here and there, so they need to agree in six digits only. Cost: O(n log n)
- * for faces and the median. */
+ * Numbers are rounded here and there, so they need to agree in six digits only, and to what is left
+ * of them where faces are so thin that nothing is known of their normals. Cost: O(n log n) for
+ * faces and the median. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,9 +14,16 @@
 
 static const char STAGE[] = "verify";
 static const double PI_DEGREES = 180, DOUBT = 1e-9;
+static const double ROUNDING = 0x1p-28; /* of angles, times the least ones of two faces */
 
-static bool agree(double claimed, double found) {
-    return fabs(claimed - found) <= 1e-8 + 1e-6 * found;
+/* Two bounds of an angle, sorted each by itself where there are many. */
+typedef struct span {
+    double least, most;
+} span;
+
+static bool agrees(double claimed, span found) {
+    return claimed >= found.least - (1e-8 + 1e-6 * found.least) &&
+           claimed <= found.most + (1e-8 + 1e-6 * found.most);
 }
 
 /* ---- angles ---- */
@@ -85,6 +93,22 @@ static double smallest_corner(const double *const t[3]) {
     return least;
 }
 
+/* The normals of two faces are the less certain the smaller the least angle of either is. */
+static double room_of(const verify_context *own, size_t tetrahedron) {
+    double thinnest[2] = {PI_DEGREES, PI_DEGREES};
+    for (uint32_t i = 0; i < 4; i++) {
+        uint32_t side[3];
+        const double *t[3];
+        verify_facet_corners(own->mesh->tetrahedra, 4 * (uint32_t)tetrahedron + i, side);
+        for (int k = 0; k < 3; k++)
+            t[k] = verify_point(own->mesh, side[k]);
+        double angle = smallest_corner(t);
+        thinnest[1] = fmin(thinnest[1], fmax(angle, thinnest[0]));
+        thinnest[0] = fmin(thinnest[0], angle);
+    }
+    return fmin(PI_DEGREES, ROUNDING / (thinnest[0] * thinnest[1]));
+}
+
 /* ---- faces of the model ---- */
 
 /* The corners of a face in the order of their positions. */
@@ -149,24 +173,24 @@ done:
 /* ---- claims ---- */
 
 /* Where an angle is hardly smaller than that of the face, it may be counted either way. */
-static starg_status claim_made(const verify_context *own, const double *angles, double *given) {
+static starg_status claim_made(const verify_context *own, const double *least, const double *most,
+                               double *given) {
     starg_status status = STARG_OK;
-    double claimed = own->report->smallest_angle_made, surely = PI_DEGREES, perhaps = PI_DEGREES;
+    double claimed = own->report->smallest_angle_made;
+    span found = {PI_DEGREES, PI_DEGREES};
     for (size_t t = 0; t < own->mesh->count; t++)
         given[t] = INFINITY;
     STARG_TRY(find_given(own, given));
     for (size_t t = 0; t < own->mesh->count; t++) {
-        if (angles[t] < given[t] * (1 - DOUBT))
-            surely = fmin(surely, angles[t]);
-        if (angles[t] < given[t] * (1 + DOUBT))
-            perhaps = fmin(perhaps, angles[t]);
+        if (most[t] < given[t] * (1 - DOUBT))
+            found.most = fmin(found.most, most[t]);
+        if (least[t] < given[t] * (1 + DOUBT))
+            found.least = fmin(found.least, least[t]);
     }
-    verify_claim(own->verdict,
-                 agree(claimed, surely) || agree(claimed, perhaps) ||
-                     (claimed >= perhaps && claimed <= surely),
+    verify_claim(own->verdict, agrees(claimed, found),
                  "the smallest dihedral angle that faces of the model do not force is %.9g degrees "
                  "(found: %.9g)",
-                 claimed, surely);
+                 claimed, found.most);
 done:
     return status;
 }
@@ -179,27 +203,34 @@ static int ascending(const void *a, const void *b) {
 starg_status verify_claim_angles(const verify_context *own) {
     starg_status status = STARG_OK;
     const starg_pieces_report *report = own->report;
-    double *angles = NULL, *given = NULL;
+    double *least = NULL, *most = NULL, *given = NULL;
     size_t count = own->mesh->count;
     if (!(report->smallest_angle > 0)) {
         verify_leave(own->verdict, "dihedral angles: the report does not tell them");
         return STARG_OK;
     }
-    STARG_NEW(own->context, STAGE, angles, count);
+    STARG_NEW(own->context, STAGE, least, count);
+    STARG_NEW(own->context, STAGE, most, count);
     STARG_NEW(own->context, STAGE, given, count);
-    for (size_t t = 0; t < count; t++)
-        angles[t] = smallest_dihedral(own, t);
+    for (size_t t = 0; t < count; t++) {
+        double angle = smallest_dihedral(own, t), room = room_of(own, t);
+        least[t] = fmax(angle - room, 0);
+        most[t] = angle + room;
+    }
     if (report->smallest_angle_made > 0)
-        STARG_TRY(claim_made(own, angles, given));
-    qsort(angles, count, sizeof *angles, ascending);
+        STARG_TRY(claim_made(own, least, most, given));
+    qsort(least, count, sizeof *least, ascending);
+    qsort(most, count, sizeof *most, ascending);
     verify_claim(own->verdict,
-                 agree(report->smallest_angle, angles[0]) &&
-                     agree(report->median_angle, angles[count / 2]),
+                 agrees(report->smallest_angle, (span){least[0], most[0]}) &&
+                     agrees(report->median_angle, (span){least[count / 2], most[count / 2]}),
                  "the smallest dihedral angle is %.9g degrees, the median of the smallest of each "
                  "tetrahedron %.9g (found: %.9g, %.9g)",
-                 report->smallest_angle, report->median_angle, angles[0], angles[count / 2]);
+                 report->smallest_angle, report->median_angle, least[0] / 2 + most[0] / 2,
+                 least[count / 2] / 2 + most[count / 2] / 2);
 done:
-    starg_release(own->context, angles);
+    starg_release(own->context, least);
+    starg_release(own->context, most);
     starg_release(own->context, given);
     return status;
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays in and out: shapes, types, values; what is copied, what is not, and who keeps whom."""
+import copy
 import gc
 import pickle
 import types
@@ -191,6 +192,36 @@ class Out(Case):
         self.assertEqual(again.tetrahedra.tolist(), tets.tetrahedra.tolist())
         signature = starguard.signature(mesh, "d2")
         self.assertEqual(starguard.match(signature, pickle.loads(pickle.dumps(signature))), 0)
+
+    def test_every_result(self):
+        """Copies of any type work and are as good; pickles work too, or say what to do, at once."""
+        mesh = starguard.sample("star", vertices=500)
+        solid = starguard.Solid(mesh)
+        scene = starguard.Scene(mesh, obstacles=[mesh])
+        results = [mesh, solid, scene, starguard.Bits.of([[True, False]]), starguard.skeleton(mesh, nodes=20),
+                   starguard.guard(mesh), starguard.kernel(mesh), starguard.describe(mesh), mesh.check(),
+                   starguard.map_surface(mesh, mesh), starguard.map_solid(mesh, mesh), starguard.decompose(mesh),
+                   starguard.cover(starguard.Bits.of([[True]])), starguard.Morph(mesh, mesh, method="linear")]
+        kept = 0
+        for result in results:
+            kind = type(result)
+            for again in (copy.copy(result), copy.deepcopy(result)):
+                self.assertIs(type(again), kind)
+                self.assertEqual(repr(again).split(" at ")[0], repr(result).split(" at ")[0])
+            try:
+                data = pickle.dumps(result)
+            except TypeError as error:
+                self.assertRegex(str(error), "write it to a file|; pickle its", kind)
+                self.assertNotIn("recursion", str(error))
+            else:
+                self.assertEqual(repr(pickle.loads(data)), repr(result))
+                kept += 1
+        self.assertGreaterEqual(kept, 5)
+        self.assertEqual(pickle.loads(pickle.dumps(solid)).contains([[0, 0, 0]]), solid.contains([[0, 0, 0]]))
+        with starguard.Database.create("copied.db") as shapes:
+            self.assertEqual(len(pickle.loads(pickle.dumps(shapes)).models()), 0)
+            self.assertEqual(len(copy.deepcopy(shapes).models()), 0)
+        gc.collect()
 
 
 class Conventions(Case):

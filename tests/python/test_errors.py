@@ -53,6 +53,17 @@ class Errors(Case):
         self.fails(starguard.MeshError, "", starguard.guard, (VERTICES, FACES[:3]))
         self.fails(starguard.MeshError, "", starguard.kernel, (VERTICES, FACES[:3]))
 
+    def test_calls(self):
+        """Messages tell of calls and keyword arguments, not of commands and options."""
+        error = self.fails(starguard.MeshError, "try `Mesh.repair()`", starguard.Solid, (VERTICES, FACES[:3]))
+        self.assertNotRegex(str(error), "starguard |--")
+        loose = np.random.default_rng(1).random((90, 3)), np.arange(90).reshape(30, 3)
+        error = self.fails(starguard.MeshError, "with soup=True", starguard.guard, loose)
+        self.assertIn("`Mesh.repair(merge_distance=...)`", str(error))
+        self.assertNotRegex(str(error), "starguard |--")
+        error = self.fails(starguard.ReadError, "--soup.off", starguard.Mesh.read, "--soup.off") # names stay
+        self.assertNotIn("soup=True", str(error))
+
     def test_argument(self):
         mesh = starguard.Mesh(VERTICES, FACES)
         error = self.fails(starguard.ArgumentError, "it must be one of ilp, greedy, pilp",

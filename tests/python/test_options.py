@@ -63,6 +63,27 @@ def wrong_values(field):
 
 
 class Tables(Case):
+    def test_options_come_before_work(self):
+        """Mistakes in options are told before the model is looked at, with the likely name or word."""
+        class Untouchable:
+            def __getattr__(self, name):
+                raise AssertionError(f"the model was asked for {name} before the options were checked")
+        for _, function, options in CALLS:
+            if function is starguard.sample:
+                continue
+            needs = [Untouchable()] * (2 if function in (starguard.map_solid, starguard.Morph, starguard.visible) else 1)
+            for field in options:
+                wrong = field.name + "x"
+                with self.assertRaises(TypeError) as caught:
+                    function(*needs, **{wrong: 1})
+                self.assertIn(f"unknown option {wrong!r}; did you mean ", str(caught.exception))
+            for field in (field for field in options if field.words):
+                with self.assertRaises(starguard.ArgumentError) as caught:
+                    function(*needs, **{field.name: field.words[0] + "x"})
+                self.assertIn("did you mean ", str(caught.exception))
+        self.fails(starguard.ArgumentError, "did you mean 'medial'?", starguard.candidate_points, Untouchable(), "medail")
+        self.fails(starguard.ArgumentError, "did you mean", starguard.signature, Untouchable(), "shape-dan")
+
     def test_what_is_set_is_read(self):
         random.seed(26)
         for _, function, options in CALLS:

@@ -41,7 +41,7 @@ static starg_status detect(const starg_source *source, const char *name,
             return STARG_OK;
         }
     }
-    return starg_source_fail(source, starg_at_file(), 
+    return starg_source_fail(source, starg_at_file(),
                              "unknown format; use OFF, OBJ, PLY or STL, to which Blender, MeshLab "
                              "or 'assimp export FILE MODEL.ply' convert others");
 }

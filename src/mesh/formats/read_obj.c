@@ -117,8 +117,8 @@ done:
     return status;
 }
 
-/* Which of group, object and material have a wanted name at this line? A group may have several, and
- * any name may have spaces. */
+/* Which of group, object and material have a wanted name at this line? A group may have several,
+ * and any name may have spaces. */
 enum { GROUP, OBJECT, MATERIAL, KEYWORDS };
 
 static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *values,
