@@ -159,7 +159,8 @@ class Scenes(Case):
         self.write("level.off", off((vertices, faces), wall, closet))
         result = self.guards("level.off", "--soup", "--two-sided", "--from", "0.6,0.6,1", "--cell",
                              "0.3")
-        self.assertIn("ok     guards can be reached", self.run_text("verify", "level.off", "g.json")[0])
+        self.assertIn("ok     guards can be reached", self.run_text("verify", "level.off", "g.json",
+                                                                   "--verbose")[0])
         for place in [6, 3, 1], [1.5, 1.5, 1], [3, 3, 3.2]:
             self.refuses_place("level.off", result, place, "guards can be reached")
 
