@@ -41,8 +41,7 @@ static const cli_option options[] = {
         "for it, a skeleton of 'starguard skeleton', or another GUARDS.json."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of the translucent model with its guards, and with --cone or --fov "
-                    "where they look; "
-                    "uncovered faces are dark red."),
+                    "where they look; uncovered faces are dark red."),
     CLI_TEXT_OPTION("certificate", certificate, "FILE",
                     "With --prove: writes why the bound for guards anywhere holds, for 'starguard "
                     "verify' (docs/formats.md)."),

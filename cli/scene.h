@@ -97,6 +97,7 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *scene);
 /* Reads the obstacles of a result, which names their files. */
 starg_status cli_scene_read_obstacles(cli_session *session, const starg_guards *guards,
                                       starg_mesh ***obstacles);
+
 /* All of them in one mesh; NULL: there are none. */
 starg_status cli_scene_join(cli_session *session, starg_mesh *const *obstacles, size_t count,
                             starg_mesh **out);

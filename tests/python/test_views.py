@@ -34,6 +34,20 @@ class Views(Case):
                                   skeleton=starguard.Skeleton.read("s.vtk"), format=extension)
             self.assertEqual(self.read("c"), self.read(f"b.{extension}"), extension)
 
+    def test_scenes_with_obstacles(self):
+        """The same as the command writes of two obstacles."""
+        x, y, z = self.guards.positions[0]
+        for name, shift in ("a.off", 0.02), ("b.off", -0.04):
+            starguard.Mesh(np.array(VERTICES) * 0.01 + (x + shift, y + shift, z), FACES).write(name)
+        obstacles = [starguard.Mesh.read(name) for name in ("a.off", "b.off")]
+        scene = starguard.Scene(self.model, obstacles=obstacles)
+        self.cli("guard", "m.off", "--obstacles", "a.off", "--obstacles", "b.off", "--count", "50",
+                 "-o", "g.json", "--quiet")
+        for extension in ("glb", "vtu"):
+            self.cli("export", "g.json", "-o", f"a.{extension}", "--quiet")
+            starguard.write_scene(f"b.{extension}", scene, guards=starguard.Guards.read("g.json"))
+            self.assertEqual(self.read(f"a.{extension}"), self.read(f"b.{extension}"), extension)
+
     def test_pages(self):
         if not starguard.page_available():
             self.fails(starguard.WriteError, "viewer", starguard.write_page, "a.html", self.model)

@@ -169,6 +169,24 @@ test("the first guards' faces are those of the coverage curve", async () => {
     });
 });
 
+test("obstacles are shown, and a switch hides them", async () => {
+    const corners = [0, 1].flatMap((z) => [0, 1].flatMap((y) => [0, 1].map((x) => [x, y, z])));
+    const faces = ["0 2 1", "1 2 3", "4 5 6", "5 7 6", "0 1 4", "1 5 4", "2 6 3", "3 6 7", "0 4 2", "2 4 6", "1 3 5", "3 7 5"];
+    const points = corners.map((p) => p.map((x) => 0.3 + 0.4 * x).join(" "));
+    writeFileSync(fileOf("box.off"), ["OFF", "8 12 0", ...points, ...faces.map((f) => `3 ${f}`)].join("\n"));
+    starguard("sample", "l-room", "--vertices", "500", "-o", "room.off");
+    starguard("guard", "room.off", "--obstacles", "box.off", "-o", "crate.json");
+    starguard("view", "crate.json", "-o", "crate.html");
+    await look("crate.html", {}, async (page) => {
+        const with_ = await picture(page);
+        const box = page.getByRole("checkbox", { name: "Obstacles (12 faces)" });
+        await box.uncheck();
+        assert.notEqual(await picture(page), with_);
+        await box.check();
+        assert.equal(await picture(page), with_);
+    });
+});
+
 test("every slider moves, by key and to both ends", async () => {
     await look("all.html", {}, async (page) => {
         for (const name of ["Guards", "Pieces", "Skeleton", "Morph"]) {
