@@ -13,8 +13,6 @@
  * Cost: O(n log n), and a linear program for each part. */
 #include "visibility/parts.h"
 
-#include <stdlib.h>
-
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "mesh/contact.h"
@@ -49,47 +47,6 @@ static bool join_touching(void *user, uint32_t a, uint32_t b) {
     return true;
 }
 
-/* A shell at a position. */
-typedef struct mention {
-    uint32_t vertex, shell;
-} mention;
-
-static int by_vertex(const void *x, const void *y) {
-    const mention *a = x, *b = y;
-    if (a->vertex != b->vertex)
-        return a->vertex < b->vertex ? -1 : 1;
-    return (a->shell > b->shell) - (a->shell < b->shell);
-}
-
-/* A face with all corners on another shell may run inside of it: such shells count as one, too. */
-static starg_status join_spanned(starg_context *context, joining *j) {
-    starg_status status = STARG_OK;
-    size_t faces = j->mesh->face_count, count = 0;
-    mention *all = NULL;
-    STARG_NEW(context, STAGE, all, 3 * faces);
-    for (size_t i = 0; i < 3 * faces; i++)
-        all[count++] = (mention){j->welded[i], j->topology->component[i / 3]};
-    qsort(all, count, sizeof *all, by_vertex);
-    for (size_t f = 0; f < faces; f++) {
-        uint32_t own = j->topology->component[f], *c = j->welded + 3 * f;
-        const mention first = {c[0], own};
-        if (!j->touching[f])
-            continue;
-        const mention *at = bsearch(&first, all, count, sizeof *all, by_vertex);
-        while (at > all && at[-1].vertex == c[0])
-            at--;
-        for (; at < all + count && at->vertex == c[0]; at++) {
-            const mention second = {c[1], at->shell}, third = {c[2], at->shell};
-            if (at->shell != own && bsearch(&second, all, count, sizeof *all, by_vertex) != NULL &&
-                bsearch(&third, all, count, sizeof *all, by_vertex) != NULL)
-                sets_join(j->parent, own, at->shell);
-        }
-    }
-done:
-    starg_release(context, all);
-    return status;
-}
-
 static starg_status join_contacts(starg_context *context, const starg_solid *solid, joining *j) {
     starg_status status = STARG_OK;
     uint32_t *first = NULL;
@@ -99,7 +56,6 @@ static starg_status join_contacts(starg_context *context, const starg_solid *sol
     for (size_t i = 0; i < 3 * solid->mesh->face_count; i++)
         j->welded[i] = first[solid->mesh->faces[i]];
     STARG_TRY(face_pairs_visit(context, solid->mesh, solid->tree, join_touching, j));
-    STARG_TRY(join_spanned(context, j));
 done:
     starg_release(context, first);
     return status;

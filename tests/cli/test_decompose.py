@@ -131,7 +131,7 @@ class Decompose(support.Case):
             self.assertIn("no tetrahedron inverted", out)
             self.assertEqual(self.agree("p.vtk", "p.json")["balls"]["kind"], kind)
             self.assertTrue(self.read("p.vtk").startswith(plain))
-            self.assertIn("positive images", self.run_text("verify", model, "p.json", "p.vtk")[0])
+            self.assertIn("positive images", self.run_text("verify", "--verbose", model, "p.json", "p.vtk")[0])
         lines = self.read("p.vtk").decode().split("\n")
         first = next(i for i, line in enumerate(lines) if line.startswith("ball 12")) + 1
         numbers = lines[first].split()
