@@ -327,7 +327,9 @@ static starg_status find_star_guard(const guard_problem *problem, guard_outcome 
         STARG_PUSH(problem->context, STAGE, &out->selection.chosen, 0);
         STARG_PUSH(problem->context, STAGE, &out->selection.levels, 0);
         out->selection.lower_bound = out->search.bound = 1;
-        out->selection.weight_bound = out->search.weight_bound = problem->weights.total;
+        out->selection.weight_bound = problem->weights.total;
+        if (problem->options->max_guards > 0)
+            out->search.weight_bound = problem->weights.total;
     } else
         pool_free(pool);
 done:
