@@ -100,6 +100,17 @@ static size_t cut_faces(const surface_samples *samples, const edge_table *table,
     return (size_t)(out - faces) / 3;
 }
 
+/* How many faces more there will be: one for each edge of a face that is split. Where parts of a
+ * solid share an edge, it has more than two faces. */
+static size_t count_added(const surface_samples *samples, const edge_table *table) {
+    size_t added = 0;
+    for (size_t f = 0; f < samples->face_count; f++)
+        for (size_t k = 0; k < 3; k++)
+            added += edge_table_find(table, samples->faces[3 * f + k],
+                                     samples->faces[3 * f + (k + 1) % 3]) != EDGE_NONE;
+    return added;
+}
+
 /* Splits long edges at their midpoints, and their faces; *splits is their number. */
 static starg_status refine(starg_context *context, surface_samples *samples, double longest,
                            size_t *splits) {
@@ -111,7 +122,7 @@ static starg_status refine(starg_context *context, surface_samples *samples, dou
     if (table.count == 0)
         goto done;
     finer.point_count = samples->point_count + table.count;
-    finer.face_count = samples->face_count + 2 * (size_t)table.count;
+    finer.face_count = samples->face_count + count_added(samples, &table);
     STARG_NEW(context, STAGE, finer.points, 3 * finer.point_count);
     STARG_NEW(context, STAGE, finer.faces, 3 * finer.face_count);
     place_points(samples, &table, finer.points);

@@ -5,11 +5,15 @@
  * A point sees a face from the face's inner side, with nothing in between. So a shell that does not
  * cross the face's own winds as often around the point as around that, and which of them hold the
  * point tells the part: shells that lie in an odd number of others are cavities, and belong to the
- * innermost of these. Shells with common vertices do not cross if each face of one has a vertex off
- * the other, and all of these vertices are on the same side: nothing else of the face meets it.
+ * innermost of these. Shells that touch in common vertices and edges alone do not cross if all
+ * vertices of one that are off the other are on the same side: nothing else of a face meets it, so
+ * faces on both sides of an edge that is not common are on one side, and there must be such a
+ * vertex for each face or one that is reached from it over such edges.
  *
  * Exact. Cost: for each pair of shells whose boxes meet, the faces of one of them; of both, times
  * each other, if they have vertices in common. */
+#include <stdlib.h>
+
 #include "verify/parts.h"
 
 #include "core/memory.h"
@@ -18,6 +22,11 @@
 #include "verify/shells.h"
 
 static const char STAGE[] = "verify";
+
+/* An edge of a face, from its lower vertex. */
+typedef struct shell_edge {
+    uint32_t a, b, face;
+} shell_edge;
 
 typedef struct part_search {
     const verify_surface *surface;
@@ -30,6 +39,9 @@ typedef struct part_search {
     size_t *depth;       /* by shell: the number of others that it lies in */
     uint8_t *sharing;    /* by face: has a vertex in common with another shell */
     uint8_t *shares;     /* by shell: one of its faces has */
+    shell_edge *edges;   /* room for those of all faces */
+    uint32_t *group;     /* by face: a set of faces on one side of another shell */
+    uint8_t *placed;     /* by face of a group's number: one of its vertices is off that shell */
     size_t count;        /* of shells */
     uint32_t face;       /* whose neighbours are visited */
 } part_search;
@@ -99,17 +111,64 @@ static bool boxes_meet(const part_search *own, size_t s, size_t t) {
     return true;
 }
 
+static int compare_edges(const void *x, const void *y) {
+    const shell_edge *e = x, *f = y;
+    return e->a != f->a ? (e->a > f->a) - (e->a < f->a) : (e->b > f->b) - (e->b < f->b);
+}
+
+static bool has_corner(const double *const corners[3], const double *p) {
+    bool found = false;
+    for (int k = 0; k < 3; k++)
+        found = found || (corners[k][0] == p[0] && corners[k][1] == p[1] && corners[k][2] == p[2]);
+    return found;
+}
+
+/* Has a face of shell t this edge, by its place? */
+static bool is_common(const part_search *own, const shell_edge *e, size_t t) {
+    const double *p = own->surface->vertices + 3 * (size_t)e->a;
+    const double *q = own->surface->vertices + 3 * (size_t)e->b;
+    for (size_t i = own->first[t]; i < own->first[t + 1]; i++) {
+        const double *corners[3];
+        verify_corners(own->surface, own->list[i], corners);
+        if (has_corner(corners, p) && has_corner(corners, q))
+            return true;
+    }
+    return false;
+}
+
+/* Groups the faces of shell s that are connected over edges that shell t has not. */
+static void group_faces(part_search *own, size_t s, size_t t) {
+    size_t count = 0;
+    for (size_t i = own->first[s]; i < own->first[s + 1]; i++) {
+        uint32_t f = own->list[i];
+        const uint32_t *v = own->surface->faces + 3 * (size_t)f;
+        own->group[f] = f;
+        own->placed[f] = 0;
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t a = v[k], b = v[(k + 1) % 3];
+            own->edges[count++] = (shell_edge){a < b ? a : b, a < b ? b : a, f};
+        }
+    }
+    qsort(own->edges, count, sizeof *own->edges, compare_edges);
+    for (size_t i = 1; i < count; i++)
+        if (compare_edges(&own->edges[i - 1], &own->edges[i]) == 0 &&
+            !is_common(own, &own->edges[i], t))
+            verify_join(own->group, own->edges[i - 1].face, own->edges[i].face);
+}
+
 /* Does shell t wind around shell s? *crossing: that is not so for all of s, or not known. */
-static bool holds(const part_search *own, size_t t, size_t s, bool *crossing) {
+static bool holds(part_search *own, size_t t, size_t s, bool *crossing) {
     const verify_surface *surface = own->surface;
     const uint32_t *others = own->list + own->first[t];
     size_t count = own->first[t + 1] - own->first[t];
     int known = 0;
     bool any = false;
     *crossing = false;
+    if (own->shares[s])
+        group_faces(own, s, t);
     for (size_t i = own->first[s]; i < own->first[s + 1]; i++) {
         const double *corners[3];
-        bool off = false, on_surface;
+        bool on_surface;
         verify_corners(surface, own->list[i], corners);
         for (int k = 0; k < 3; k++) {
             int winding = verify_winding(surface, others, count, corners[k], &on_surface);
@@ -117,12 +176,15 @@ static bool holds(const part_search *own, size_t t, size_t s, bool *crossing) {
                 continue;
             *crossing = *crossing || (any && winding != known);
             known = winding;
-            any = off = true;
+            any = true;
             if (!own->shares[s])
                 return known != 0;
+            own->placed[verify_root(own->group, own->list[i])] = 1;
         }
-        *crossing = *crossing || !off;
     }
+    for (size_t i = own->first[s]; i < own->first[s + 1]; i++)
+        *crossing =
+            *crossing || !own->shares[s] || !own->placed[verify_root(own->group, own->list[i])];
     return known != 0;
 }
 
@@ -184,6 +246,9 @@ starg_status verify_find_parts(const verify_surface *surface, const verify_tree 
     STARG_NEW(context, STAGE, own.roots, faces);
     STARG_NEW(context, STAGE, own.list, faces);
     STARG_NEW_ZERO(context, STAGE, own.sharing, faces);
+    STARG_NEW(context, STAGE, own.edges, 3 * faces);
+    STARG_NEW(context, STAGE, own.group, faces);
+    STARG_NEW(context, STAGE, own.placed, faces);
     STARG_TRY(list_shells(&own));
     STARG_NEW_ZERO(context, STAGE, own.shares, own.count);
     for (own.face = 0; own.face < faces && own.count > 1; own.face++) {
@@ -210,6 +275,9 @@ done:
     starg_release(context, own.bounds);
     starg_release(context, own.depth);
     starg_release(context, own.sharing);
+    starg_release(context, own.edges);
+    starg_release(context, own.group);
+    starg_release(context, own.placed);
     starg_release(context, own.shares);
     return status;
 }

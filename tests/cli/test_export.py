@@ -257,7 +257,7 @@ class Export(Case):
         self.usage_error("export", says="RESULT")
         model = self.sample("star")
         self.usage_error("export", model, says="-o FILE.glb, .vtu, .ply or .obj")
-        self.usage_error("export", model, "-o", "a.stl", says=".glb, .vtu, .ply or .obj")
+        self.usage_error("export", model, "-o", "a.stl", says="writes FILE.glb|.vtu|.ply|.obj")
 
     def test_what_does_not_fit(self):
         self.results()
