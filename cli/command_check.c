@@ -187,10 +187,7 @@ static void judge(cli_session *session, const starg_check *check) {
                                      used == 0 ? "" : ", ", starg_finding_name(serious[i]), count);
     }
     cli_warn(session, "'%s' is not a usable solid: %s; %s", name,
-             used > 0 ? list : "it encloses no volume",
-             check->one_sided_faces > 0 && check->one_sided_faces == check->faces
-                 ? "its surfaces are one-sided, which cannot be repaired"
-                 : "try 'starguard repair'");
+             used > 0 ? list : "it encloses no volume", starg_check_advice(check));
     session->outcome = CLI_EXIT_INPUT;
 }
 

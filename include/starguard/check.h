@@ -60,6 +60,9 @@ typedef struct starg_check {
 /* Checks a mesh. Errors: MEMORY, CANCELLED; a defective mesh is a result, not an error. */
 STARG_API starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh,
                                         starg_check **out);
+/* What helps a mesh that is not usable, as the end of a sentence; static. */
+STARG_API const char *starg_check_advice(const starg_check *check);
+
 STARG_API void starg_check_free(starg_context *context, starg_check *check);
 
 /* The plural name of a kind, for example "open edges"; static. */

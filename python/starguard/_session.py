@@ -63,7 +63,7 @@ def _on_progress(user: Any, stage: Any, fraction: float) -> bool:
 
 @ffi.callback("starg_log_fn")  # type: ignore[misc]
 def _on_log(user: Any, level: int, message: Any) -> None:
-    logger.log(_LEVELS.get(level, logging.WARNING), "%s", text(message))
+    logger.log(_LEVELS.get(level, logging.WARNING), "%s", errors.in_python(text(message)))
 
 
 def _whole(name: str, value: SupportsIndex, most: int) -> int:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ._choice import near
 from ._library import lib, text
 from ._options import Options, takes
 from ._session import Session
 from ._types import Progress
+from .errors import ArgumentError
 from .mesh import Mesh
 
 if TYPE_CHECKING:
@@ -51,5 +53,8 @@ def sample(name: str, *, progress: Progress | None = None, **options: Unpack[Sam
     """
     session = Session()
     wanted = _OPTIONS.make(options)
+    names = [entry.name for entry in samples()]
+    if name not in names:
+        raise ArgumentError(f"there is no sample {name!r}{near(str(name), names)}; `samples()` lists them")
     return Mesh._of(session.make("starg_mesh", lib.starg_mesh_free, lib.starg_sample_create,
                                  session.context, name.encode(), wanted.pointer, progress=progress))

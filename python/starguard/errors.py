@@ -98,11 +98,14 @@ _CALLS = {"check": "Mesh.check()", "repair": "Mesh.repair()", "guard": "guard()"
           "map": "map_surface()", "verify": "verify()", "sample": "sample()", "decompose": "decompose()",
           "db list": "Database.models()", "db create": "Database.create()"}
 _FLAGS = "soup outside two-sided prove overlay fill union no-refine"
+_KEYWORDS = {"--from": "start=", "--leak FILE": "Scene.leak"}
 
 
-def _in_python(message: str) -> str:
+def in_python(message: str) -> str:
     """Commands and options of the command line as calls and keyword arguments."""
     def call(match: re.Match[str]) -> str:
+        if match[1].endswith("--soup"):
+            return "`Scene(model, soup=True)`"
         name = match[1] if match[1] in _CALLS else match[1].split()[0]
         rest = match[1][len(name):].replace(" ", "")
         made = _CALLS.get(name, name + "()")
@@ -117,6 +120,8 @@ def _in_python(message: str) -> str:
             name, value = name[3:], "=False"
         return name.replace("-", "_") + value
 
+    for option, name in _KEYWORDS.items():
+        message = re.sub(rf"(?<![\w'-]){option}\b", name, message)
     message = re.sub(r"'starguard ([^']*)'", call, message)
     return re.sub(r"(?<![\w'])--[a-z][a-z-]*\b", lambda match: keyword(match[0]), message)
 
@@ -130,5 +135,5 @@ def of_status(status: int, context: object) -> Error:
         return kind(phrase)
     element = _ELEMENTS[detail.element]
     indices = np.array(ffi.unpack(detail.indices, detail.index_count), np.uint64).astype(np.int64)
-    return kind(_in_python(text(detail.message)) or phrase, text(detail.stage), element,
+    return kind(in_python(text(detail.message)) or phrase, text(detail.stage), element,
                 indices.reshape(-1, 2) if element == "edge" else indices)

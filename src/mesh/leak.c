@@ -10,7 +10,9 @@
  * outside: the first cube at the boundary of the model's own box, a roomy one of the second flood
  * if there is one, which the first flood, done again, finds. A leak through a gap: the second flood
  * does not come to the outside that the first one reaches, or misses roomy cubes, more than a small
- * part of all; so what leads there is one or two cubes wide. The way leads back from there.
+ * part of all; so what leads there is one or two cubes wide. The way leads back from there. A wider
+ * opening to the outside is where the way is narrowest before, seen from its end, it gets twice as
+ * wide again: the box may end far from it.
  *
  * Invariant: the way goes through centres of cubes that are reached, so it meets no face. The same
  * scene gives the same way. Cost: linear in the cubes, a byte and a bit each. */
@@ -215,6 +217,34 @@ static void place_gap(const search *s, const cell_list *back, double place[3]) {
     centre_of(s, back->data[(first + last) / 2], place);
 }
 
+/* How many free cubes in a row this one is among, along the axis where they are fewest. */
+static size_t width_at(const search *s, size_t cell) {
+    size_t least = NONE;
+    for (int k = 0; k < 3; k++) {
+        size_t width = 1;
+        for (int way = 1 + 2 * k; way <= 2 + 2 * k; way++)
+            for (size_t c = beside(s, cell, way); c != NONE && !is_taken(s, c);
+                 c = beside(s, c, way))
+                width++;
+        least = width < least ? width : least;
+    }
+    return least;
+}
+
+static void place_opening(const search *s, const cell_list *back, double place[3]) {
+    size_t narrow = 0, least = NONE;
+    for (size_t i = 0; i < back->count; i++) {
+        size_t width = width_at(s, back->data[i]);
+        if (width / 2 >= least)
+            break;
+        if (width < least) {
+            least = width;
+            narrow = i;
+        }
+    }
+    centre_of(s, back->data[narrow], place);
+}
+
 /* From the point, with a point wherever the way turns, to the last cube, and out of the box. */
 static starg_status draw(const search *s, const cell_list *back, const double from[3],
                          flood_leak *out) {
@@ -231,8 +261,6 @@ static starg_status draw(const search *s, const cell_list *back, const double fr
     p[(s->side - 1) / 2] += s->side % 2 != 0 ? -s->cells->size : s->cells->size;
     status = push_point(s, p, out);
 done:
-    if (!out->gap)
-        memcpy(out->place, p, sizeof p);
     return status;
 }
 
@@ -262,6 +290,8 @@ starg_status flood_find_leak(const flood_cells *f, const bvh_box *model, const d
         STARG_TRY(trace(&s, out->outside ? s.exit : s.far, &back));
         if (out->gap)
             place_gap(&s, &back, out->place);
+        else
+            place_opening(&s, &back, out->place);
         status = draw(&s, &back, from, out);
     }
 done:

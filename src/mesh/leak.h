@@ -9,7 +9,7 @@
 typedef struct flood_leak {
     bool outside;            /* it leads out of the model's box */
     bool gap;                /* through a gap hardly wider than a cube */
-    double place[3];         /* of the gap; else where the way ends */
+    double place[3];         /* of the gap, or the wider opening */
     STARG_ARRAY(double) way; /* 3 numbers for each point; none: there is no leak */
 } flood_leak;
 

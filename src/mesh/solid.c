@@ -14,15 +14,20 @@ static const starg_finding_kind FATAL[] = {
     STARG_FINDING_REPEATED_CORNER, STARG_FINDING_OPEN_EDGE, STARG_FINDING_NONMANIFOLD_EDGE,
     STARG_FINDING_NONMANIFOLD_VERTEX, STARG_FINDING_INCONSISTENT_EDGE};
 
-/* What helps: faces that bound nothing are taken for what they are, anything else is repaired. */
-static const char *advice_for(const starg_check *check) {
-    if (check->one_sided_faces == check->faces)
-        return "its surfaces are one-sided, which cannot be repaired; 'starguard guard' and "
-               "'visible' take them as triangles, with --soup";
+/* Faces that bound nothing are taken for what they are, anything else is repaired. */
+const char *starg_check_advice(const starg_check *check) {
+    size_t fatal = 0;
+    for (size_t i = 0; i < sizeof FATAL / sizeof *FATAL; i++)
+        fatal += check->findings[FATAL[i]].count;
+    if (check->one_sided_faces > 0 && check->one_sided_faces == check->faces)
+        return "its surfaces are one-sided, which cannot be repaired; 'starguard guard "
+               "--soup' takes them as triangles";
+    if (fatal == 0 && check->faces > 0)
+        return "'starguard guard --soup' takes it as triangles";
     if (check->findings[STARG_FINDING_OPEN_EDGE].count > check->faces)
-        return "most of its faces are loose triangles: 'starguard guard' and 'visible' take them "
-               "as they are, with --soup; corners that should be one are joined by 'starguard "
-               "repair --merge-distance D'";
+        return "most of its faces are loose triangles: 'starguard guard --soup' takes them as they "
+               "are; corners that should be one are joined by 'starguard repair --merge-distance "
+               "D'";
     return "try 'starguard repair'";
 }
 
@@ -43,12 +48,13 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
         return starg_fail_at(
             context, STARG_ERROR_MESH, "solid", first->element, first->first, first->shown,
             "the mesh does not bound a solid (%s); 'starguard check' shows where; %s", list,
-            advice_for(check));
+            starg_check_advice(check));
     if (check->faces == 0)
         return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh has no faces");
-    return starg_fail(context, STARG_ERROR_MESH, "solid",
-                      "the mesh is closed but encloses no volume: its shells are flat or doubled; "
-                      "'starguard guard' and 'visible' take it as triangles, with --soup");
+    return starg_fail(
+        context, STARG_ERROR_MESH, "solid",
+        "the mesh is closed but encloses no volume: its shells are flat or doubled; %s",
+        starg_check_advice(check));
 }
 
 /* ---- vertices at one position ---- */

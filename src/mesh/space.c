@@ -389,7 +389,7 @@ static starg_status reach_from(starg_context *context, starg_solid *scene) {
     if (scene->leak_points > 0)
         starg_log(context, STARG_LOG_WARNING,
                   "the space that is reached from (%g, %g, %g) leaks %s%s at (%g, %g, %g): guards "
-                  "may stand there, too; --leak FILE writes the way; close it, or choose other "
+                  "may stand there, too; --leak FILE shows the way; close it, or choose other "
                   "cubes (--cell) or a box (--within)",
                   from[0], from[1], from[2], leak.outside ? "to the outside of the model" : "",
                   !leak.gap      ? ","

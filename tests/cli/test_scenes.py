@@ -363,14 +363,16 @@ class Scenes(Case):
 
     def test_leak(self):
         """Two rooms of a soup: what is reached leaks through narrow gaps and out of the box, and the way shows it."""
-        def rooms(gap, door):
-            """Of 4 by 6 by 3 each, with openings of these widths in the wall between and to the outside."""
+        def rooms(gap, door, floor):
+            """Of 4 by 6 by 3 each, with openings of these widths in the wall between and to the outside, and a
+            floor up to this x."""
             corners, quads = [], []
             def add(*quad):
                 quads.append("4 " + " ".join(str(len(corners) + i) for i in range(4)))
                 corners.extend(quad)
             for z in (0, 3):
-                add((0, 0, z), (8, 0, z), (8, 6, z), (0, 6, z))
+                end = 8 if z > 0 else floor
+                add((0, 0, z), (end, 0, z), (end, 6, z), (0, 6, z))
             for y in (0, 6):
                 add((0, y, 0), (8, y, 0), (8, y, 3), (0, y, 3))
             for x, width in ((0, 0), (4, gap), (8, door)):
@@ -379,11 +381,13 @@ class Scenes(Case):
             lines = [" ".join(map(str, c)) for c in corners] + quads
             return f"OFF\n{len(corners)} {len(quads)} 0\n" + "\n".join(lines) + "\n"
         cell = 0.01 * (64 + 36 + 9) ** 0.5
-        for gap, door, says in [(6, 0, None), (1, 0, None), (0, 0, None), (0, 1, None), (6, 1, "outside of the model, at"),
-                                (1, 1, "outside of the model, at"), (0.25, 0, "leaks through a gap"),
-                                (0.25, 1, "outside of the model, through a gap"),
-                                (6, 0.25, "outside of the model, through a gap")]:
-            self.write("rooms.off", rooms(gap, door))
+        for gap, door, floor, says in [
+                (6, 0, 8, None), (1, 0, 8, None), (0, 0, 8, None), (0, 1, 8, None),
+                (6, 1, 8, "outside of the model, at"), (1, 1, 8, "outside of the model, at"),
+                (1, 0, 4, "outside of the model, at"), (0.25, 0, 8, "leaks through a gap"),
+                (0.25, 1, 8, "outside of the model, through a gap"),
+                (6, 0.25, 8, "outside of the model, through a gap")]:
+            self.write("rooms.off", rooms(gap, door, floor))
             words = ["rooms.off", "--soup", "--two-sided", "--from", "1.1,1,1", "--leak", "way.obj", "-o", "g.json",
                      "--no-refine", "--count", "30"]
             log = [line["message"] for line in self.run_json("guard", *words)["log"] if line["level"] == "warning"]
@@ -393,15 +397,16 @@ class Scenes(Case):
                 continue
             self.assertIn(says, log[0])
             place = [float(x) for x in re.search(r" at \((.*?)\)", log[0])[1].split(",")]
-            wall, width = (4, gap) if gap < 1 else (8, door)
+            wall, width = (4, gap) if gap < 1 or floor < 8 else (8, door)
             self.assertLess(abs(place[0] - wall), 2 * cell)
             self.assertLess(abs(place[1] - 3), width / 2)
+            self.assertTrue(0 < place[2] < 3)
             lines = [line.split() for line in self.read("way.obj").decode().splitlines()]
             way = [[float(x) for x in line[1:]] for line in lines if line[0] == "v"]
             self.assertEqual(way[0], [1.1, 1, 1])
             self.assertEqual([line[1:] for line in lines if line[0] == "l"],
                              [[str(i), str(i + 1)] for i in range(1, len(way))])
-            self.assertEqual(way[-1][0] > 8, "outside" in says) # past the walls by their openings only
+            self.assertEqual(way[-1][0] > 8 or way[-1][2] < 0, "outside" in says) # by the openings only
             for x, width in ((4, gap), (8, door)):
                 for (p, q) in zip(way, way[1:]):
                     if (p[0] < x) != (q[0] < x):
@@ -419,11 +424,13 @@ class Scenes(Case):
         self.write("mid.txt", "4 3 1.5\n")
         triple = TETRAHEDRON.replace("4 4 6", "5 7 6").replace("0 0 1\n", "0 0 1\n0 0 -1\n")
         self.write("triple.off", triple + "3 0 1 4\n3 0 4 2\n3 1 2 4\n")
+        self.write("flat.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n")
         for model, says, never in [("loose.off", "--soup", "try 'starguard repair'"), ("open.off", "repair", "--soup"),
-                                   ("triple.off", "repair", "--soup")]:
-            _, err = self.run_text("guard", model, "-o", "n.json", status=2)
-            self.assertIn(says, err)
-            self.assertNotIn(never, err)
+                                   ("triple.off", "repair", "--soup"), ("flat.off", "--soup", "repair")]:
+            for words in ["guard", model, "-o", "n.json"], ["check", model]:
+                _, err = self.run_text(*words, status=2)
+                self.assertIn(says, err)
+                self.assertNotIn(never, err)
         self.run_text("guard", "loose.off", "--soup", "--two-sided", "-o", "n.json", "--no-refine", "--count", "50")
         for model, holes in [("loose.off", True), ("triple.off", False)]:
             _, err = self.run_text("decompose", model, "-o", "p.vtk", status=2)

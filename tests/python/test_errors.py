@@ -58,11 +58,24 @@ class Errors(Case):
         error = self.fails(starguard.MeshError, "try `Mesh.repair()`", starguard.Solid, (VERTICES, FACES[:3]))
         self.assertNotRegex(str(error), "starguard |--")
         loose = np.random.default_rng(1).random((90, 3)), np.arange(90).reshape(30, 3)
-        error = self.fails(starguard.MeshError, "with soup=True", starguard.guard, loose)
+        error = self.fails(starguard.MeshError, "`Scene(model, soup=True)` takes them", starguard.guard, loose)
         self.assertIn("`Mesh.repair(merge_distance=...)`", str(error))
         self.assertNotRegex(str(error), "starguard |--")
         error = self.fails(starguard.ReadError, "--soup.off", starguard.Mesh.read, "--soup.off") # names stay
         self.assertNotIn("soup=True", str(error))
+        self.fails(starguard.ArgumentError, "did you mean 'horse'?", starguard.sample, "hors")
+
+    def test_warnings(self):
+        """Like messages of errors: here of a box without a lid."""
+        box = starguard.Mesh([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)],
+                             [(0, 1, 4), (1, 5, 4), (1, 3, 5), (3, 7, 5), (3, 2, 7), (2, 6, 7), (2, 0, 6), (0, 4, 6),
+                              (0, 2, 1), (1, 2, 3)])
+        with self.assertLogs("starguard") as caught:
+            scene = starguard.Scene(box, soup=True, start=(0.5, 0.5, 0.5), cell=0.1)
+        self.assertIn("Scene.leak shows the way", caught.output[-1])
+        self.assertIn("(cell)", caught.output[-1])
+        self.assertNotIn("--", caught.output[-1])
+        self.assertGreater(scene.leak[-1][2], 1)
 
     def test_argument(self):
         mesh = starguard.Mesh(VERTICES, FACES)
