@@ -80,35 +80,6 @@ int bvh_covers_beside(const bvh *tree, uint32_t triangle, const double *const p[
  * k. Exact for closed meshes. */
 int bvh_winding_behind(const bvh *tree, uint32_t triangle, int k);
 
-/* Calls visit with the position in `order` of every triangle in the leaves that pass may_meet,
- * until it returns false; returns false exactly if visit did. may_meet may reject a box only if no
- * triangle inside matters. The other queries are special cases. */
-typedef bool bvh_box_test(void *user, const bvh_box *box);
-typedef bool bvh_visit_rank(void *user, size_t rank);
-bool bvh_query(const bvh *tree, bvh_box_test *may_meet, void *test_user, bvh_visit_rank *visit,
-               void *visit_user);
-
-/* Calls visit for every triangle whose box meets `box`, in a fixed order, until it returns false.
- * Returns false exactly if visit did. */
-typedef bool bvh_visit(void *user, uint32_t triangle);
-bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *user);
-
-/* Calls visit(a, b) once for each unordered pair of triangles whose boxes meet. */
-typedef bool bvh_visit_pair(void *user, uint32_t a, uint32_t b);
-bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user);
-
-/* Winding number of the mesh about p, and whether p lies on a triangle (the number is then
- * meaningless). Exact for closed meshes: a vertical line, symbolically perturbed off every edge. */
-int bvh_winding(const bvh *tree, const double p[3], bool *on_surface);
-
-/* Contribution of one triangle to the winding number about p: 1 where the upward line leaves
- * through it, -1 where it enters, 0 where it misses. */
-int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
-
-/* Same about a point just beside p[0] in the triangle p: p[0] + e (p[1] - p[0]) + e^2 (p[2] - p[0])
- * for all small e > 0. Exact; 0 if that is on the triangle. */
-int bvh_crossing_beside(const bvh *tree, uint32_t triangle, const double *const p[3]);
-
 /* Winding number of the mesh just before a triangle (on its outer side, near corner 0), which has
  * area and lies on no other. Exact for closed meshes. */
 int bvh_winding_before(const bvh *tree, uint32_t triangle);
