@@ -9,6 +9,8 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
+#include "mesh/contact.h"
+#include "mesh/pairs.h"
 #include "shapes.h"
 #include "support.h"
 
@@ -488,6 +490,74 @@ static void test_random_blobs(void **state) {
 
 /* ---- memory and cancelling ---- */
 
+/* ---- faces around vertices of many ---- */
+
+enum { FANS = 3, SPOKES = 90, LOOSE = 60, HUB_FACES = FANS * SPOKES + LOOSE };
+
+typedef struct visited {
+    uint8_t times[HUB_FACES][HUB_FACES];
+    size_t count;
+} visited;
+
+static bool note_visit(void *user, uint32_t a, uint32_t b) {
+    visited *v = user;
+    v->times[a < b ? a : b][a < b ? b : a]++;
+    v->count++;
+    return true;
+}
+
+/* Fans of triangles about three vertices, some flat, and loose triangles between them. */
+static void make_hubs(starg_rng *rng, bool flat, double *vertices, uint32_t *faces) {
+    for (size_t v = 0; v < FANS + 2 * (size_t)HUB_FACES; v++)
+        for (size_t k = 0; k < 3; k++)
+            vertices[3 * v + k] = flat && k == 2 ? 0 : (double)starg_rng_below(rng, 64);
+    for (size_t v = FANS + 1; v < FANS + 2 * (size_t)HUB_FACES; v += 2) /* narrow triangles */
+        for (size_t k = 0; k < 3; k++)
+            vertices[3 * v + k] =
+                vertices[3 * v + k - 3] + (flat && k == 2 ? 0 : (double)starg_rng_below(rng, 5));
+    for (uint32_t f = 0; f < HUB_FACES; f++) {
+        uint32_t own = FANS + 2 * f, other = FANS + 2 * (uint32_t)starg_rng_below(rng, HUB_FACES);
+        faces[3 * f] = f < FANS * SPOKES ? f % FANS : other;
+        faces[3 * f + 1] = own;
+        faces[3 * f + 2] = starg_rng_below(rng, 4) == 0 ? other + 1 : own + 1;
+    }
+}
+
+/* Every pair that meets elsewhere than in a common corner is visited, and none twice; most of the
+ * others are not. */
+static void test_hubs(void **state) {
+    (void)state;
+    static double vertices[3 * (FANS + 2 * HUB_FACES)];
+    static uint32_t faces[3 * HUB_FACES];
+    starg_context *context = test_context(1);
+    for (uint64_t round = 0; round < test_rounds(6, 200); round++) {
+        starg_rng rng = starg_rng_make(7, 1, round);
+        starg_mesh *mesh;
+        bvh *tree;
+        visited *v = calloc(1, sizeof *v);
+        assert_non_null(v);
+        make_hubs(&rng, round % 2 == 1, vertices, faces);
+        test_ok(context, starg_mesh_create(context, vertices, FANS + 2 * (size_t)HUB_FACES, faces,
+                                           HUB_FACES, &mesh));
+        test_ok(context, bvh_create(context, vertices, faces, HUB_FACES, &tree));
+        test_ok(context, face_pairs_visit(context, mesh, tree, note_visit, v));
+        for (uint32_t a = 0; a < HUB_FACES; a++)
+            for (uint32_t b = a + 1; b < HUB_FACES; b++) {
+                triangle_contact contact =
+                    faces_contact(vertices, faces + 3 * (size_t)a, faces + 3 * (size_t)b);
+                assert_true(v->times[a][b] <= 1);
+                if (contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS)
+                    assert_int_equal(v->times[a][b], 1);
+            }
+        if (round % 2 == 0) /* in space most pairs of a fan are apart */
+            assert_true(v->count < HUB_FACES * (HUB_FACES - 1) / 4);
+        free(v);
+        bvh_free(tree);
+        starg_mesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
 static void test_cancel(void **state) {
     (void)state;
     starg_context_options options;
@@ -562,6 +632,7 @@ int main(void) {
         cmocka_unit_test(test_pairs),
         cmocka_unit_test(test_random_lattice),
         cmocka_unit_test(test_random_blobs),
+        cmocka_unit_test(test_hubs),
         cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_every_allocation_fails_once),
         cmocka_unit_test(test_names),

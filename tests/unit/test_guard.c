@@ -413,8 +413,97 @@ static void test_given_guards(void **state) {
     test_context_free(context);
 }
 
+/* ---- parts, redundancy, nothing seen ---- */
+
+/* Copies of a shape, apart. */
+static shape apart(const shape *s, size_t count) {
+    shape all = {0};
+    for (size_t i = 0; i < count; i++)
+        shape_append(&all, s, (const double[]){10 * (double)i, 0, 0}, 0);
+    return all;
+}
+
+/* What parts of a solid need adds up: one guard for each, two for each without a kernel. */
+static void test_parts(void **state) {
+    (void)state;
+    const struct {
+        shape (*make)(void);
+        size_t each;
+    } kinds[] = {{shape_tetrahedron, 1}, {shape_room, 1}, {shape_cavity, 2}};
+    starg_context *context = test_context(1);
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.candidate_count = 100;
+    options.refine_lines = 20000;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        for (size_t count = 1; count <= 5; count += 2) {
+            shape one = kinds[i].make(), all = apart(&one, count);
+            starg_solid *solid = test_solid_of(context, &all);
+            starg_guards *guards = test_guard(context, solid, &options);
+            assert_true(guards->lower_bound_everywhere >= kinds[i].each * count);
+            assert_true(guards->lower_bound_everywhere <= guards->count);
+            if (kinds[i].each == 1)
+                assert_int_equal(guards->count, count);
+            starg_guards_free(context, guards);
+            starg_solid_free(solid);
+            shape_free(&one);
+            shape_free(&all);
+        }
+    test_context_free(context);
+}
+
+/* Each part needs as many guards as the redundancy, also where one candidate would do. */
+static void test_redundancy(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape cube = shape_cube(1), three = apart(&cube, 3);
+    starg_solid *solid = test_solid_of(context, &three);
+    for (uint32_t times = 2; times <= 3; times++)
+        for (int method = 0; method < 3; method++) {
+            starg_guard_options options = small_options();
+            options.method = (starg_guard_method)method;
+            options.redundancy = times;
+            starg_guards *guards = test_guard(context, solid, &options);
+            assert_int_equal(guards->count, 3 * times);
+            assert_int_equal(guards->lower_bound_everywhere, 3 * times);
+            assert_int_equal(guards->redundant_count, times);
+            for (uint32_t k = 0; k < times; k++)
+                assert_int_equal(guards->redundant_faces[k], guards->face_count);
+            starg_guards_free(context, guards);
+        }
+    starg_solid_free(solid);
+    shape_free(&cube);
+    shape_free(&three);
+    test_context_free(context);
+}
+
+/* Nothing seen is no result; a range in another unit is told so. */
+static void test_nothing_seen(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "l-room", 500);
+    double diagonal = starg_solid_check(solid)->diagonal;
+    for (int directed = 0; directed < 2; directed++)
+        for (int unit = 0; unit < 2; unit++) {
+            starg_guard_options options = small_options();
+            starg_guards *guards;
+            options.visibility.range = unit ? diagonal / 1e4 : diagonal / 900;
+            options.visibility.cone = directed ? 60 : 360;
+            assert_int_equal(starg_guard(context, solid, &options, &guards), STARG_ERROR_MESH);
+            assert_null(guards);
+            const char *said = starg_context_error(context)->message;
+            assert_int_equal(strstr(said, "another unit") != NULL, unit);
+            assert_int_equal(strstr(said, "a wider view") != NULL, directed && !unit);
+        }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_sample),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts),
+                                       cmocka_unit_test(test_redundancy),
+                                       cmocka_unit_test(test_nothing_seen),
+                                       cmocka_unit_test(test_every_sample),
                                        cmocka_unit_test(test_sphere_takes_one),
                                        cmocka_unit_test(test_options),
                                        cmocka_unit_test(test_file),
