@@ -3,14 +3,14 @@
  * and what a renderer can drop.
  *
  * Stages:
- *   1. Candidates, and points above the faces that these do not see (guard/augment.c): what one of
- *      them sees is seen. A face within matter, or with matter before it, is invisible
- * (mesh/buried.c).
- *   2. For the other faces, the free space is cut into boxes. A test finds what is certainly hidden
+ *   1. A face within matter, or with matter before it, is invisible (mesh/buried.c).
+ *   2. Candidates, and points above other faces that these do not see (guard/augment.c): what one
+ *      of them sees is seen.
+ *   3. For the rest, the free space is cut into boxes. A test finds what is certainly hidden
  *      from a box (visibility/box.h); a child is tested only for what its parent leaves open, and a
  *      box with nothing open is not cut. The open faces are also tested from the centre of each
  *      child.
- *   3. A face that no box leaves open is invisible: the boxes cover all places where guards may
+ *   4. A face that no box leaves open is invisible: the boxes cover all places where guards may
  *      stand. Faces still open when the budget is used up are undecided.
  * Boxes are cut in the middle of their longest sides, those with most open faces first, in batches:
  * the result depends on the budget alone, not on threads.
@@ -29,6 +29,7 @@
 static const char STAGE[] = "unseen";
 
 enum { BATCH = 256, CANDIDATES = 300 };
+enum { ABOVE = 1500 }; /* work of a face that is looked at from points above it */
 
 typedef struct unseen_box {
     bvh_box box;
@@ -61,34 +62,75 @@ static size_t words_of(const unseen_search *s) {
 
 /* ---- looking from points ---- */
 
-static starg_status look_from_candidates(unseen_search *s, const starg_guard_options *options) {
+/* Looks for points above the faces that neither the pool sees nor matter hides, as long as half of
+ * the budget lasts; at least once. */
+static starg_status look_from_above(unseen_search *s, uint64_t budget, uint8_t *tried,
+                                    guard_pool *pool) {
+    starg_status status = STARG_OK;
+    size_t faces = starg_space_model_faces(s->solid);
+    uint8_t *unseen = NULL;
+    candidate_points found = {0};
+    const augmentation all = {s->solid, &s->view, s->clearance, tried};
+    bool pending = true;
+    STARG_NEW_ZERO(s->context, STAGE, unseen, s->solid->mesh->face_count);
+    while (pending && !pool->time_limited) {
+        size_t before = 0, after = 0;
+        for (size_t f = 0; f < faces; f++) {
+            unseen[f] = solid_is_target(s->solid, false, f) && !starg_bit_test(pool->coverable, f);
+            before += tried[f];
+        }
+        found.data.count = 0;
+        status = augment_candidates(s->context, &all, unseen, &found, &pending);
+        if (status == STARG_ERROR_TIME) {
+            status = STARG_OK;
+            break;
+        }
+        STARG_TRY(status);
+        if (found.data.count > 0)
+            STARG_TRY(pool_add(pool, &found));
+        for (size_t f = 0; f < faces; f++)
+            after += tried[f];
+        s->spent += (after - before) * ABOVE;
+        pending = pending && s->spent < budget / 2;
+    }
+done:
+    candidates_free(s->context, &found);
+    starg_release(s->context, unseen);
+    return status;
+}
+
+static starg_status look_from_candidates(unseen_search *s, const starg_guard_options *options,
+                                         uint64_t budget) {
     starg_status status = STARG_OK;
     guard_pool pool = {0};
     candidate_points points = {0};
-    column_weights weights = {0};
+    uint8_t *tried = NULL;
     const candidate_shape shape = {s->solid, s->solid, s->clearance};
-    STARG_TRY(column_weights_create(s->context, s->solid, STARG_TARGET_FACES, &weights));
+    STARG_NEW_ZERO(s->context, STAGE, tried, s->solid->mesh->face_count);
+    for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++) {
+        tried[f] = solid_is_target(s->solid, false, f) && solid_hides(s->solid, f);
+        if (tried[f])
+            STARG_PUSH(s->context, STAGE, &s->buried, f);
+    }
     STARG_TRY(pool_create(s->context, s->solid, options, &pool));
     STARG_TRY(candidates_find(s->context, &shape, STARG_CANDIDATES_INTERIOR, CANDIDATES, &points));
     STARG_TRY(pool_add(&pool, &points));
-    STARG_TRY(pool_augment(&pool, &weights));
+    STARG_TRY(look_from_above(s, budget, tried, &pool));
     if (candidates_count(&points) == 0 && pool_count(&pool) == 0)
         status = starg_fail(s->context, STARG_ERROR_MESH, STAGE,
                             "no place was found where anybody may stand; try wider limits (box, "
                             "distances, clearance)");
     STARG_TRY(status);
-    for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++) {
-        if (!solid_is_target(s->solid, false, f))
-            continue;
-        if (solid_hides(s->solid, f))
-            STARG_PUSH(s->context, STAGE, &s->buried, f);
-        else if (!starg_bit_test(pool.coverable, f))
+    for (uint32_t f = 0, k = 0; f < starg_space_model_faces(s->solid); f++) {
+        bool buried = k < s->buried.count && s->buried.data[k] == f;
+        k += buried;
+        if (!buried && solid_is_target(s->solid, false, f) && !starg_bit_test(pool.coverable, f))
             STARG_PUSH(s->context, STAGE, &s->list, f);
     }
 done:
     pool_free(&pool);
     candidates_free(s->context, &points);
-    column_weights_free(s->context, &weights);
+    starg_release(s->context, tried);
     return status;
 }
 
@@ -370,7 +412,7 @@ starg_status starg_unseen(starg_context *context, const starg_solid *scene,
     }
     STARG_TRY(sensor_check(context, STAGE, 0, &options.visibility));
     STARG_TRY(begin(&s));
-    STARG_TRY(look_from_candidates(&s, &options));
+    STARG_TRY(look_from_candidates(&s, &options, work));
     if (s.list.count > 0)
         STARG_TRY(cut_boxes(&s, work));
     status = report(&s, out);
