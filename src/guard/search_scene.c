@@ -39,6 +39,7 @@ starg_status search_scene_open(starg_context *context, const starg_solid *solid,
                           .clearance = clearance,
                           .number = ++context->search_scenes};
     STARG_TRY(scene_create(context, solid, &out->points));
+    STARG_TRY(scene_add_sights(out->points));
     STARG_TRY(box_scene_create(context, solid, &out->boxes));
     STARG_NEW(context, STAGE, out->places, target_columns(solid->mesh, view->target));
     STARG_NEW(context, STAGE, out->ranks, solid->mesh->vertex_count);
@@ -140,8 +141,7 @@ bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j
         return is_before(scene, column, p);
     return scene->view->target == STARG_TARGET_VERTICES ||
            scene_back(points, place) != SCENE_NONE ||
-           orient3d(scene_corner(points, place, 0), scene_corner(points, place, 1),
-                    scene_corner(points, place, 2), p) > 0;
+           scene_side(points, place, p) > 0;
 }
 
 uint64_t search_scene_look(const search_scene *scene, search_point *point,

@@ -175,6 +175,7 @@ void scene_free(visibility_scene *scene) {
         return;
     starg_context *context = scene->context;
     adjacency_free(scene->adjacency);
+    sight_tree_free(scene->sights);
     starg_release(context, scene->vertex_of);
     starg_release(context, scene->slot_of);
     starg_release(context, scene->x);
@@ -195,15 +196,26 @@ starg_status scene_add_adjacency(visibility_scene *scene) {
     return scene->cull ? adjacency_create(scene->context, scene, &scene->adjacency) : STARG_OK;
 }
 
-static bool is_in_extent(const visibility_scene *scene, const double p[3]) {
+starg_status scene_add_sights(visibility_scene *scene) {
+    return sight_tree_create(scene->context, scene->solid->tree, &scene->all, &scene->sights);
+}
+
+bool scene_holds(const visibility_scene *scene, const double p[3]) {
     bool in = true;
     for (int k = 0; k < 3; k++)
         in = in && p[k] >= scene->all.lower[k] && p[k] <= scene->all.upper[k];
     return in;
 }
 
+int scene_side(const visibility_scene *scene, size_t rank, const double p[3]) {
+    int side = scene_holds(scene, p) ? scene_likely_side(scene, rank, p) : 0;
+    return side != 0 ? side
+                     : orient3d(scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                                scene_corner(scene, rank, 2), p);
+}
+
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side) {
-    if (is_in_extent(scene, p))
+    if (scene_holds(scene, p))
         scene->find_sides(scene, p, side);
     else
         memset(side, 0, scene->face_count * sizeof *side);

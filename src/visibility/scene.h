@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "geometry/sight_tree.h"
 #include "mesh/solid.h"
 #include "starguard/visibility.h"
 #include "visibility/sensor.h"
@@ -62,6 +63,7 @@ typedef struct visibility_scene {
     bvh_box *chunks; /* with a range: boxes of SCENE_CHUNK faces each, by rank */
 
     struct visibility_adjacency *adjacency; /* for the engine by contours if `cull` */
+    sight_tree *sights;                     /* for single sight lines, if they were prepared */
 } visibility_scene;
 
 /* Errors: MEMORY. */
@@ -70,6 +72,9 @@ void scene_free(visibility_scene *scene);
 
 /* Adds the adjacency, if the boundary is embedded. Errors: MEMORY. */
 starg_status scene_add_adjacency(visibility_scene *scene);
+
+/* Prepares it for many single sight lines (scene_sees_vertex, scene_sees_face). Errors: MEMORY. */
+starg_status scene_add_sights(visibility_scene *scene);
 
 /* Lets engines leave out what is farther than the range. Errors: MEMORY. */
 starg_status scene_limit(visibility_scene *scene, double range);
@@ -92,6 +97,20 @@ static inline bool scene_is_beyond(const visibility_scene *scene, size_t chunk, 
 static inline bool scene_may_block(const visibility_scene *scene, size_t rank, int8_t side) {
     return side >= (scene->least != NULL ? scene->least[rank] : scene->cull ? 1 : -1);
 }
+
+/* On which side of a face is p? 0: within rounding of its plane. p lies in the box. */
+static inline int scene_likely_side(const visibility_scene *scene, size_t rank, const double p[3]) {
+    double value = scene->nx[rank] * (scene->centre[0] - p[0]) +
+                   scene->ny[rank] * (scene->centre[1] - p[1]) +
+                   scene->nz[rank] * (scene->centre[2] - p[2]) + scene->offset[rank];
+    return (value > scene->side_bound) - (value < -scene->side_bound);
+}
+
+/* Is p in the box of the scene? */
+bool scene_holds(const visibility_scene *scene, const double p[3]);
+
+/* The exact side of the face on which p lies: 1 inner, -1 outer, 0 in its plane. */
+int scene_side(const visibility_scene *scene, size_t rank, const double p[3]);
 
 /* side[rank] = 1 where p lies strictly on the inner side of the face, -1 outer, 0 in its plane. */
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side);

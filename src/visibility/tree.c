@@ -16,29 +16,53 @@ static bool passes(void *user, size_t rank) {
     return !scene_blocks(query->scene, rank, query->side[rank], query->p, query->slot);
 }
 
-/* For a single vertex the sides are not precomputed; only those of its own faces matter. */
+typedef struct sight_query {
+    const visibility_scene *scene;
+    const double *p, *q;
+    uint32_t slot;
+} sight_query;
+
+/* Most faces have both ends on the same side, as their planes tell. */
 static bool passes_alone(void *user, size_t rank) {
-    const tree_query *query = user;
-    int side = 0;
-    if (scene_has_corner(query->scene, rank, query->slot))
-        side = orient3d(scene_corner(query->scene, rank, 0), scene_corner(query->scene, rank, 1),
-                        scene_corner(query->scene, rank, 2), query->p);
-    return !scene_blocks(query->scene, rank, side, query->p, query->slot);
+    const sight_query *query = user;
+    const visibility_scene *scene = query->scene;
+    int side = scene_likely_side(scene, rank, query->p);
+    if (side != 0 && (!scene_may_block(scene, rank, (int8_t)side) ||
+                      side == scene_likely_side(scene, rank, query->q)))
+        return true;
+    if (side == 0 && scene_has_corner(scene, rank, query->slot))
+        side = scene_side(scene, rank, query->p);
+    return !scene_blocks(scene, rank, side, query->p, query->slot);
+}
+
+/* Without planes, for ends that may lie outside the box. */
+static bool passes_exactly(void *user, size_t rank) {
+    const sight_query *query = user;
+    const visibility_scene *scene = query->scene;
+    int side = scene_has_corner(scene, rank, query->slot) ? scene_side(scene, rank, query->p) : 0;
+    return !scene_blocks(scene, rank, side, query->p, query->slot);
+}
+
+static bool is_free(sight_query *query) {
+    const visibility_scene *scene = query->scene;
+    return scene->sights != NULL && scene_holds(scene, query->p)
+               ? sight_tree_query(scene->sights, query->p, query->q, passes_alone, query)
+               : bvh_query_segment(scene->solid->tree, query->p, query->q, passes_exactly,
+                                   query);
 }
 
 static bool sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
                         const sensor *looks) {
     const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
-    tree_query query = {scene, p, NULL, slot};
-    return sensor_reaches(looks, p, q) && sensor_frames(looks, p, q) &&
-           bvh_query_segment(scene->solid->tree, p, q, passes_alone, &query);
+    sight_query query = {scene, p, q, slot};
+    return sensor_reaches(looks, p, q) && sensor_frames(looks, p, q) && is_free(&query);
 }
 
 static bool sees_side(const visibility_scene *scene, const double p[3], size_t rank,
                       const sensor *looks) {
     const double *a = scene_corner(scene, rank, 0), *b = scene_corner(scene, rank, 1);
     const double *c = scene_corner(scene, rank, 2);
-    if (orient3d(a, b, c, p) <= 0 || !sensor_faces(looks, p, a, b, c))
+    if (scene_side(scene, rank, p) <= 0 || !sensor_faces(looks, p, a, b, c))
         return false;
     for (size_t k = 0; k < 3; k++)
         if (!sees_vertex(scene, p, scene->corners[3 * rank + k], looks))
