@@ -80,10 +80,6 @@ int bvh_covers_beside(const bvh *tree, uint32_t triangle, const double *const p[
  * k. Exact for closed meshes. */
 int bvh_winding_behind(const bvh *tree, uint32_t triangle, int k);
 
-/* Winding number of the mesh just before a triangle (on its outer side, near corner 0), which has
- * area and lies on no other. Exact for closed meshes. */
-int bvh_winding_before(const bvh *tree, uint32_t triangle);
-
 /* Calls visit with the position in `order` of every triangle in the leaves that the segment from p
  * to q may meet (a superset of those that it meets), until it returns false. Returns false exactly
  * if visit did. */

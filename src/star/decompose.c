@@ -85,7 +85,7 @@ static const starg_field OPTIONS[] = {
      .initial = 90000000,
      .value = "N",
      .help = "--prove: budget, counted in tests of a vertex against a box (about a microsecond "
-             "each); as much again where two pieces have to be excluded."},
+             "each)."},
     {.key = "balls",
      .option = "balls",
      .kind = STARG_FIELD_CHOICE,
@@ -372,8 +372,6 @@ static starg_status decompose_proven(starg_context *context, const starg_solid *
         own.guard_count = bound->count;
     }
     STARG_TRY(decompose_model(context, solid, NULL, &own, out));
-    STARG_TRY(piece_bound_raise(context, solid, options->prove_work, certified, (*out)->piece_count,
-                                bound));
     if (certified || (*out)->lower_bound < bound->bound)
         (*out)->lower_bound = bound->bound;
     (*out)->optimal = (*out)->lower_bound == (*out)->piece_count;

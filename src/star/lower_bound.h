@@ -12,11 +12,4 @@
 starg_status piece_bound_find(starg_context *context, const starg_solid *solid, uint64_t work,
                               bool certified, corner_guards *out);
 
-/* If two points see all corners, and a partition has more pieces than two: and the surface is
- * embedded: tries to prove that two are not enough (star/two_pieces.h), with as much work and in
- * the time that is left; `bound` and its certificate are then of that. Errors: MEMORY, CANCELLED.
- */
-starg_status piece_bound_raise(starg_context *context, const starg_solid *solid, uint64_t work,
-                               bool certified, size_t pieces, corner_guards *bound);
-
 #endif

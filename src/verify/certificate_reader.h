@@ -36,8 +36,4 @@ starg_status certificate_take_double(certificate_reader *r, double *value);
 /* Three of them, with a blank before each. */
 starg_status certificate_take_point(certificate_reader *r, double out[3]);
 
-/* The points and the tree of pairs, in the root twice (verify/two_pieces_read.c). Errors: FORMAT,
- * MEMORY. */
-starg_status certificate_read_pairs(certificate_reader *r, const verify_box *root);
-
 #endif

@@ -43,17 +43,6 @@ typedef struct everywhere_node {
                             these, and the price */
 } everywhere_node;
 
-/* Two boxes that guards of two pieces cannot both be in, and why: no point of box `number` is in
- * the model ('o'); no point of either is on the inner side of face `number` ('f'); all rays from
- * point `number` away from either box end on faces that the other guard does not see, in patches
- * that grow from the seeds ('p'). */
-typedef struct everywhere_pair {
-    verify_box box[2];
-    uint32_t number, seeds[2];
-    char kind;
-    size_t line; /* of the file */
-} everywhere_pair;
-
 struct starg_certificate {
     starg_context *context;
     size_t vertex_count, face_count;
@@ -73,12 +62,6 @@ struct starg_certificate {
     size_t node_count;
     STARG_ARRAY(uint64_t) numbers;
     size_t cell_line; /* of the file: where the first cell stands */
-
-    /* That two pieces are not enough, which needs no witnesses and no cells. */
-    bool pairs;
-    verify_box root;
-    STARG_ARRAY(double) points;          /* x 3 */
-    STARG_ARRAY(everywhere_pair) leaves; /* of the tree of pairs */
 };
 
 /* Finds the first reason that does not hold, in the order of the file; *cell is the number of its
@@ -121,10 +104,6 @@ bool verify_certificate_is_of(const starg_certificate *certificate, const verify
 /* Claims that the cells hold all of the model and that all reasons are right. Of `known` surface,
  * tree and scale are needed. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *known,
-                                const starg_certificate *certificate);
-
-/* Claims that no two guards of pieces are anywhere, of a certificate of pairs; likewise. */
-starg_status verify_claim_pairs(starg_verdict *verdict, const verify_facts *known,
                                 const starg_certificate *certificate);
 
 /* Claims that `claimed` follows as the bound, in these words. Errors: MEMORY, CANCELLED. */

@@ -38,27 +38,10 @@ done:
     return status;
 }
 
-/* Of two pieces: what guards of pieces have to see, and how few there are. */
-static starg_status read_pairs_question(certificate_reader *r) {
-    starg_status status = STARG_OK;
-    starg_certificate *own = r->own;
-    own->pairs = true;
-    own->target = STARG_TARGET_CORNERS;
-    own->range = INFINITY;
-    own->redundancy = 1;
-    own->bound = 3;
-    STARG_TRY(certificate_take_text(r, "pairs"));
-    STARG_TRY(certificate_end_line(r));
-done:
-    return status;
-}
-
 static starg_status read_question(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     STARG_TRY(certificate_take_text(r, "target "));
-    if (r->at < r->end && *r->at == 'p')
-        return read_pairs_question(r);
     char first = r->at < r->end ? *r->at : 'f';
     own->target = first == 'v'   ? STARG_TARGET_VERTICES
                   : first == 'c' ? STARG_TARGET_CORNERS
@@ -87,9 +70,9 @@ static starg_status read_head(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     STARG_TRY(certificate_take_text(r, "starguard-certificate "));
-    /* the first version has no cuts at given places and no odd sets, the second no pairs, the third
-       no parts */
-    if (!certificate_take(r, '1') && !certificate_take(r, '2') && !certificate_take(r, '3'))
+    /* the first version has no cuts at given places and no odd sets, the second no parts; the third
+       was of another kind of proof */
+    if (!certificate_take(r, '1') && !certificate_take(r, '2'))
         STARG_TRY(certificate_take_text(r, "4"));
     STARG_TRY(certificate_end_line(r));
     STARG_TRY(read_size(r, "vertices ", &own->vertex_count));
@@ -402,14 +385,10 @@ static starg_status read_all(certificate_reader *r) {
     verify_box root;
     STARG_TRY(read_head(r));
     STARG_TRY(read_root(r, &root));
-    if (r->own->pairs) {
-        STARG_TRY(certificate_read_pairs(r, &root));
-    } else {
-        STARG_TRY(read_witnesses(r));
-        STARG_TRY(read_rows(r));
-        STARG_TRY(read_cells(r, &root));
-        STARG_TRY(read_nodes(r));
-    }
+    STARG_TRY(read_witnesses(r));
+    STARG_TRY(read_rows(r));
+    STARG_TRY(read_cells(r, &root));
+    STARG_TRY(read_nodes(r));
     if (r->at < r->end)
         status = certificate_reject(r, "the file goes on where its end is expected");
 done:
@@ -443,8 +422,6 @@ void starg_certificate_free(starg_certificate *own) {
     starg_release(context, own->cells);
     STARG_ARRAY_FREE(context, &own->reasons);
     starg_release(context, own->nodes);
-    STARG_ARRAY_FREE(context, &own->points);
-    STARG_ARRAY_FREE(context, &own->leaves);
     STARG_ARRAY_FREE(context, &own->numbers);
     starg_release(context, own);
 }

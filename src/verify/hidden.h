@@ -60,14 +60,6 @@ bool verify_box_outside(verify_watch *watch);
 bool verify_box_hides(verify_watch *watch, starg_target kind, uint32_t target, double range,
                       const verify_reason *reason);
 
-/* Is no point of the box on the inner side of the face? */
-bool verify_box_behind(const verify_watch *watch, const verify_box *box, uint32_t face);
-
-/* Does each ray from x away from a point of the box surely meet a patch of faces that grows from
- * the seed, of which x is strictly on the inner side, and no point of the other box is? */
-bool verify_box_shades(verify_watch *watch, const verify_box *box, const double x[3], uint32_t seed,
-                       const verify_box *other);
-
 /* Do two faces have more in common than corners and edges at the same places (verify/embedded.c)?
  * Have they such a corner? Exact. */
 bool verify_faces_touch(const verify_surface *surface, uint32_t f, uint32_t g);
