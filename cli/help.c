@@ -7,6 +7,7 @@
 
 enum { WIDTH = 79, OPTION_INDENT = 24 };
 
+const char *const cli_summary = "fewest guards inside a solid, star-shaped pieces, shapes by both";
 const char *const cli_about_program =
     "Places the fewest guards inside a solid that together see its whole boundary (the art gallery "
     "problem in 3D), with exact visibility and a proven lower bound.";

@@ -8,6 +8,7 @@
 #include "commands.h"
 
 /* Texts about the program as a whole, for the help and the manual. */
+extern const char *const cli_summary;
 extern const char *const cli_about_program;
 extern const char *const cli_about_files;
 extern const char *const cli_first_steps; /* like the examples of a command */
@@ -30,5 +31,9 @@ void cli_help_command(FILE *stream, const cli_command *command);
 
 /* All commands and options as one JSON object (docs/formats.md). False when out of memory. */
 bool cli_help_json(FILE *stream);
+
+/* A file below share/ that tools/manual.py has made, as a text on the heap; NULL if there is none.
+ */
+char *cli_installed_text(const char *name);
 
 #endif

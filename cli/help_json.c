@@ -54,10 +54,27 @@ static json_t *options_json(const cli_command *command) {
     return list;
 }
 
+/* The words of the first operand, where it is one of some. */
+static json_t *operands_json(const cli_command *c) {
+    json_t *list = c->operand_word != NULL ? json_array() : NULL;
+    for (size_t i = 0; list != NULL && c->operand_word(i) != NULL; i++)
+        append(&list, json_string(c->operand_word(i)));
+    return list;
+}
+
 static json_t *command_json(const cli_command *c) {
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:b, s:o}", "name", c->name, "usage", c->usage,
-                     "summary", c->summary, "description", c->description, "examples", c->examples,
-                     "group", c->members != NULL, "options", options_json(c));
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:b, s:o*, s:o}", "name", c->name, "usage",
+                     c->usage, "summary", c->summary, "description", c->description, "examples",
+                     c->examples, "group", c->members != NULL, "words", operands_json(c), "options",
+                     options_json(c));
+}
+
+static json_t *exit_statuses_json(void) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < cli_exit_text_count; i++)
+        append(&list, json_pack("{s:i, s:s}", "status", (int)cli_exit_texts[i].status, "text",
+                                cli_exit_texts[i].text));
+    return list;
 }
 
 /* Appends the commands of a table; the members of a group follow it. */
@@ -72,9 +89,11 @@ static void append_commands(json_t **list, const cli_command *const *table) {
 bool cli_help_json(FILE *stream) {
     json_t *commands = json_array();
     append_commands(&commands, cli_commands);
-    json_t *table =
-        json_pack("{s:s, s:i, s:s, s:o, s:o}", "format", "starguard-help", "version", 1, "program",
-                  starg_version(), "commands", commands, "common_options", options_json(NULL));
+    json_t *table = json_pack(
+        "{s:s, s:i, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o}", "format", "starguard-help", "version",
+        1, "program", starg_version(), "summary", cli_summary, "about", cli_about_program, "files",
+        cli_about_files, "first_steps", cli_first_steps, "commands", commands, "common_options",
+        options_json(NULL), "exit_statuses", exit_statuses_json());
     bool written = table != NULL && json_dumpf(table, stream, JSON_INDENT(1)) == 0;
     if (written)
         fputc('\n', stream);
