@@ -16,8 +16,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "verify/context.h"
 #include "verify/everywhere.h"
+#include "verify/pieces.h"
 
 static bool is_answered_by_pieces(const starg_certificate *c) {
     return c->target == STARG_TARGET_CORNERS && isinf(c->range) && c->clearance == 0 &&

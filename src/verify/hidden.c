@@ -11,7 +11,7 @@
  * strictly on one side.
  *
  * Cost of a reason: the faces of a patch within the shaft, some 100 ns each. */
-#include "verify/hidden.h"
+#include "verify/everywhere.h"
 
 #include <math.h>
 

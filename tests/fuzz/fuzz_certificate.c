@@ -3,9 +3,9 @@
  * of cells that two guards see, whatever model it names: no bound above two is ever proven. */
 #include "starguard/solid.h"
 #include "support.h"
-#include "verify/claims.h"
 #include "verify/everywhere.h"
-#include "verify/measure.h"
+#include "verify/facts.h"
+#include "verify/surface.h"
 
 static shape make_u(void) {
     return shape_cells("#.#"

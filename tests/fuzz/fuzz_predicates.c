@@ -9,7 +9,7 @@
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "support.h"
-#include "verify/sensor.h"
+#include "verify/sight.h"
 #include "verify/signs.h"
 
 enum { POINTS = 6 };
