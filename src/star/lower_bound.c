@@ -6,7 +6,7 @@
  * around it once.
  *
  * Theorem: let a surface bound the solid that has the outside just before every point of its faces,
- * as embedded ones do, and others that touch themselves in vertices and edges (star/touching.h).
+ * as embedded ones do, and others that touch themselves in vertices and edges (star/decomposition.h).
  * Let f be a face of it and v a corner of f. Some guard g of a piece is strictly on the inner side
  * of f, and the segment from g to v meets the surface in v only. So there are at least as many
  * pieces as points are needed that see all such corners, wherever the points stand.
@@ -27,10 +27,9 @@
  * tried.
  *
  * Cost: that of starg_guard with `prove`. */
-#include "star/lower_bound.h"
+#include "star/decomposition.h"
 
 #include "core/context.h"
-#include "star/touching.h"
 
 static const char STAGE[] = "pieces";
 
