@@ -8,8 +8,7 @@
 #include <unistd.h>
 
 #include "commands.h"
-#include "help.h"
-#include "report.h"
+#include "session.h"
 
 static const char *const shells[] = {"bash", "zsh", "fish"};
 static const char *const scripts[] = {"bash-completion/completions/starguard",

@@ -4,13 +4,10 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "help.h"
-#include "model.h"
+#include "options.h"
 #include "ranks.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/version.h"
-#include "suggest.h"
 
 /* Ends a run that only printed text. */
 static int finish_text(void) {
