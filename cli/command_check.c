@@ -3,9 +3,7 @@
 #include <stdlib.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/check.h"
 #include "starguard/picture.h"
 

@@ -1,44 +1,81 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard completion: prints shell completion scripts. */
+/* starguard completion: prints shell completion scripts. tools/manual.py makes them, and the manual
+ * pages, from the table of commands; they lie where shells look for them below share/, which is
+ * beside the program's folder once it is installed, and inside of it where it is built. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
-#include "completion.h"
-#include "report.h"
+#include "session.h"
 
-static const char *const shells[] = {[CLI_BASH] = "bash", [CLI_ZSH] = "zsh", [CLI_FISH] = "fish"};
+static const char *const shells[] = {"bash", "zsh", "fish"};
+static const char *const scripts[] = {"bash-completion/completions/starguard",
+                                      "zsh/site-functions/_starguard",
+                                      "fish/vendor_completions.d/starguard.fish"};
 enum { SHELLS = sizeof shells / sizeof *shells };
 
 static const char *shell_word(size_t index) {
     return index < SHELLS ? shells[index] : NULL;
 }
 
+/* All of a file as a text on the heap, or NULL. */
+static char *read_text(const char *path) {
+    char *text = NULL, part[4096];
+    size_t size, got;
+    FILE *from = fopen(path, "rb"), *to = from != NULL ? open_memstream(&text, &size) : NULL;
+    while (to != NULL && (got = fread(part, 1, sizeof part, from)) > 0)
+        fwrite(part, 1, got, to);
+    const bool whole = to != NULL && !ferror(from) && !ferror(to);
+    if (from != NULL)
+        fclose(from);
+    if (to != NULL && (fclose(to) != 0 || !whole)) {
+        free(text);
+        text = NULL;
+    }
+    return text;
+}
+
+char *cli_installed_text(const char *name) {
+    static const char *const places[] = {"../share", "share"};
+    char program[4096], path[5000], *text = NULL;
+    ssize_t size = readlink("/proc/self/exe", program, sizeof program - 1);
+    while (size > 0 && program[size - 1] != '/')
+        size--;
+    for (size_t i = 0; size > 0 && i < 2 && text == NULL; i++) {
+        snprintf(path, sizeof path, "%.*s%s/%s", (int)size, program, places[i], name);
+        text = read_text(path);
+    }
+    if (text != NULL)
+        return text;
+    snprintf(path, sizeof path, "%s/%s", STARGUARD_SHARE, name);
+    return read_text(path);
+}
+
 static starg_status run(cli_session *session, void *values) {
     (void)values;
     const char *word = session->operands[0];
-    char *script = NULL;
-    size_t shell = 0, size;
+    size_t shell = 0;
     while (shell < SHELLS && strcmp(word, shells[shell]) != 0)
         shell++;
     if (shell == SHELLS)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "completion supports bash, zsh and fish, not '%.100s'", word);
-    FILE *stream = open_memstream(&script, &size);
-    if (stream == NULL)
-        return cli_fail_memory(session);
-    cli_completion_write(stream, (cli_shell)shell);
-    bool complete = fclose(stream) == 0;
-    if (complete && session->report != NULL) {
+    char *script = cli_installed_text(scripts[shell]);
+    if (script == NULL)
+        return cli_fail(session, STARG_ERROR_READ, "there is no %s in '%s' or beside this program",
+                        scripts[shell], STARGUARD_SHARE);
+    if (session->report != NULL) {
         cli_report_head(session, "starguard-completion", NULL, NULL);
         cli_put(session, session->report, "shell", json_string(word));
         cli_put(session, session->report, "script", json_string(script));
-    } else if (complete) {
+    } else {
         session->stdout_taken = true;
         fputs(script, stdout);
     }
     free(script);
-    return complete ? STARG_OK : cli_fail_memory(session);
+    return STARG_OK;
 }
 
 const cli_command cli_command_completion = {

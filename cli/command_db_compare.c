@@ -4,11 +4,8 @@
 #include <string.h>
 
 #include "commands.h"
-#include "csv.h"
 #include "database.h"
-#include "extensions.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/picture.h"
 
 typedef struct values {

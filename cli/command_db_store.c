@@ -2,8 +2,7 @@
 /* starguard db create, add, remove, list: manage the stored models. */
 #include "commands.h"
 #include "database.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 
 static void report_file(cli_session *session, const char *format) {
     cli_report_head(session, format, NULL, NULL);
@@ -193,4 +192,28 @@ const cli_command cli_command_db_list = {
                 "starguard db list shapes.db --json | jq -r '.models[].name'",
     CLI_OPERANDS(1, 1),
     .run = list,
+};
+
+/* starguard db: the group of database commands. */
+
+static const cli_command *const members[] = {
+    &cli_command_db_create, &cli_command_db_add,    &cli_command_db_remove,   &cli_command_db_list,
+    &cli_command_db_query,  &cli_command_db_matrix, &cli_command_db_evaluate, NULL,
+};
+
+const cli_command cli_command_db = {
+    .name = "db",
+    .usage = "COMMAND DB ... [options]",
+    .summary = "store shapes, find similar ones, evaluate retrieval",
+    .description =
+        "Stores signatures of models in an SQLite database (docs/formats.md), finds the models "
+        "most similar to a given one, and evaluates how well distances separate classes of shapes "
+        "(docs/retrieval.md). 'starguard db COMMAND --help' explains one command.",
+    .examples = "# make a database and find the models most similar to another one\n"
+                "starguard db create shapes.db\n"
+                "starguard db add shapes.db models/*.off\n"
+                "starguard db query shapes.db new.off -k 5\n"
+                "# evaluate retrieval by class (cat_1.off: class cat)\n"
+                "starguard db evaluate shapes.db --classes by-prefix",
+    .members = members,
 };

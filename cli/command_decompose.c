@@ -5,10 +5,8 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "model.h"
-#include "numbers.h"
-#include "report.h"
+#include "options.h"
+#include "session.h"
 #include "starguard/decompose.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"

@@ -6,9 +6,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/descriptor.h"
 #include "starguard/picture.h"
 

@@ -2,8 +2,7 @@
 /* starguard export: writes a model with its results to one file for other programs. */
 
 #include "commands.h"
-#include "extensions.h"
-#include "report.h"
+#include "session.h"
 #include "show.h"
 #include "starguard/scene.h"
 

@@ -5,15 +5,12 @@
 #include <unistd.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "model.h"
-#include "numbers.h"
-#include "report.h"
+#include "options.h"
 #include "scene.h"
+#include "session.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "starguard/skeleton.h"
-#include "suggest.h"
 
 static const struct {
     const char *word;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard kernel: decides whether a solid is star-shaped, and finds its kernel. */
 #include "commands.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/kernel.h"
 
 static const char *const verdict_words[] = {

@@ -2,8 +2,7 @@
 /* starguard match: computes the distance between two models. */
 #include "commands.h"
 #include "database.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 
 typedef struct values {
     int distance;

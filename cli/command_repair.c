@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard repair: turns a nearly closed mesh into a solid. */
 #include "commands.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/repair.h"
 
 typedef struct values {

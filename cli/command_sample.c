@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard sample: generates procedural solids. */
 #include "commands.h"
-#include "model.h"
-#include "report.h"
+#include "options.h"
+#include "session.h"
 #include "starguard/sample.h"
-#include "suggest.h"
 
 typedef struct values {
     const char *output;

@@ -4,9 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/picture.h"
 #include "starguard/skeleton.h"
 

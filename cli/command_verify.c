@@ -5,11 +5,9 @@
 #include <sys/stat.h>
 
 #include "commands.h"
-#include "model.h"
-#include "report.h"
 #include "scene.h"
+#include "session.h"
 #include "starguard/verify.h"
-#include "terminal.h"
 
 typedef struct values {
     bool verbose;

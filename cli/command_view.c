@@ -2,8 +2,7 @@
 /* starguard view: writes a page that shows results. */
 #include "commands.h"
 #include "database.h"
-#include "model.h"
-#include "report.h"
+#include "session.h"
 #include "show.h"
 
 typedef struct values {

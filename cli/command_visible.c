@@ -4,11 +4,9 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "model.h"
-#include "numbers.h"
-#include "report.h"
+#include "options.h"
 #include "scene.h"
+#include "session.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "starguard/visibility.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "csv.h"
+#include "database.h"
 
 #include <errno.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "report.h"
+#include "session.h"
 
 const char *const cli_distance_words[] = {
     [STARG_SIGNATURE_D2] = "d2",     [STARG_SIGNATURE_SHAPE_DNA] = "shape-dna",

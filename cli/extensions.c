@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "extensions.h"
+#include "session.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
 #include "commands.h"
-#include "outputs.h"
 
 bool cli_has_extension(const char *name, const char *extension) {
     size_t size = strlen(name), tail = strlen(extension);

@@ -4,14 +4,10 @@
 #include <string.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "help.h"
-#include "manual.h"
-#include "model.h"
+#include "options.h"
 #include "ranks.h"
-#include "report.h"
+#include "session.h"
 #include "starguard/version.h"
-#include "suggest.h"
 
 /* Ends a run that only printed text. */
 static int finish_text(void) {
@@ -94,6 +90,25 @@ static int print_table(int argc) {
     return finish_text();
 }
 
+/* The manual page of a command, or of the program (NULL): "db add" is in starguard-db-add.1. */
+static int print_manual(const cli_command *command) {
+    char file[128];
+    snprintf(file, sizeof file, "man/man1/starguard%s%s.1", command != NULL ? "-" : "",
+             command != NULL ? command->name : "");
+    for (char *c = file; *c != '\0'; c++)
+        if (*c == ' ')
+            *c = '-';
+    char *text = cli_installed_text(file);
+    if (text == NULL) {
+        fprintf(stderr, "starguard help: there is no %s in '%s' or beside this program\n", file,
+                STARGUARD_SHARE);
+        return CLI_EXIT_INPUT;
+    }
+    fputs(text, stdout);
+    free(text);
+    return finish_text();
+}
+
 /* help [--man] [COMMAND], help --json */
 static int print_help(int argc, char **argv) {
     const cli_command *command;
@@ -104,8 +119,8 @@ static int print_help(int argc, char **argv) {
     if (!find_topic(argc - manual, argv + manual, &command, &result))
         return result;
     if (manual)
-        cli_manual_page(stdout, command);
-    else if (command != NULL)
+        return print_manual(command);
+    if (command != NULL)
         cli_help_command(stdout, command);
     else
         cli_help_program(stdout);

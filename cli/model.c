@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "model.h"
+#include "session.h"
 
 #include <errno.h>
 #include <math.h>
@@ -8,8 +8,6 @@
 #include <sys/stat.h>
 
 #include "commands.h"
-#include "extensions.h"
-#include "report.h"
 #include "starguard/picture.h"
 
 static const uint8_t NEUTRAL[3] = {190, 195, 200};

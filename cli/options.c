@@ -2,13 +2,110 @@
 #include "options.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "numbers.h"
-#include "suggest.h"
+/* Decimal digits only; false for anything else and on overflow. */
+static bool cli_number_count(const char *word, uint64_t *value) {
+    uint64_t sum = 0;
+    if (*word == '\0')
+        return false;
+    for (; *word != '\0'; word++) {
+        if (*word < '0' || *word > '9')
+            return false;
+        uint64_t digit = (uint64_t)(*word - '0');
+        if (sum > (UINT64_MAX - digit) / 10)
+            return false;
+        sum = 10 * sum + digit;
+    }
+    *value = sum;
+    return true;
+}
+
+/* The program stays in the "C" locale, so strtod expects a decimal point. */
+static bool read_real(const char *word, size_t size, double *value) {
+    if (size == 0 || strspn(word, "+-.0123456789eE") < size)
+        return false;
+    char *end;
+    *value = strtod(word, &end);
+    return end == word + size && isfinite(*value);
+}
+
+bool cli_number_real(const char *word, double *value) {
+    return read_real(word, strlen(word), value);
+}
+
+/* `count` reals separated by commas. */
+static bool cli_number_list(const char *word, double *values, int count) {
+    for (int i = 0; i < count; i++) {
+        size_t size = strcspn(word, ",");
+        if (!read_real(word, size, &values[i]) || (word[size] == ',') != (i < count - 1))
+            return false;
+        word += size + 1;
+    }
+    return true;
+}
+
+double cli_percent(double fraction) {
+    double hundredths = floor(1e4 * fraction); /* the product is rounded and may be one off */
+    if ((hundredths + 1) / 1e4 <= fraction)
+        hundredths++;
+    else if (hundredths / 1e4 > fraction)
+        hundredths--;
+    return hundredths / 100;
+}
+
+/* Similarity is the optimal string alignment distance: insertions, deletions, substitutions and
+ * swaps of neighbours count one each. A name is similar enough if at most a third of it (at least
+ * one letter) differs, or if the word is its prefix. */
+
+enum { LONGEST = 48 };
+
+static size_t least(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+static size_t distance(const char *a, size_t a_size, const char *b, size_t b_size) {
+    uint8_t table[LONGEST + 1][LONGEST + 1];
+    for (size_t i = 0; i <= a_size; i++)
+        table[i][0] = (uint8_t)i;
+    for (size_t j = 0; j <= b_size; j++)
+        table[0][j] = (uint8_t)j;
+    for (size_t i = 1; i <= a_size; i++) {
+        for (size_t j = 1; j <= b_size; j++) {
+            size_t best = table[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            best = least(best, least(table[i - 1][j], table[i][j - 1]) + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                best = least(best, table[i - 2][j - 2] + 1);
+            table[i][j] = (uint8_t)best;
+        }
+    }
+    return table[a_size][b_size];
+}
+
+void cli_suggest_begin(cli_suggestion *suggestion, const char *word) {
+    *suggestion = (cli_suggestion){.word = word};
+}
+
+void cli_suggest_try(cli_suggestion *suggestion, const char *name) {
+    size_t word_size = strlen(suggestion->word), size = strlen(name);
+    if (word_size > LONGEST || size > LONGEST)
+        return;
+    size_t d = distance(suggestion->word, word_size, name, size);
+    size_t limit = size < 6 ? 1 + (size > 3) : size / 3;
+    if (word_size >= 2 && strncmp(suggestion->word, name, word_size) == 0)
+        d = least(d, 1);
+    if (d > limit || (suggestion->best != NULL && d >= suggestion->distance))
+        return;
+    suggestion->best = name;
+    suggestion->distance = d;
+}
+
+/* ---- the parser ---- */
 
 /* State of the parser. */
 typedef struct parser {

@@ -9,9 +9,34 @@
 #ifndef STARGUARD_CLI_OPTIONS_H
 #define STARGUARD_CLI_OPTIONS_H
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include "starguard/fields.h"
+
+/* Strict number parsing: the whole word or nothing. */
+
+/* A finite decimal number; no spaces, hexadecimal, "inf" or "nan". */
+bool cli_number_real(const char *word, double *value);
+
+/* A fraction in percent with two digits, rounded down, so that only 1 becomes 100; exact hundredths
+ * of a percent (within a double) keep their value. */
+double cli_percent(double fraction);
+
+/* Did you mean ...? Finds the name most similar to a mistyped word. */
+
+typedef struct cli_suggestion {
+    const char *word;
+    const char *best; /* NULL until a name is similar enough */
+    size_t distance;  /* of the best */
+} cli_suggestion;
+
+void cli_suggest_begin(cli_suggestion *suggestion, const char *word);
+
+/* Takes `name` if it is more similar than earlier ones; ties keep the first. */
+void cli_suggest_try(cli_suggestion *suggestion, const char *name);
 
 /* Rows with a NULL `option` are not options. */
 typedef starg_field cli_option;

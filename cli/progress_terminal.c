@@ -3,8 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "progress.h"
-#include "terminal.h"
+#include "session.h"
 
 enum { BAR = 28 };
 

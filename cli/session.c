@@ -5,13 +5,80 @@
 #include <limits.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "commands.h"
-#include "extensions.h"
 #include "ranks.h"
-#include "report.h"
-#include "terminal.h"
+
+bool cli_terminal(FILE *stream) {
+    const char *type = getenv("TERM");
+    return isatty(fileno(stream)) == 1 && type != NULL && strcmp(type, "dumb") != 0;
+}
+
+/* NO_COLOR counts if it is set and not empty (no-color.org). */
+static bool has_colors(FILE *stream) {
+    const char *refused = getenv("NO_COLOR");
+    return (refused == NULL || *refused == '\0') && cli_terminal(stream);
+}
+
+const char *cli_style_on(FILE *stream, cli_style style) {
+    static const char *const sequences[] = {"\033[1m", "\033[31m", "\033[32m", "\033[33m"};
+    return has_colors(stream) ? sequences[style] : "";
+}
+
+const char *cli_style_off(FILE *stream) {
+    return has_colors(stream) ? "\033[0m" : "";
+}
+
+static const double PATIENCE = 1.0; /* seconds before a stage gets a bar */
+static const double REDRAW = 0.1;
+
+double cli_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* NULL if there are too many stages: the excess is not timed and has no bar. */
+static cli_stage *find_stage(cli_progress *progress, const char *name) {
+    for (size_t i = 0; i < progress->count; i++)
+        if (strcmp(progress->stages[i].name, name) == 0)
+            return &progress->stages[i];
+    if (progress->count == CLI_STAGES)
+        return NULL;
+    cli_stage *stage = &progress->stages[progress->count++];
+    *stage = (cli_stage){.name = name};
+    return stage;
+}
+
+/* A starg_progress_fn; `user` is a cli_progress. Never cancels: signals do. */
+static bool cli_progress_report(void *user, const char *name, double fraction) {
+    cli_progress *progress = user;
+    cli_stage *stage = find_stage(progress, name);
+    if (stage == NULL)
+        return true;
+    double now = cli_clock();
+    if (fraction >= 1) {
+        cli_progress_erase(progress);
+        if (stage->running)
+            stage->seconds += now - stage->began;
+        stage->running = false;
+        return true;
+    }
+    if (!stage->running) {
+        stage->began = now;
+        stage->running = true;
+    }
+    bool due = now - stage->began >= PATIENCE && now - progress->drawn_at >= REDRAW;
+    if (progress->bar && due && fraction > 0) {
+        cli_progress_draw(progress, stage, fraction, now - stage->began);
+        progress->drawn_at = now;
+    }
+    return true;
+}
 
 typedef cli_common values;
 

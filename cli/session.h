@@ -6,15 +6,119 @@
 
 #include <jansson.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <sys/types.h>
 
 #include "options.h"
-#include "outputs.h"
-#include "progress.h"
+#include "starguard/bits.h"
 #include "starguard/context.h"
+#include "starguard/descriptor.h"
+#include "starguard/fields.h"
 #include "starguard/mesh.h"
 #include "starguard/solid.h"
+#include "starguard/tetra.h"
+
+/* Capabilities of a terminal. */
+
+typedef enum cli_style { CLI_BOLD, CLI_RED, CLI_GREEN, CLI_YELLOW } cli_style;
+
+/* Is `stream` a terminal with cursor movement? */
+bool cli_terminal(FILE *stream);
+
+/* The sequences that start and end a style; empty unless `stream` is a terminal and NO_COLOR is not
+ * set. */
+const char *cli_style_on(FILE *stream, cli_style style);
+const char *cli_style_off(FILE *stream);
+
+/* Progress of the library's stages: a bar, and the seconds of each stage. The bar is drawn on a
+ * terminal (progress_terminal.c), or by the page that runs this program (web/progress_page.c). */
+
+enum { CLI_STAGES = 32 };
+
+typedef struct cli_stage {
+    const char *name;
+    double seconds; /* of all its finished runs */
+    double began;   /* start of the current run */
+    bool running;
+} cli_stage;
+
+typedef struct cli_progress {
+    bool bar;   /* draw a bar */
+    bool drawn; /* a bar is visible now */
+    double drawn_at;
+    cli_stage stages[CLI_STAGES]; /* in the order of their first run */
+    size_t count;
+} cli_progress;
+
+/* Monotonic clock in seconds. */
+double cli_clock(void);
+
+/* Can anybody see a bar? */
+bool cli_progress_visible(void);
+
+/* Draws the bar of a stage that has run for `elapsed` seconds; 0 < fraction < 1. */
+void cli_progress_draw(cli_progress *progress, const cli_stage *stage, double fraction,
+                       double elapsed);
+
+/* Erases the bar, so that a line can be written. */
+void cli_progress_erase(cli_progress *progress);
+
+/* Output files of a run. Each is first written under another name beside its target; all are
+ * renamed together at the very end, so that a failing run changes nothing. */
+
+enum { CLI_OUTPUT_MESSAGE = 512 };
+
+/* Identity of a file, independent of its name. */
+typedef struct cli_file_id {
+    dev_t device;
+    ino_t inode;
+    bool known; /* it exists and is a regular file */
+} cli_file_id;
+
+typedef struct cli_output {
+    char *name;     /* as given by the user */
+    char *target;   /* the same with symbolic links followed */
+    char *staged;   /* where it is written first */
+    cli_file_id id; /* of the current target */
+    bool device;    /* the target is a device or a pipe: copied, not renamed */
+} cli_output;
+
+typedef struct cli_outputs {
+    cli_output *items;
+    size_t count, capacity;
+    char *folder;        /* created for outputs, and still empty; NULL if there is none */
+    cli_file_id *inputs; /* no output may replace these */
+    size_t input_count;
+    char message[CLI_OUTPUT_MESSAGE]; /* why the last call failed */
+    bool clash;                       /* the failure is an output that is an input */
+} cli_outputs;
+
+/* Announces an output before the work starts; fails if it cannot be written. Not for "-". */
+bool cli_outputs_add(cli_outputs *outputs, const char *name);
+
+/* Announces a folder for outputs: creates it if missing, and removes it if the run fails. At most
+ * one per run. */
+bool cli_outputs_add_folder(cli_outputs *outputs, const char *name);
+
+/* Registers a file that the run reads ("-": standard input); fails if it is an output. */
+bool cli_outputs_add_input(cli_outputs *outputs, const char *name);
+
+/* Is it one of the files that the run reads? */
+bool cli_outputs_reads(const cli_outputs *outputs, const char *name);
+
+/* Where to write the output announced as `name`; returns "-" and unknown names unchanged. */
+const char *cli_outputs_place(const cli_outputs *outputs, const char *name);
+
+/* Replaces names of staged files in a message by the user's names. */
+void cli_outputs_translate(const cli_outputs *outputs, char *message, size_t size);
+
+/* Moves all staged files to their targets. */
+bool cli_outputs_commit(cli_outputs *outputs);
+
+/* Removes what is staged and frees everything; also after commit. */
+void cli_outputs_discard(cli_outputs *outputs);
 
 typedef struct cli_command cli_command;
 
@@ -105,5 +209,112 @@ void cli_say(cli_session *session, const char *format, ...) __attribute__((forma
 
 /* Same on standard error whatever the options are. */
 void cli_warn(cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* --json: one object on standard output. docs/formats.md describes the keys. */
+
+/* Starts the report; all functions below do nothing without a report. */
+void cli_report_begin(cli_session *session);
+void cli_report_free(cli_session *session);
+
+/* Adds a key and takes over `value`; NULL means out of memory. */
+void cli_put(cli_session *session, json_t *object, const char *key, json_t *value);
+void cli_append(cli_session *session, json_t *array, json_t *value);
+
+/* Values. Invalid UTF-8 bytes in text are replaced; a real that is not finite becomes null. */
+json_t *cli_json_text(const char *text);
+json_t *cli_json_real(double value);
+json_t *cli_json_point(const double point[3]);
+
+/* "format", "version" and "model". */
+void cli_report_head(cli_session *session, const char *format, const char *file,
+                     const starg_mesh *mesh);
+
+/* The same in any object. */
+void cli_put_head(cli_session *session, json_t *object, const char *format, const char *file,
+                  const starg_mesh *mesh);
+
+/* Writes an object as the output announced as `name`. Errors: WRITE, MEMORY. */
+starg_status cli_report_write(cli_session *session, const json_t *object, const char *name);
+
+/* Takes over the members of the object in a text of the library; frees the text. */
+void cli_report_take(cli_session *session, char *text, size_t size);
+
+/* The members of a record that have keys, as an object; NULL when out of memory. */
+json_t *cli_json_record(cli_session *session, const starg_fields *fields, const void *record);
+
+/* Collects a log line of the library for "log". */
+void cli_report_log(cli_session *session, starg_log_level level, const char *message);
+
+/* Adds log, seconds and memory, and prints. Errors: WRITE, MEMORY. */
+starg_status cli_report_print(cli_session *session);
+
+/* Prints an error instead, unless a report has been printed. */
+void cli_report_error(cli_session *session, const starg_error *error, int exit_status);
+
+/* File extensions and their meaning. */
+
+/* An extension with its dot, and its meaning. */
+typedef struct cli_extension {
+    const char *text;
+    int format;
+} cli_extension;
+
+/* Ignores case. */
+bool cli_has_extension(const char *name, const char *extension);
+
+/* The format of an output by its file extension; `standard` for "-". Errors: ARGUMENT. */
+starg_status cli_format_by_extension(cli_session *session, const char *name,
+                                     const cli_extension *known, size_t count, int standard,
+                                     int *format);
+
+/* Refuses outputs of a command whose extension is that of another option or command, with advice;
+ * `values` is the struct of its options. What an option writes, says its value: "FILE.obj|.ply".
+ * Errors: ARGUMENT. */
+starg_status cli_check_extensions(cli_session *session, const char *values);
+
+/* Announces an output that must have the extension, for example ".ply"; NULL is allowed. */
+starg_status cli_announce_with_extension(cli_session *session, const char *option, const char *name,
+                                         const char *extension);
+
+/* Reads and writes models and coloured models for several commands. */
+
+/* Reads the first operand into the session, and starts the report with it. */
+starg_status cli_input_read(cli_session *session);
+
+/* Reads a surface or a tetrahedral mesh, recognized by content; the other one is NULL. */
+starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
+                            starg_tetmesh **tetmesh);
+
+/* Reads a model or its descriptor, recognized by content; the other one is NULL. */
+starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
+                                starg_descriptor **descriptor);
+
+/* The format of an output mesh by its file extension; OFF for "-". Errors: ARGUMENT. */
+starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);
+
+/* Writes a mesh with face colours (or NULL) to an announced output. */
+starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
+                            const uint8_t *colors, const char *name);
+
+/* Neutral colours for the faces of a mesh; NULL when out of memory. */
+uint8_t *cli_colors_create(const starg_mesh *mesh);
+
+/* Gives each face the colour of the first row of `seen` that contains it; leaves the others. */
+void cli_colors_by_viewer(uint8_t *colors, const starg_bits *seen);
+
+/* Areas of all faces as fractions of their sum; NULL when memory is out. */
+double *cli_area_fractions(const starg_mesh *mesh, size_t count);
+
+/* An array of the set columns of a row. */
+json_t *cli_json_row(cli_session *session, const starg_bits *bits, size_t row);
+
+/* An array of `count` indices. */
+json_t *cli_json_indices(cli_session *session, const uint32_t *indices, size_t count);
+
+/* "1 face" or "7 faces". */
+typedef struct cli_amount {
+    char text[64];
+} cli_amount;
+cli_amount cli_count_of(size_t count, const char *singular, const char *plural);
 
 #endif

@@ -7,8 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "extensions.h"
-#include "model.h"
+#include "session.h"
 #include "starguard/animation.h"
 #include "starguard/decompose.h"
 

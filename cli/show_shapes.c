@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 
 #include "commands.h"
-#include "csv.h"
-#include "numbers.h"
+#include "database.h"
+#include "options.h"
 #include "show.h"
 #include "starguard/picture.h"
 

@@ -2,7 +2,7 @@
 /* The bar in a page: the worker that runs this program gets the stage and its fraction. */
 #include <emscripten.h>
 
-#include "progress.h"
+#include "session.h"
 
 /* clang-format off */
 EM_JS(void, show_progress, (const char *stage, double fraction), {

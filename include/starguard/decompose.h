@@ -54,8 +54,7 @@ typedef struct starg_decompose_options {
      * however it is cut (lower_bound), in half of the time that the context allows; the search then
      * ends as soon as there are no more */
     bool prove;
-    uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each);
-                            as much again where two pieces have to be excluded */
+    uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
     starg_balls balls;   /* STRICT: map each piece to a ball */
 } starg_decompose_options;
 

@@ -80,10 +80,6 @@ int bvh_covers_beside(const bvh *tree, uint32_t triangle, const double *const p[
  * k. Exact for closed meshes. */
 int bvh_winding_behind(const bvh *tree, uint32_t triangle, int k);
 
-/* Winding number of the mesh just before a triangle (on its outer side, near corner 0), which has
- * area and lies on no other. Exact for closed meshes. */
-int bvh_winding_before(const bvh *tree, uint32_t triangle);
-
 /* Calls visit with the position in `order` of every triangle in the leaves that the segment from p
  * to q may meet (a superset of those that it meets), until it returns false. Returns false exactly
  * if visit did. */
@@ -99,5 +95,27 @@ uint32_t bvh_nearest_triangle(const bvh *tree, const double p[3])
 
 /* The point of the triangles nearest to p, rounded; p without triangles. */
 void bvh_nearest(const bvh *tree, const double p[3], double out[3]) STARG_PRIVATE(bvh_nearest);
+
+/* Generalized winding number: separates inside from outside even for surfaces with holes. */
+
+/* Far-field approximation of a node. */
+typedef struct winding_moment {
+    double center[3], normal[3]; /* weighted by area; sum of area vectors */
+    double radius;               /* of a ball about the centre that contains the node's triangles */
+} winding_moment;
+
+typedef struct winding_field {
+    const bvh *tree;         /* borrowed */
+    double origin[3], scale; /* moments are in units that give the surface about unit size */
+    winding_moment *moments; /* one per node */
+} winding_field;
+
+/* Errors: MEMORY. */
+starg_status winding_create(starg_context *context, const bvh *tree, winding_field *out);
+void winding_free(starg_context *context, winding_field *field);
+
+/* Signed solid angle of all triangles seen from p over 4 pi: 1 inside a closed outward surface, 0
+ * outside, fractional near holes. The approximation is off by about 0.01. */
+double winding_number(const winding_field *field, const double p[3]);
 
 #endif

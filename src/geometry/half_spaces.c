@@ -14,7 +14,7 @@
  *
  * Degrees everywhere: normals 2, offsets 3, factors at most 6, sums 9; coordinates of up to
  * MOST_BITS bits keep the sums within the limbs of `exact`. Cost: some microseconds. */
-#include "geometry/half_spaces.h"
+#include "geometry/linear_program.h"
 
 #include "geometry/exact.h"
 

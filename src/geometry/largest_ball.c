@@ -12,7 +12,7 @@
  *
  * Invariants: weights >= 0 up to rounding; the inverse is recomputed each time, so that errors do
  * not accumulate. Cost: some 200 operations per half-space added. */
-#include "geometry/largest_ball.h"
+#include "geometry/linear_program.h"
 
 #include <math.h>
 #include <string.h>

@@ -9,7 +9,7 @@
  * contributes one dipole at its centre: the sum of its area vectors over the squared distance.
  *
  * Cost: O(n) to build, O(log n) per point. */
-#include "geometry/winding.h"
+#include "geometry/bvh.h"
 
 #include <math.h>
 

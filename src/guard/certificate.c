@@ -17,11 +17,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "core/checksum.h"
 #include "core/file.h"
 #include "core/parallel.h"
 #include "guard/cell_tests.h"
-#include "guard/certificate_text.h"
 
 static const char STAGE[] = "certificate";
 
@@ -258,10 +259,60 @@ done:
 
 /* ---- the text ---- */
 
+/* A double as an integer and a power of two, after a character. */
+static void put_double(FILE *stream, char before, double x) {
+    int exponent;
+    long long whole = (long long)ldexp(frexp(x, &exponent), 53);
+    for (exponent -= 53; whole != 0 && whole % 2 == 0; exponent++)
+        whole /= 2;
+    fprintf(stream, "%c%lld:%d", before, whole, whole == 0 ? 0 : exponent);
+}
+
+/* The first lines: the version, and what identifies the model. */
+static void put_model(FILE *stream, int version, const starg_solid *solid) {
+    const starg_mesh *mesh = solid->mesh;
+    uint64_t sum = STARG_CHECKSUM_BEGIN;
+    for (size_t f = 0; f < mesh->face_count; f++)
+        sum = starg_checksum_face(sum, mesh->vertices, mesh->faces + 3 * f);
+    fprintf(stream, "starguard-certificate %d\nvertices %zu\nfaces %zu\nchecksum %016llx\n",
+            version, mesh->vertex_count, mesh->face_count, (unsigned long long)sum);
+}
+
+static void put_box(FILE *stream, const bvh_box *root) {
+    fprintf(stream, "root");
+    for (int k = 0; k < 3; k++)
+        put_double(stream, ' ', root->lower[k]);
+    for (int k = 0; k < 3; k++)
+        put_double(stream, ' ', root->upper[k]);
+    fprintf(stream, "\n");
+}
+
+typedef void put_all(FILE *stream, const void *what);
+
+/* *text (`size` bytes and a zero) becomes what `put` writes. */
+static starg_status write_text(starg_context *context, put_all *put, const void *what, char **text,
+                               size_t *size) {
+    starg_status status = STARG_OK;
+    char *bytes = NULL;
+    FILE *stream = open_memstream(&bytes, size);
+    if (stream != NULL)
+        put(stream, what);
+    bool whole = stream != NULL && !ferror(stream);
+    if (stream == NULL || fclose(stream) != 0 || !whole) {
+        status = starg_fail_memory(context, STAGE);
+        goto done;
+    }
+    STARG_NEW(context, STAGE, *text, *size + 1);
+    memcpy(*text, bytes, *size + 1);
+done:
+    free(bytes);
+    return status;
+}
+
 static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
                      const bvh_box *root, bool parted, size_t bound) {
     const starg_visibility_options *view = &options->visibility;
-    certificate_put_model(stream, parted ? 4 : 2, solid);
+    put_model(stream, parted ? 4 : 2, solid);
     fprintf(stream, "target %s\nrange",
             view->target == STARG_TARGET_VERTICES  ? "vertices"
             : view->target == STARG_TARGET_CORNERS ? "corners"
@@ -269,11 +320,11 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_o
     if (isinf(view->range))
         fprintf(stream, " none");
     else
-        certificate_put_double(stream, ' ', view->range);
+        put_double(stream, ' ', view->range);
     fprintf(stream, "\nclearance");
-    certificate_put_double(stream, ' ', options->clearance);
+    put_double(stream, ' ', options->clearance);
     fprintf(stream, "\nredundancy %u\nbound %zu\n", options->redundancy, bound);
-    certificate_put_root(stream, root);
+    put_box(stream, root);
 }
 
 /* A corner by its face and vertex. */
@@ -328,7 +379,7 @@ static void put_cut(FILE *stream, const search_cells *cells, const search_cell *
             axis = k;
     fprintf(stream, "%c", "xyz"[axis]);
     if (cell->trimmed)
-        certificate_put_double(stream, '@', lower->upper[axis]);
+        put_double(stream, '@', lower->upper[axis]);
 }
 
 static void put_cells(FILE *stream, const making *m) {
@@ -405,7 +456,7 @@ starg_status certificate_of_search(const search_scene *scene, const search_cells
     begin(&m);
     STARG_TRY(choose_cells(&m));
     STARG_TRY(find_all_reasons(&m));
-    STARG_TRY(certificate_write(scene->context, put_search, &m, &why->text, &why->size));
+    STARG_TRY(write_text(scene->context, put_search, &m, &why->text, &why->size));
 done:
     STARG_ARRAY_FREE(scene->context, &m.kept);
     starg_release(scene->context, m.reasons);
@@ -434,7 +485,7 @@ starg_status certificate_of_one(starg_context *context, const starg_solid *solid
                                 const starg_guard_options *options, uint32_t witness,
                                 guard_certificate *why) {
     const single s = {solid, options, witness};
-    return certificate_write(context, put_single, &s, &why->text, &why->size);
+    return write_text(context, put_single, &s, &why->text, &why->size);
 }
 
 starg_status starg_certificate_write(starg_context *context, const char *text, size_t size,

@@ -10,7 +10,7 @@
 
 #include "geometry/vec3.h"
 #include "morph/composition.h"
-#include "sphere/relax.h"
+#include "sphere/sphere.h"
 
 static const double ROUND = 0.05; /* weight of roundness */
 

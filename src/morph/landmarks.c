@@ -16,7 +16,7 @@
 #include <string.h>
 
 #include "geometry/vec3.h"
-#include "sphere/relax.h"
+#include "sphere/sphere.h"
 
 static const char STAGE[] = "landmarks";
 enum { ROUNDS = 400, PATIENCE = 12, SWEEPS = 3, HALVINGS = 5 };

@@ -3,7 +3,7 @@
 #ifndef STARG_MORPH_TRIPLETS_H
 #define STARG_MORPH_TRIPLETS_H
 
-#include "shape/sparse.h"
+#include "shape/spectrum.h"
 
 /* A matrix entry; duplicates are summed, both triangles are given. */
 typedef struct triplet {

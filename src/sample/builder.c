@@ -1,7 +1,68 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "sample/builder.h"
+#include "sample/solids.h"
+
+#include "core/memory.h"
+#include "core/rng.h"
 
 static const char STAGE[] = "sample";
+
+enum { FIRST_SLOTS = 1024 };
+
+/* The slot of `key`, or the free slot for it. */
+static size_t find_slot(const key_map *map, uint64_t key) {
+    size_t mask = map->slots - 1, slot = starg_hash64(key) & mask;
+    while (map->numbers[slot] != UINT32_MAX && map->keys[slot] != key)
+        slot = (slot + 1) & mask;
+    return slot;
+}
+
+static starg_status grow(starg_context *context, key_map *map) {
+    starg_status status = STARG_OK;
+    key_map larger = {.slots = map->slots ? 2 * map->slots : FIRST_SLOTS, .count = map->count};
+    STARG_NEW(context, STAGE, larger.keys, larger.slots);
+    STARG_NEW(context, STAGE, larger.numbers, larger.slots);
+    memset(larger.numbers, 0xff, larger.slots * sizeof *larger.numbers);
+    for (size_t i = 0; i < map->slots; i++) {
+        if (map->numbers[i] == UINT32_MAX)
+            continue;
+        size_t slot = find_slot(&larger, map->keys[i]);
+        larger.keys[slot] = map->keys[i];
+        larger.numbers[slot] = map->numbers[i];
+    }
+    key_map_free(context, map);
+    *map = larger;
+done:
+    if (status != STARG_OK)
+        key_map_free(context, &larger);
+    return status;
+}
+
+starg_status key_map_add(starg_context *context, key_map *map, uint64_t key, uint32_t *number,
+                         bool *added) {
+    if (2 * map->count >= map->slots) {
+        starg_status status = grow(context, map);
+        if (status != STARG_OK)
+            return status;
+    }
+    size_t slot = find_slot(map, key);
+    *added = map->numbers[slot] == UINT32_MAX;
+    if (*added) {
+        map->keys[slot] = key;
+        map->numbers[slot] = (uint32_t)map->count++;
+    }
+    *number = map->numbers[slot];
+    return STARG_OK;
+}
+
+uint32_t key_map_find(const key_map *map, uint64_t key) {
+    return map->slots == 0 ? UINT32_MAX : map->numbers[find_slot(map, key)];
+}
+
+void key_map_free(starg_context *context, key_map *map) {
+    starg_release(context, map->keys);
+    starg_release(context, map->numbers);
+    *map = (key_map){0};
+}
 
 starg_status builder_vertex(mesh_builder *builder, uint64_t key, const double position[3],
                             uint32_t *vertex) {

@@ -14,7 +14,6 @@
 #include <string.h>
 
 #include "core/rng.h"
-#include "sample/builder.h"
 #include "sample/solids.h"
 
 enum { UNIT_STEPS = 64, MOST_PARTS = 40 };

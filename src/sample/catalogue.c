@@ -4,7 +4,6 @@
 
 #include "core/context.h"
 #include "core/fields.h"
-#include "sample/figure.h"
 #include "sample/solids.h"
 #include "starguard/sample.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Builds figures: vertebrates from their tables, the octopus from one arm. */
-#include "sample/figure.h"
+#include "sample/solids.h"
 
 #include <math.h>
 

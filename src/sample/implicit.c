@@ -7,7 +7,7 @@
  * skipping a distant part does not change the value by a bit. All have Lipschitz constant 1, which
  * lets the mesher skip empty space. A carved part is the same union of its inside with the outside
  * of the rest. */
-#include "sample/implicit.h"
+#include "sample/solids.h"
 
 #include <math.h>
 

@@ -9,13 +9,7 @@
  * and a collapse never breaks them. */
 #include <math.h>
 
-#include "sample/builder.h"
-#include "sample/figure.h"
-#include "sample/isosurface.h"
-#include "sample/remesh.h"
-#include "sample/skin.h"
 #include "sample/solids.h"
-#include "sample/unfold.h"
 
 static const char STAGE[] = "sample";
 

@@ -15,7 +15,7 @@
  * discs meet along whole borders). A cut edge makes one vertex, identified by its ends.
  *
  * Cost: O(n) field values and look-ups for n cubes that the surface meets. */
-#include "sample/isosurface.h"
+#include "sample/solids.h"
 
 #include <math.h>
 

@@ -7,7 +7,6 @@
 #include <math.h>
 
 #include "geometry/vec3.h"
-#include "sample/builder.h"
 #include "sample/solids.h"
 
 enum { CORNERS = 12, FACES = 20, MAX_POINTS = CORNERS + FACES };

@@ -12,7 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "sample/builder.h"
 #include "sample/solids.h"
 
 enum { MAX_STRIPS = 16 };

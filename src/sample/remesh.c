@@ -14,7 +14,7 @@
  * does not exist; neither rotates a normal by much.
  *
  * Cost: O(n) per pass; the number of passes grows with the logarithm of the coarsening. */
-#include "sample/remesh.h"
+#include "sample/solids.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
  * their border, which is proportional to the thinner limb at its start. Weights depend only on the
  * place in the rest pose, so meshes of any resolution bend alike. Joint rotations are moderate, so
  * blending matrices loses little volume. Cost: O(vertices x parts). */
-#include "sample/skin.h"
+#include "sample/solids.h"
 
 #include <math.h>
 

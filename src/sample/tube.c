@@ -7,7 +7,6 @@
 #include <math.h>
 
 #include "geometry/vec3.h"
-#include "sample/builder.h"
 #include "sample/solids.h"
 
 static const double TURN = 6.28318530717958648;

@@ -7,7 +7,7 @@
  * positions are kept: on a very coarse mesh those may be the skinning's own.
  *
  * Cost: O(faces) per round; few rounds are needed, one for a mesh without folds. */
-#include "sample/unfold.h"
+#include "sample/solids.h"
 
 #include <math.h>
 

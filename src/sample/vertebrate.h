@@ -6,7 +6,7 @@
 #ifndef STARG_SAMPLE_VERTEBRATE_H
 #define STARG_SAMPLE_VERTEBRATE_H
 
-#include "sample/figure.h"
+#include "sample/solids.h"
 
 enum {
     BODY,
@@ -39,7 +39,7 @@ typedef struct vertebrate_part {
     double a[3], ra; /* a ball ... */
     double b[3], rb; /* ... and another, and their convex hull */
     double blend;
-    double flat[3], flatten; /* see implicit.h */
+    double flat[3], flatten; /* see solids.h */
 } vertebrate_part;
 
 typedef struct vertebrate {

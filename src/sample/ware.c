@@ -4,7 +4,7 @@
  * Problem: classes of things that differ within the class, in proportions and genus, unlike poses
  * of one figure. Each random number is a proportion; what changes the genus (handles, holes,
  * stretchers) goes round with the member's number, so that every family has all of it. */
-#include "sample/ware.h"
+#include "sample/solids.h"
 
 #include <math.h>
 

@@ -15,7 +15,6 @@
 
 #include "core/memory.h"
 #include "shape/database.h"
-#include "shape/database_files.h"
 
 enum { BATCH = 8 };
 

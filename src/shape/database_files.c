@@ -6,13 +6,12 @@
  * call's context for cancellation. It ignores the time limit, which would change what is stored.
  *
  * Cost: that of the signatures. */
-#include "shape/database_files.h"
+#include "shape/database.h"
 
 #include <stdlib.h>
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "shape/database.h"
 
 int database_by_digest(const void *a, const void *b) {
     return memcmp(a, b, sizeof(database_digest));

@@ -6,7 +6,6 @@
 #include "core/memory.h"
 #include "guard/cell_tests.h"
 #include "shape/database.h"
-#include "shape/database_files.h"
 #include "visibility/rows.h"
 
 /* The fixed parts of a job, and of a file in a reply. */

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 
 #include "shape/database.h"
-#include "shape/sketch.h"
+#include "shape/signature_kinds.h"
 
 typedef struct candidate {
     double distance; /* or its lower bound */

@@ -7,7 +7,6 @@
 
 #include "core/memory.h"
 #include "shape/database.h"
-#include "shape/sha256.h"
 
 static void clear_model(starg_context *context, starg_database_model *model) {
     starg_release(context, model->path);

@@ -8,7 +8,6 @@
  * Cost: that of reading all signatures when the table is made. */
 #include "shape/database.h"
 #include "shape/signature_kinds.h"
-#include "shape/sketch.h"
 
 const char DATABASE_SKETCHES[] =
     "CREATE TABLE sketch (kind TEXT NOT NULL, model INTEGER NOT NULL, version INTEGER NOT NULL,"

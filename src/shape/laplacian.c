@@ -10,7 +10,7 @@
  * needles to a tiny fraction of their squared longest edge keeps the sum semidefinite.
  *
  * Cost: O(faces). */
-#include "shape/laplacian.h"
+#include "shape/spectrum.h"
 
 #include <math.h>
 

@@ -10,7 +10,7 @@
  * Invariants: closed 2-manifolds of the same topology throughout, except for what repair drops.
  *
  * Cost: O(n log n), mostly simplification. */
-#include "shape/level.h"
+#include "shape/measures.h"
 
 #include "core/memory.h"
 #include "mesh/mesh.h"

@@ -3,7 +3,7 @@
  *
  * Which boundary triangles a ray meets is decided exactly, so no ray passes between two of them;
  * only the length is rounded. Cost: O(log n) per ray. */
-#include "shape/rays.h"
+#include "shape/measures.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* SHA-256 as in FIPS 180-4. The constants are the first 32 bits of the fractional parts of the
  * square roots (initial state) and cube roots (rounds) of the first primes. */
-#include "shape/sha256.h"
+#include "shape/database.h"
 
 #include <string.h>
 

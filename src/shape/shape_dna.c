@@ -13,7 +13,6 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "shape/laplacian.h"
 #include "shape/signature_kinds.h"
 #include "shape/spectrum.h"
 

@@ -4,6 +4,9 @@
 #ifndef STARG_SHAPE_SIGNATURE_KINDS_H
 #define STARG_SHAPE_SIGNATURE_KINDS_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "core/context.h"
 #include "starguard/descriptor.h"
 #include "starguard/shape.h"
@@ -26,7 +29,7 @@ typedef void signature_weigh(const double *numbers, double *out);
 enum { SIGNATURE_MOST_WEIGHTED = 512 };
 
 /* Either `compute` or `derive` makes the numbers, and either `compare` or `weigh` gives the
- * distance; the other one is NULL. Kinds that weigh have sketches (sketch.h), of sums over runs of
+ * distance; the other one is NULL. Kinds that weigh have sketches, of sums over runs of
  * `run` numbers; whoever changes weights or runs raises the version. */
 typedef struct signature_method {
     const char *name;
@@ -47,5 +50,28 @@ extern const signature_method signature_d2;
 extern const signature_method signature_shape_dna;
 extern const signature_method signature_star;
 extern const signature_method signature_paper;
+
+/* Sketches: a few numbers of a signature that bound its distance to others from below. */
+
+enum { SKETCH_MOST = 64 }; /* numbers, and an upper bound of their size at the end */
+
+typedef struct sketch {
+    size_t count;
+    float numbers[SKETCH_MOST];
+} sketch;
+
+/* Numbers of a kind's sketches; 0 if the kind has none. */
+size_t sketch_count(starg_signature_kind kind);
+
+/* The numbers have passed the kind's check. */
+void sketch_make(starg_signature_kind kind, const double *numbers, size_t count, sketch *out);
+
+/* At most the distance of the signatures; both sketches are of the kind. */
+double sketch_bound(starg_signature_kind kind, const sketch *a, const sketch *b);
+
+/* Stored form: floats, the least significant byte first. */
+enum { SKETCH_MOST_BYTES = 4 * SKETCH_MOST };
+void sketch_store(const sketch *from, uint8_t bytes[SKETCH_MOST_BYTES]);
+void sketch_load(const uint8_t *bytes, size_t count, sketch *out);
 
 #endif

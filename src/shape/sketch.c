@@ -19,12 +19,10 @@
  *
  * [FRM94] Faloutsos, Ranganathan, Manolopoulos: Fast subsequence matching in time-series databases,
  * SIGMOD 1994. */
-#include "shape/sketch.h"
+#include "shape/signature_kinds.h"
 
 #include <math.h>
 #include <string.h>
-
-#include "shape/signature_kinds.h"
 
 /* Sums of absolute values for which floats neither overflow nor lose more than their precision. */
 static const double SMALLEST = 1e-30, LARGEST = 1e30;

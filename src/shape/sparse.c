@@ -4,7 +4,7 @@
  *
  * Cost: determined by the fill-in, about 30 n to 60 n numbers for surfaces of n vertices; each
  * solve is linear in it. */
-#include "shape/sparse.h"
+#include "shape/spectrum.h"
 
 #include <suitesparse/amd.h>
 #include <suitesparse/ldl.h>

@@ -3,7 +3,7 @@
  *
  * Implicitly restarted Lanczos iterations (shape/lanczos.h) on M^1/2 (L + M)^-1 M^1/2, whose
  * largest eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is factorized once
- * (shape/sparse.h); each step costs one solve. The start vector is fixed, so that the result
+ * (shape/spectrum.h); each step costs one solve. The start vector is fixed, so that the result
  * depends only on the matrix.
  *
  * Cost: some 2 to 3 steps per eigenvalue. Each step is made orthogonal to all vectors kept: with

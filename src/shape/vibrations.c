@@ -9,14 +9,13 @@
  *
  * Invariants: eigenvalues are multiplied by the area, hence independent of scale. Cost: that of
  * spectrum.c. */
-#include "shape/vibrations.h"
+#include "shape/measures.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "shape/spectrum.h"
-#include "shape/wks.h"
 
 static const char STAGE[] = "vibrations";
 

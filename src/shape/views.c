@@ -10,7 +10,7 @@
  * rank, its distribution over the points.
  *
  * Invariants: a point depends only on the seed and its number. Cost: POINTS x DIRECTIONS rays. */
-#include "shape/views.h"
+#include "shape/measures.h"
 
 #include <math.h>
 #include <stdlib.h>

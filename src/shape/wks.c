@@ -20,7 +20,7 @@
  * weight.
  *
  * Cost: ENERGIES x (MODES x rows + a sort of the rows). */
-#include "shape/wks.h"
+#include "shape/spectrum.h"
 
 #include <math.h>
 #include <stdlib.h>

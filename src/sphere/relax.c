@@ -15,7 +15,7 @@
  * A vertex moves down the gradient in its tangent plane, by the longest of some halved steps that
  * lowers the energy of its triangles. Rounding never decides validity: the triangles at the new
  * place must pass the exact predicate. Cost: O(edges) a sweep. */
-#include "sphere/relax.h"
+#include "sphere/sphere.h"
 
 #include <math.h>
 

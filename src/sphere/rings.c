@@ -14,7 +14,7 @@
  *
  * Order: shortest merge first, so that protruding vertices stay long. Cost: O(degree^2) per removal
  * with its neighbourhood, O(log n) for the queue. */
-#include "sphere/rings.h"
+#include "sphere/sphere.h"
 
 #include <math.h>
 #include <string.h>

@@ -22,7 +22,6 @@
 
 #include "geometry/linear_program.h"
 #include "geometry/vec3.h"
-#include "sphere/relax.h"
 
 static const char STAGE[] = "sphere";
 enum { BASE = 4, LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40, HALVINGS = 40 };

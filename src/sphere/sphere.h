@@ -1,9 +1,71 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Spherical embeddings of surfaces of genus 0. */
+/* Maps of closed surfaces of genus 0 to the sphere. */
 #ifndef STARG_SPHERE_SPHERE_H
 #define STARG_SPHERE_SPHERE_H
 
-#include "sphere/rings.h"
+#include <stdbool.h>
+
+#include "core/memory.h"
+#include "mesh/mesh.h"
+
+/* A closed triangulated sphere with removable vertices. */
+
+/* The neighbours of a vertex, counter-clockwise seen from outside. */
+typedef STARG_ARRAY(uint32_t) ring;
+
+/* A vertex merged into `ring[0]`, and its neighbours at that time. */
+typedef struct ring_removal {
+    uint32_t vertex, count;
+    size_t ring; /* index of its first neighbour in rings->removed */
+} ring_removal;
+
+typedef struct rings {
+    starg_context *context;
+    const double *positions; /* of the mesh, borrowed */
+    size_t vertex_count, left;
+    ring *of;       /* per vertex; empty while removed */
+    uint32_t *mark; /* per vertex; all zero between calls */
+    ring removed;
+    STARG_ARRAY(ring_removal) removals;
+} rings;
+
+/* The mesh must be a connected, closed, oriented 2-manifold of genus 0 without isolated vertices,
+ * which is not checked; it is borrowed. Errors: MEMORY. */
+starg_status rings_create(starg_context *context, const starg_mesh *mesh, rings **out);
+void rings_free(rings *r);
+
+/* Limits of the reduction; NULL: it ends with a tetrahedron. */
+typedef struct rings_limits {
+    size_t least;             /* minimal number of vertices, at least 4 */
+    const uint8_t *kept;      /* per vertex: not removed; or NULL */
+    const double *directions; /* an embedding in the sphere that must stay valid; or NULL */
+} rings_limits;
+
+/* Removes vertices, short edges first, within the limits. Errors: MEMORY, CANCELLED. */
+starg_status rings_reduce(rings *r, const rings_limits *limits) STARG_PRIVATE(rings_reduce);
+
+/* Restores the last removed vertex. Errors: MEMORY. */
+starg_status rings_restore(rings *r);
+
+/* Relaxes an embedding of a triangulated sphere in the unit sphere. */
+
+typedef struct relaxation {
+    const rings *rings;
+    double *directions;    /* vertex_count x 3, of length about 1; changed in place */
+    const uint32_t *alive; /* the movable vertices, in the order of moving */
+    size_t alive_count;
+    const uint8_t *pinned; /* per vertex: fixed; NULL: none */
+    double floor;          /* squared length added to every edge of the surface */
+} relaxation;
+
+/* Moves each vertex downhill once. Its triangles stay positive, exactly. */
+void relax_sweep(const relaxation *relaxation);
+
+/* Is every triangle at a vertex positive as seen from outside? Exact. */
+bool relax_is_positive(const ring *around, const double *directions, const double at[3])
+    STARG_PRIVATE(relax_is_positive);
+
+/* Spherical embeddings of surfaces of genus 0. */
 
 /* A bijection between a surface and the sphere, given by the directions of its vertices: the
  * spherical triangles of the faces are all positive (exactly: det(a, b, c) > 0 in doubles) and

@@ -10,7 +10,7 @@
  * others are made by where cuts and guards are.
  *
  * Cost: linear, and sorting of the angles and the faces. Rounded; decides nothing. */
-#include "star/angles.h"
+#include "star/piece_faces.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +18,6 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
-#include "star/piece_faces.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces";

@@ -16,7 +16,7 @@
  * Stages for each piece: take its faces, aim, spread where that is needed, store, measure.
  * Invariant: every image is positive by the exact predicate. Cost: O(n log n); spreading:
  * sphere/sphere.c. */
-#include "star/balls.h"
+#include "star/decomposition.h"
 
 #include <math.h>
 #include <stdlib.h>

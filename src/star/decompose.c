@@ -6,14 +6,10 @@
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
-#include "star/angles.h"
-#include "star/balls.h"
 #include "star/decomposition.h"
-#include "star/lower_bound.h"
 #include "star/paper/paper.h"
+#include "star/piece_faces.h"
 #include "star/strict/strict.h"
-#include "star/touching.h"
-#include "star/united.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
 #include "visibility/parts.h"
@@ -85,7 +81,7 @@ static const starg_field OPTIONS[] = {
      .initial = 90000000,
      .value = "N",
      .help = "--prove: budget, counted in tests of a vertex against a box (about a microsecond "
-             "each); as much again where two pieces have to be excluded."},
+             "each)."},
     {.key = "balls",
      .option = "balls",
      .kind = STARG_FIELD_CHOICE,
@@ -169,45 +165,6 @@ static void remember(const starg_context *context, const starg_decompose_options
     d->options.guards = NULL;
     d->options.tetra.tetgen = NULL;
     d->seed = context->seed;
-}
-
-/* What every result has, once its pieces are final. */
-static starg_status complete(starg_context *context, const starg_decompose_options *options,
-                             starg_decomposition *out) {
-    out->flattest = tetmesh_flattest(out->mesh);
-    return balls_make(context, out, options->balls);
-}
-
-static starg_status drop_failed(starg_context *context, starg_status status,
-                                starg_decomposition **out) {
-    if (status != STARG_OK) {
-        starg_decomposition_free(context, *out);
-        *out = NULL;
-    }
-    return status;
-}
-
-starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
-                                     const starg_decompose_options *options,
-                                     starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    starg_decompose_options_default(&defaults);
-    if (options == NULL)
-        options = &defaults;
-    *out = NULL;
-    STARG_TRY(check_options(context, options));
-    if (options->prove)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a bound for pieces is proven for surfaces only; give the boundary of "
-                          "the tetrahedra as a surface");
-    STARG_TRY(run_mode(context, mesh, options, out));
-    (*out)->model_vertices = mesh->vertex_count;
-    (*out)->model_tetrahedra = mesh->count;
-    STARG_TRY(complete(context, options, *out));
-    remember(context, options, *out);
-done:
-    return drop_failed(context, status, out);
 }
 
 /* Fills a solid, or an open surface: one of the two is NULL. */
@@ -320,93 +277,122 @@ done:
     return status;
 }
 
-static starg_status decompose_model(starg_context *context, const starg_solid *solid,
-                                    const starg_mesh *surface,
-                                    const starg_decompose_options *options,
+/* What is asked for: one of the three models is given. */
+typedef struct request {
+    starg_context *context;
+    const starg_solid *solid;
+    const starg_mesh *surface; /* open */
+    const starg_tetmesh *tetmesh;
+    const starg_decompose_options *options; /* NULL: the usual ones */
+    bool certified;                         /* `bound` is to have a certificate */
+    corner_guards bound;                    /* found where it is to be proven */
+} request;
+
+static starg_status decompose_model(const request *r, const starg_decompose_options *options,
                                     starg_decomposition **out) {
     starg_status status = STARG_OK;
-    *out = NULL;
-    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
+    starg_context *context = r->context;
+    const starg_solid *solid = r->solid;
+    const bool strict = solid != NULL && options->mode == STARG_DECOMPOSE_STRICT;
+    if (r->tetmesh != NULL)
+        STARG_TRY(run_mode(context, r->tetmesh, options, out));
+    if (strict)
         STARG_TRY(decompose_surface(context, solid, options, out));
-    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && *out == NULL)
+    if (strict && *out == NULL)
         STARG_TRY(decompose_union(context, solid, options, out));
     if (*out == NULL)
-        STARG_TRY(decompose_filled(context, solid, surface, options, out));
-    const starg_mesh *model = solid != NULL ? solid->mesh : surface;
-    (*out)->model_vertices = solid != NULL ? solid->model_vertices : model->vertex_count;
-    (*out)->model_faces = model->face_count;
-    (*out)->model_tetrahedra = 0;
-    STARG_TRY(complete(context, options, *out));
-    if (solid != NULL && (*out)->tetra.surface_kept)
-        STARG_TRY(angles_tell_apart(context, model, *out));
-    remember(context, options, *out);
+        STARG_TRY(decompose_filled(context, solid, r->surface, options, out));
+    starg_decomposition *d = *out;
+    const starg_mesh *model = solid != NULL ? solid->mesh : r->surface;
+    d->model_vertices = solid != NULL   ? solid->model_vertices
+                        : model != NULL ? model->vertex_count
+                                        : r->tetmesh->vertex_count;
+    d->model_faces = model != NULL ? model->face_count : 0;
+    d->model_tetrahedra = model != NULL ? 0 : r->tetmesh->count;
+    d->flattest = tetmesh_flattest(d->mesh);
+    STARG_TRY(balls_make(context, d, options->balls));
+    if (solid != NULL && d->tetra.surface_kept)
+        STARG_TRY(angles_tell_apart(context, model, d));
+    remember(context, options, d);
 done:
-    return drop_failed(context, status, out);
+    return status;
 }
 
 /* Half of the time that is left is for the proof; did it end that? */
-static starg_status find_bound(starg_context *context, const starg_solid *solid,
-                               const starg_decompose_options *options, bool certified,
-                               corner_guards *out, bool *time_limited) {
+static starg_status find_bound(request *r, bool *time_limited) {
+    starg_context *context = r->context;
     const starg_deadline all = context->deadline;
     if (all.at > 0)
         context->deadline.at -= fmax(starg_seconds_left(context), 0) / 2;
-    starg_status status = piece_bound_find(context, solid, options->prove_work, certified, out);
+    starg_status status =
+        piece_bound_find(context, r->solid, r->options->prove_work, r->certified, &r->bound);
     *time_limited = starg_time_is_over(context);
     context->deadline.at = all.at;
     return status;
 }
 
-/* No fewer pieces are looked for than there can be; what sees all corners may see pieces. */
-static starg_status decompose_proven(starg_context *context, const starg_solid *solid,
-                                     const starg_decompose_options *options, bool certified,
-                                     corner_guards *bound, starg_decomposition **out) {
+/* The search ends at the proven bound; the points that see all corners are its first guards. */
+static starg_status decompose_proven(request *r, starg_decomposition **out) {
     starg_status status = STARG_OK;
-    starg_decompose_options own = *options;
+    starg_decompose_options own = *r->options;
+    const corner_guards *bound = &r->bound;
     bool time_limited;
-    STARG_TRY(find_bound(context, solid, options, certified, bound, &time_limited));
+    if (r->tetmesh != NULL)
+        return starg_fail(r->context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a bound for pieces is proven for surfaces only; give the boundary of "
+                          "the tetrahedra as a surface");
+    if (r->surface != NULL)
+        return starg_fail(r->context, STARG_ERROR_MESH, STAGE,
+                          "a bound for pieces is proven for closed surfaces only; close it with "
+                          "'starguard repair', or leave out the proof");
+    STARG_TRY(find_bound(r, &time_limited));
     if (own.max_pieces < bound->bound)
         own.max_pieces = bound->bound;
     if (own.guards == NULL) {
         own.guards = bound->positions;
         own.guard_count = bound->count;
     }
-    STARG_TRY(decompose_model(context, solid, NULL, &own, out));
-    STARG_TRY(piece_bound_raise(context, solid, options->prove_work, certified, (*out)->piece_count,
-                                bound));
-    if (certified || (*out)->lower_bound < bound->bound)
+    STARG_TRY(decompose_model(r, &own, out));
+    if (r->certified || (*out)->lower_bound < bound->bound)
         (*out)->lower_bound = bound->bound;
     (*out)->optimal = (*out)->lower_bound == (*out)->piece_count;
     (*out)->time_limited = (*out)->time_limited || time_limited;
-    remember(context, options, *out);
+    remember(r->context, r->options, *out);
+    if (r->certified && bound->certificate == NULL)
+        status = starg_fail_time(r->context, STAGE);
 done:
-    return drop_failed(context, status, out);
+    return status;
+}
+
+static starg_status decompose(request *r, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options usual;
+    starg_decompose_options_default(&usual);
+    if (r->options == NULL)
+        r->options = &usual;
+    *out = NULL;
+    STARG_TRY(check_options(r->context, r->options));
+    STARG_TRY(r->options->prove ? decompose_proven(r, out) : decompose_model(r, r->options, out));
+done:
+    if (status != STARG_OK) {
+        starg_decomposition_free(r->context, *out);
+        *out = NULL;
+    }
+    return status;
 }
 
 starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                              const starg_decompose_options *options, starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    corner_guards bound = {0};
-    starg_decompose_options_default(&defaults);
-    if (options == NULL)
-        options = &defaults;
-    *out = NULL;
-    STARG_TRY(check_options(context, options));
-    if (options->prove)
-        STARG_TRY(decompose_proven(context, solid, options, false, &bound, out));
-    else
-        STARG_TRY(decompose_model(context, solid, NULL, options, out));
-done:
-    corner_guards_free(context, &bound);
+    request r = {.context = context, .solid = solid, .options = options};
+    starg_status status = decompose(&r, out);
+    corner_guards_free(context, &r.bound);
     return status;
 }
 
 starg_status starg_decompose_certified(starg_context *context, const starg_solid *solid,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out, char **text, size_t *size) {
-    starg_status status = STARG_OK;
-    corner_guards bound = {0};
+    request r = {.context = context, .solid = solid, .options = options, .certified = true};
     *out = NULL;
     *text = NULL;
     *size = 0;
@@ -414,37 +400,26 @@ starg_status starg_decompose_certified(starg_context *context, const starg_solid
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate says why a bound for pieces holds, which is not asked "
                           "for; ask for a proof (prove)");
-    STARG_TRY(check_options(context, options));
-    STARG_TRY(decompose_proven(context, solid, options, true, &bound, out));
-    if (bound.certificate == NULL) {
-        starg_decomposition_free(context, *out);
-        *out = NULL;
-        status = starg_fail_time(context, STAGE);
-        goto done;
+    starg_status status = decompose(&r, out);
+    if (status == STARG_OK) {
+        *text = r.bound.certificate;
+        *size = r.bound.size;
+        r.bound.certificate = NULL;
     }
-    *text = bound.certificate;
-    *size = bound.size;
-    bound.certificate = NULL;
-done:
-    corner_guards_free(context, &bound);
+    corner_guards_free(context, &r.bound);
     return status;
+}
+
+starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
+                                     const starg_decompose_options *options,
+                                     starg_decomposition **out) {
+    request r = {.context = context, .tetmesh = mesh, .options = options};
+    return decompose(&r, out);
 }
 
 starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    starg_decompose_options_default(&defaults);
-    if (options == NULL)
-        options = &defaults;
-    *out = NULL;
-    STARG_TRY(check_options(context, options));
-    if (options->prove)
-        return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                          "a bound for pieces is proven for closed surfaces only; close it with "
-                          "'starguard repair', or leave out the proof");
-    STARG_TRY(decompose_model(context, NULL, surface, options, out));
-done:
-    return status;
+    request r = {.context = context, .surface = surface, .options = options};
+    return decompose(&r, out);
 }

@@ -10,7 +10,7 @@
  * (visibility/kernel.c): a ball, whose tetrahedra hang together by faces.
  *
  * Invariants: star is decided exactly; volumes, radii and areas are rounded sums in the order of
- * the mesh. Cost: O(n) and a sort of the inner faces between pieces; sight: star/sight.c. */
+ * the mesh. Cost: O(n) and a sort of the inner faces between pieces; sight: star/piece_faces.c. */
 #include "star/decomposition.h"
 
 #include <math.h>
@@ -19,7 +19,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
-#include "star/angles.h"
 #include "star/piece_faces.h"
 
 static const char STAGE[] = "pieces";

@@ -1,10 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The result of a star decomposition, whichever mode has found it. */
+/* Star decompositions: their files, and the steps of decompose.c. */
 #ifndef STARG_STAR_DECOMPOSITION_H
 #define STARG_STAR_DECOMPOSITION_H
 
 #include "core/fields.h"
+#include "geometry/bvh.h"
+#include "guard/corners.h"
+#include "mesh/solid.h"
 #include "starguard/decompose.h"
+#include "starguard/mesh.h"
+
+/* The result of a star decomposition, whichever mode has found it. */
 
 /* Words of starg_decompose_mode, by number; NULL behind the last. */
 extern const char *const decompose_mode_words[];
@@ -29,5 +35,52 @@ starg_status decomposition_finish(starg_context *context, starg_decompose_mode m
 
 /* Fills visible_vertices; the pieces are known. Errors: MEMORY, CANCELLED. */
 starg_status decomposition_find_sight(starg_context *context, starg_decomposition *d);
+
+/* Maps of star-shaped pieces to balls. */
+
+/* Fills what a decomposition holds of its maps to balls. Its pieces are star-shaped, and made of
+ * tetrahedra about their guards. Errors: SOLVER, MEMORY, CANCELLED. */
+starg_status balls_make(starg_context *context, starg_decomposition *d, starg_balls kind);
+
+/* Surfaces that touch themselves. */
+
+/* The faces of a solid with one vertex at each position (free with starg_release), or NULL when
+ * these intersect, lie on one another, have no area, or touch otherwise than in common vertices and
+ * edges. Errors: MEMORY, CANCELLED. */
+starg_status touching_weld(starg_context *context, const starg_solid *solid, uint32_t **faces);
+
+/* Does the surface have the outside just before every point of its faces, as an embedded one does?
+ * If it touches itself, that is known where touching_weld has a result. Errors: MEMORY, CANCELLED.
+ */
+starg_status touching_bounds(starg_context *context, const starg_solid *solid, bool *bounds);
+
+/* How few star-shaped pieces a solid can be cut into. */
+
+/* The bound of the guards holds for star-shaped pieces that make up the solid; 0: the time was over
+ * before there was any. `work` is that of starg_guard_options.prove_work. Errors: those of
+ * starg_guard but TIME, and MESH (the surface intersects itself, or touches otherwise than in
+ * vertices and edges). */
+starg_status piece_bound_find(starg_context *context, const starg_solid *solid, uint64_t work,
+                              bool certified, corner_guards *out);
+
+/* How far one surface is from another. */
+
+/* No point of `from` is farther than *out from the triangles of `to`, of which there are some; that
+ * is too much by no more than the larger of its half and rounding, nor than the step. `extent` is
+ * the size of the model. Errors: MEMORY, CANCELLED. */
+starg_status deviation_bound(starg_context *context, const starg_mesh *from, const bvh *to,
+                             double extent, double step, double *out);
+
+/* The solid that a surface encloses which intersects itself. */
+
+/* The solid bounded by the union. *out is NULL where the surface neither touches nor intersects
+ * itself and has no degenerate face, or, with a notice, where it cannot be cut at its
+ * intersections. Errors: MEMORY, CANCELLED, TIME. */
+starg_status united_make(starg_context *context, const starg_solid *solid, starg_solid **out);
+
+/* Tells in `out`, pieces of the union, which faces of the solid's surface are kept, and how far the
+ * rest is from the boundary. Errors: MEMORY, CANCELLED. */
+starg_status united_report(starg_context *context, const starg_solid *solid,
+                           const starg_solid *united, starg_decomposition *out);
 
 #endif

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "star/decomposition.h"
-#include "star/sight.h"
+#include "star/piece_faces.h"
 
 static const char STAGE[] = "sight";
 

@@ -13,7 +13,7 @@
  * there are depends on themselves alone; those whose bound is below the largest found are left out,
  * so that the result depends on no order of threads. Cost: look-ups of O(log n), a few for each
  * face where the surfaces coincide, at most area / step^2. */
-#include "star/deviation.h"
+#include "star/decomposition.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -6,7 +6,7 @@
  * around it once.
  *
  * Theorem: let a surface bound the solid that has the outside just before every point of its faces,
- * as embedded ones do, and others that touch themselves in vertices and edges (star/touching.h).
+ * as embedded ones do, and others that touch themselves in vertices and edges (star/decomposition.h).
  * Let f be a face of it and v a corner of f. Some guard g of a piece is strictly on the inner side
  * of f, and the segment from g to v meets the surface in v only. So there are at least as many
  * pieces as points are needed that see all such corners, wherever the points stand.
@@ -24,15 +24,12 @@
  *
  * Stages: the search over every point of the solid with corners as targets (guard/search.c) gives
  * the bound, its certificate, and points that see all corners, from which guards of pieces can be
- * tried. Where these are two, star/two_pieces.c may prove that two pieces are not enough.
+ * tried.
  *
  * Cost: that of starg_guard with `prove`. */
-#include "star/lower_bound.h"
+#include "star/decomposition.h"
 
 #include "core/context.h"
-#include "core/memory.h"
-#include "star/touching.h"
-#include "star/two_pieces.h"
 
 static const char STAGE[] = "pieces";
 
@@ -50,21 +47,4 @@ starg_status piece_bound_find(starg_context *context, const starg_solid *solid, 
     if (status == STARG_OK)
         status = corner_guards_find(context, solid, work, certified, out);
     return status == STARG_ERROR_TIME ? STARG_OK : status;
-}
-
-starg_status piece_bound_raise(starg_context *context, const starg_solid *solid, uint64_t work,
-                               bool certified, size_t pieces, corner_guards *bound) {
-    starg_status status = STARG_OK;
-    two_pieces two;
-    if (bound->bound != 2 || pieces <= 2 || !solid->check->embedded)
-        return STARG_OK;
-    STARG_TRY(two_pieces_exclude(context, solid, work, certified, &two));
-    if (!two.excluded)
-        return STARG_OK;
-    bound->bound = 3;
-    starg_release(context, bound->certificate);
-    bound->certificate = two.certificate;
-    bound->size = two.size;
-done:
-    return status;
 }

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The boundary faces of labelled sets of tetrahedra. */
+/* Tetrahedra with labels: their neighbours and faces, lines of sight through them, their angles. */
 #ifndef STARG_STAR_PIECE_FACES_H
 #define STARG_STAR_PIECE_FACES_H
 
 #include "core/memory.h"
+#include "core/private.h"
+#include "geometry/bvh.h"
+#include "starguard/decompose.h"
 #include "tetra/tetmesh.h"
 #include "visibility/kernel.h"
+
+/* The boundary faces of labelled sets of tetrahedra. */
 
 /* Faces first[p] to first[p + 1] - 1 bound piece p, counter-clockwise seen from outside of it. */
 typedef struct piece_faces {
@@ -20,9 +25,9 @@ starg_status piece_faces_create(starg_context *context, const starg_tetmesh *mes
                                 const int32_t *labels, size_t piece_count, piece_faces *out);
 void piece_faces_free(starg_context *context, piece_faces *faces);
 
-static inline kernel_faces piece_faces_of(const piece_faces *faces, size_t piece) {
-    return (kernel_faces){faces->vertices, faces->corners + 3 * faces->first[piece],
-                          faces->first[piece + 1] - faces->first[piece]};
+static inline kernel_faces piece_faces_of(const piece_faces *faces, size_t p) {
+    return (kernel_faces){faces->vertices, faces->corners + 3 * faces->first[p],
+                          faces->first[p + 1] - faces->first[p]};
 }
 
 /* The vertices of face `face` (4 x tetrahedron + vertex opposite), outward. */
@@ -36,7 +41,37 @@ typedef STARG_ARRAY(uint32_t) face_corners; /* three a face */
 /* Appends a face, unless the tetrahedron across it is in one of two pieces (or one, given twice).
  * Errors: MEMORY. */
 starg_status piece_faces_add(starg_context *context, const starg_tetmesh *mesh,
-                             const uint32_t *labels, size_t face, uint32_t piece, uint32_t other,
+                             const uint32_t *labels, size_t face, uint32_t own, uint32_t other,
                              face_corners *out);
+
+/* Sight inside of a tetrahedral mesh: its boundary alone blocks it. */
+
+typedef struct tet_sight {
+    uint32_t *faces; /* of the boundary, outward */
+    bvh *tree;       /* of them */
+} tet_sight;
+
+/* The mesh must outlive it; vertices inside may move. Errors: MEMORY. */
+starg_status tet_sight_create(starg_context *context, const starg_tetmesh *mesh, tet_sight *out)
+    STARG_PRIVATE(tet_sight_create);
+void tet_sight_free(starg_context *context, tet_sight *sight) STARG_PRIVATE(tet_sight_free);
+
+/* Is p strictly inside of the mesh? Exact. */
+bool tet_sight_contains(const tet_sight *sight, const double p[3]);
+
+/* Does the boundary leave the segment [p, q) free? Then p, strictly inside, sees q. Exact. */
+bool tet_sight_is_free(const tet_sight *sight, const double p[3], const double q[3]);
+
+/* How good the tetrahedra of a decomposition are. */
+
+/* The smallest dihedral angle of a tetrahedron, in degrees. The first corner is the origin. */
+double angles_smallest(const double corners[4][3]);
+
+/* Sets smallest_angle and median_angle. Errors: MEMORY. */
+starg_status angles_measure(starg_context *context, starg_decomposition *d);
+
+/* Sets smallest_angle_made, for the model whose surface was kept. Errors: MEMORY. */
+starg_status angles_tell_apart(starg_context *context, const starg_mesh *model,
+                               starg_decomposition *d);
 
 #endif

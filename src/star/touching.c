@@ -7,7 +7,7 @@
  * Method: vertices at equal positions become one; then every pair of faces must meet in what they
  * share. No face then meets another inside, so that the winding number is the same everywhere just
  * behind it. Exact. Cost: that of finding the pairs again, where the check has found contacts. */
-#include "star/touching.h"
+#include "star/decomposition.h"
 
 #include "core/memory.h"
 #include "mesh/contact.h"

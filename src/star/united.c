@@ -3,15 +3,14 @@
  * from which strict pieces are made. The pieces then have that boundary: faces of the
  * model that meet no others, exactly, parts of the others up to the rounding of new vertices, and
  * nothing of what lies inside. How far the one is from the other is bounded for all points, to a
- * thousandth of the diagonal (star/deviation.h). */
-#include "star/united.h"
+ * thousandth of the diagonal (star/decomposition.h). */
+#include "star/decomposition.h"
 
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
-#include "star/deviation.h"
 #include "starguard/repair.h"
 
 static const char STAGE[] = "pieces";

@@ -7,7 +7,6 @@
 #include <stdio.h>
 
 #include "mesh/mesh.h"
-#include "tetra/hollow.h"
 
 static const char STAGE[] = TETRA_STAGE;
 

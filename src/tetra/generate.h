@@ -1,11 +1,33 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The generators behind starg_tetmesh_from_solid. */
+/* Generators of tetrahedra. */
 #ifndef STARG_TETRA_GENERATE_H
 #define STARG_TETRA_GENERATE_H
 
-#include "geometry/winding.h"
+#include "core/context.h"
+#include "core/memory.h"
+#include "geometry/bvh.h"
+#include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "tetra/tetmesh.h"
+
+/* Runs another program, and makes private folders for its files. */
+
+/* Runs a program: `arguments` ends with NULL, the first is the program (looked up in the search
+ * path unless it contains a slash). It gets no input, its output is discarded, and it leaves no
+ * core file. It is stopped after `seconds` of processor time (rounded up to whole ones), and killed
+ * with its children at the context's time limit or on cancellation. Errors: SOLVER (not found,
+ * killed by a signal, status other than 0, too slow; the message says which), CANCELLED. */
+starg_status starg_process_run(starg_context *context, const char *stage,
+                               const char *const *arguments, double seconds);
+
+/* Makes a folder accessible to the user only, below TMPDIR or /tmp; *path is a block of the
+ * context. Errors: WRITE, MEMORY. */
+starg_status starg_scratch_create(starg_context *context, const char *stage, char **path);
+
+/* Removes the folder and its files, and frees the path; NULL is allowed. */
+void starg_scratch_remove(starg_context *context, char *path);
+
+/* The generators behind starg_tetmesh_from_solid. */
 
 #define TETRA_STAGE "tetrahedra"
 
@@ -38,5 +60,80 @@ starg_status tetra_measure_one_way(starg_context *context, const starg_mesh *fro
 starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
                            const starg_tetmesh *mesh, double step, double *to_surface,
                            double *from_surface);
+
+/* Decides whether a surface encloses nothing, whatever its size. */
+
+/* *hollow is true if the mesh is planar, or if its faces cancel: on any three positions, equally
+ * many have either orientation. Exact. Errors: MEMORY. */
+starg_status tetra_is_hollow(starg_context *context, const starg_mesh *mesh, bool *hollow);
+
+/* A body-centred cubic lattice around a solid: which points are inside, where the surface cuts
+ * edges, and the points moved onto the surface. */
+
+/* Points have integer coordinates in units of half a cube, all even (corners of cubes) or all odd
+ * (centres). An edge joins a point to the next of its kind along an axis (long), or to one of the
+ * eight nearest of the other kind (short). */
+typedef struct lattice_point {
+    int64_t x[3];
+} lattice_point;
+
+enum { LATTICE_EDGES = 14, LATTICE_OWNED = 7 };
+
+/* Steps to the neighbours; the first LATTICE_OWNED lead along edges that a point owns, the others
+ * are their opposites in the same order. Steps 0 to 2 of each half are long. */
+extern const int LATTICE_STEP[LATTICE_EDGES][3];
+
+typedef enum lattice_side { LATTICE_OUTSIDE = -1, LATTICE_ON = 0, LATTICE_INSIDE = 1 } lattice_side;
+
+/* Where the surface cuts an edge. A cut is dead once an end of its edge has moved onto the
+ * surface. */
+typedef struct lattice_cut {
+    double position[3];
+    uint32_t vertex; /* of the output mesh; UINT32_MAX: none yet */
+    bool alive;
+} lattice_cut;
+
+/* A point with an edge that the surface cuts. */
+typedef struct lattice_node {
+    lattice_point point;
+    double position[3]; /* moved if the point is on the surface */
+    lattice_cut cuts[LATTICE_OWNED];
+} lattice_node;
+
+typedef struct lattice {
+    starg_context *context;
+    const tetra_shape *shape;
+    double lower[3], upper[3]; /* box of the mesh: everything beyond is outside */
+    double origin[3], half;    /* position of point 0, half the side of a cube */
+    int64_t cubes[3];
+    size_t corners, points; /* numbers: corners first, then centres */
+    int16_t *winding;       /* of the surface about each point, within [-100, 100] */
+    int8_t *side;           /* lattice_side per point */
+    uint32_t *node;         /* per point: index into nodes, or UINT32_MAX */
+    STARG_ARRAY(lattice_node) nodes;
+    size_t inside; /* points inside */
+} lattice;
+
+/* Largest number of points; about 0.7 GB. */
+#define LATTICE_LIMIT ((size_t)1 << 26)
+
+/* Side of the cubes: `spacing`, or larger to respect LATTICE_LIMIT. */
+double lattice_spacing(const tetra_shape *shape, double spacing);
+
+/* Finds the inside points. Errors: MEMORY, CANCELLED. */
+starg_status lattice_create(starg_context *context, const tetra_shape *shape, double spacing,
+                            lattice *out);
+void lattice_free(lattice *l);
+
+/* Finds the cuts and warps points to cuts that are too close. Errors: MEMORY, CANCELLED. */
+starg_status lattice_cut_edges(lattice *l);
+void lattice_warp(lattice *l);
+
+/* Number of a point, or SIZE_MAX outside the lattice. */
+size_t lattice_number(const lattice *l, const lattice_point *p);
+void lattice_position(const lattice *l, const lattice_point *p, double out[3]);
+
+/* The cut on the edge between two neighbours, live or dead; NULL if there never was one. */
+lattice_cut *lattice_cut_between(const lattice *l, const lattice_point *p, const lattice_point *q);
 
 #endif

@@ -11,7 +11,7 @@
  *
  * Invariants: uses positions, not vertex numbers; both decisions are exact. Cost: O(faces log
  * faces). */
-#include "tetra/hollow.h"
+#include "tetra/generate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,6 @@
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "tetra/generate.h"
 
 static const double *corner(const starg_mesh *mesh, size_t i) {
     return mesh->vertices + 3 * (size_t)mesh->faces[i];

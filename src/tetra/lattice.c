@@ -13,7 +13,7 @@
  * Invariants: points at the border of the lattice are outside; an edge between an inside and an
  * outside point has a live cut. Cost: O(points) for the inside test, O(surface / spacing^2) for the
  * rest. */
-#include "tetra/lattice.h"
+#include "tetra/generate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +22,6 @@
 #include "geometry/intersect.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
-#include "tetra/generate.h"
 
 static const char STAGE[] = TETRA_STAGE;
 

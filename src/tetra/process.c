@@ -3,7 +3,7 @@
  * functions, since other threads of the parent may hold locks. It leads its own process group, so
  * that its children are killed with it, and terminal interrupts reach it only through the
  * parent. */
-#include "tetra/process.h"
+#include "tetra/generate.h"
 
 #include <dirent.h>
 #include <errno.h>

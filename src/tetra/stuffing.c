@@ -26,7 +26,6 @@
 #include "geometry/predicates.h"
 #include "mesh/mesh.h"
 #include "tetra/generate.h"
-#include "tetra/lattice.h"
 
 static const char STAGE[] = TETRA_STAGE;
 

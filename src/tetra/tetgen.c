@@ -19,7 +19,6 @@
 #include "mesh/mesh.h"
 #include "tetra/generate.h"
 #include "tetra/io.h"
-#include "tetra/process.h"
 
 static const char STAGE[] = TETRA_STAGE;
 

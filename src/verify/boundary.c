@@ -7,18 +7,16 @@
  *
  * Why this is enough together with the area of each shell: the boundary is closed (verify/facets.c)
  * and lies on the model, so on each shell it is an integer multiple of that shell: whatever covers
- * one face n times must cover its neighbour across an edge of two faces as often (verify/shells.h).
- * All faces are oriented like the model, so areas add up without cancelling, and the area shows
- * that the multiple is one.
+ * one face n times must cover its neighbour across an edge of two faces as often
+ * (verify/surface.h). All faces are oriented like the model, so areas add up without cancelling,
+ * and the area shows that the multiple is one.
  *
  * Cost: O(n log n). Signs do not depend on tolerances here; only "on" does. */
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/measure.h"
 #include "verify/pieces.h"
-#include "verify/shells.h"
-#include "verify/tree.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* relative to the diagonal, and of areas */

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "verify/context.h"
+#include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
 static const double PI_DEGREES = 180, DOUBT = 1e-9;

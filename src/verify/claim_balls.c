@@ -9,8 +9,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "verify/context.h"
-#include "verify/distortion.h"
+#include "verify/pieces.h"
 #include "verify/signs.h"
 
 static const char STAGE[] = "verify";

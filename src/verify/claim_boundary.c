@@ -5,7 +5,7 @@
  * points show (verify/enclosed.c). */
 #include <math.h>
 
-#include "verify/context.h"
+#include "verify/pieces.h"
 
 static const double TOLERANCE = 1e-9; /* relative */
 

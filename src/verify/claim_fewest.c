@@ -16,8 +16,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "verify/context.h"
 #include "verify/everywhere.h"
+#include "verify/pieces.h"
 
 static bool is_answered_by_pieces(const starg_certificate *c) {
     return c->target == STARG_TARGET_CORNERS && isinf(c->range) && c->clearance == 0 &&
@@ -54,9 +54,9 @@ static starg_status claim_question(const verify_context *own, const verify_facts
         difference = ": some of its witnesses are no corners of the faces that they name";
     else {
         STARG_TRY(verify_scene_create(own->model, known->tree, true, &scene));
-        if (!scene.embedded && !c->pairs)
+        if (!scene.embedded)
             STARG_TRY(verify_find_bounding(&scene, &bounds));
-        if (!bounds || (!scene.embedded && c->pairs))
+        if (!bounds)
             difference = ": the surface touches or intersects itself";
     }
     *good = difference == NULL;
@@ -80,14 +80,8 @@ static starg_status check_certificate(const verify_context *own) {
     if (!good)
         goto done;
     snprintf(claim, sizeof claim, "no fewer than %zu star-shaped pieces make up the model", bound);
-    if (own->certificate->pairs) {
-        STARG_TRY(verify_claim_pairs(own->verdict, &known, own->certificate));
-        verify_claim(own->verdict, bound <= own->certificate->bound,
-                     "%s: the certificate says that two do not", claim);
-    } else {
-        STARG_TRY(verify_claim_cells(own->verdict, &known, own->certificate));
-        STARG_TRY(verify_claim_follows(own->verdict, own->certificate, claim, bound));
-    }
+    STARG_TRY(verify_claim_cells(own->verdict, &known, own->certificate));
+    STARG_TRY(verify_claim_follows(own->verdict, own->certificate, claim, bound));
 done:
     verify_tree_free(tree);
     return status;

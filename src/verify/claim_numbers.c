@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/context.h"
+#include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
 

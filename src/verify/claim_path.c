@@ -4,14 +4,14 @@
  *
  * Its Bernstein coefficients, times 3, are sums of determinants of edges, some as they are at the
  * first key and some as at the second. Each is expanded in the coordinates and added up without
- * rounding (verify/exact_sum.h). All four positive: so is the polynomial. If only the inner ones
+ * rounding (verify/signs.h). All four positive: so is the polynomial. If only the inner ones
  * are not, the interval is halved, by sums alone. Coefficients that are positive by far in doubles
  * are not computed exactly. Cost: O(n) for each key. */
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/context.h"
-#include "verify/exact_sum.h"
+#include "verify/pieces.h"
+#include "verify/signs.h"
 
 static const char STAGE[] = "verify";
 static const double CLEAR = 1e-10; /* far above rounding, relative to the sum of magnitudes */

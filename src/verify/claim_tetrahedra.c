@@ -4,9 +4,9 @@
 #include <stdio.h>
 
 #include "core/memory.h"
-#include "verify/context.h"
-#include "verify/sets.h"
+#include "verify/pieces.h"
 #include "verify/signs.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

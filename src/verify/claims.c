@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "verify/claims.h"
+#include "verify/facts.h"
 
 #include <stdio.h>
 

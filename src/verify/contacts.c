@@ -4,8 +4,8 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/measure.h"
 #include "verify/pieces.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* relative */

@@ -21,9 +21,9 @@
 
 #include "core/memory.h"
 #include "verify/facts.h"
-#include "verify/measure.h"
 #include "verify/sight.h"
 #include "verify/signs.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

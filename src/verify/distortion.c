@@ -3,12 +3,12 @@
  * eigenvalue of the matrix times its transpose, and the smallest that of the inverse map. Matrices
  * of flat tetrahedra are quotients of exact sums: rounding may leave nothing of their determinants,
  * nor of their products. */
-#include "verify/distortion.h"
+#include "verify/pieces.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-#include "verify/exact_sum.h"
+#include "verify/signs.h"
 
 static const double TOLERANCE = 1e-6;
 static const double ROUNDING = 4e-15; /* of a determinant, over the product of its rows' lengths */

@@ -19,7 +19,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "verify/hidden.h"
+#include "verify/everywhere.h"
 #include "verify/signs.h"
 
 static const char STAGE[] = "verify";

@@ -11,7 +11,7 @@
 
 #include "core/rng.h"
 #include "verify/pieces.h"
-#include "verify/tree.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

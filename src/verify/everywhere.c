@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The claim that so many guards are needed, wherever they stand, against its certificate: it is of
  * this model and question; the result's guards see its witnesses; its cells hold the solid; each of
- * its reasons holds (verify/hidden.h); the bound follows (verify/everywhere_bound.c).
+ * its reasons holds (verify/everywhere.h); the bound follows (verify/everywhere_bound.c).
  *
  * Cells are checked in parallel, each on its own. Cost: see verify/hidden.c for each reason. */
 #include "verify/everywhere.h"
@@ -11,8 +11,8 @@
 
 #include "core/checksum.h"
 #include "core/parallel.h"
-#include "verify/claims.h"
-#include "verify/parts.h"
+#include "verify/facts.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

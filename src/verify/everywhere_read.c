@@ -3,11 +3,119 @@
  * line stand one blank apart. Declared counts are compared with the bytes that are left before any
  * memory is asked for. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-#include "verify/certificate_reader.h"
+#include "verify/everywhere.h"
+
+typedef struct certificate_reader {
+    starg_context *context;
+    const char *name;
+    const char *at, *end;
+    uint64_t line;
+    starg_certificate *own;
+} certificate_reader;
 
 static const char STAGE[] = "certificate";
+
+/* The words of a certificate. */
+
+enum { CANCEL_STEP = 1 << 16 };
+
+static starg_status certificate_reject(const certificate_reader *r, const char *what) {
+    uint64_t line = r->line;
+    return starg_fail_at(r->context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
+                         "'%.200s', line %llu: %s", r->name, (unsigned long long)line, what);
+}
+
+/* Goes past a character if it is the next one. */
+static bool certificate_take(certificate_reader *r, char c) {
+    bool taken = r->at < r->end && *r->at == c;
+    r->at += taken;
+    return taken;
+}
+
+static starg_status certificate_take_text(certificate_reader *r, const char *text) {
+    char message[64];
+    const char *at = r->at;
+    for (const char *c = text; *c != '\0'; c++, at++)
+        if (at == r->end || *at != *c) {
+            snprintf(message, sizeof message, "\"%s\" is expected here", text);
+            return certificate_reject(r, message);
+        }
+    r->at = at;
+    return STARG_OK;
+}
+
+static starg_status certificate_end_line(certificate_reader *r) {
+    if (!certificate_take(r, '\n'))
+        return certificate_reject(r, r->at == r->end
+                                         ? "the file ends within the line"
+                                         : "the line goes on where its end is expected");
+    r->line++;
+    if (r->line % CANCEL_STEP == 0)
+        return starg_check_cancel(r->context, STAGE);
+    return STARG_OK;
+}
+
+/* A whole number of at most `most`, without a sign and without needless zeros. */
+static starg_status certificate_take_number(certificate_reader *r, uint64_t most, uint64_t *value) {
+    const char *begin = r->at;
+    char message[128];
+    *value = 0;
+    while (r->at < r->end && *r->at >= '0' && *r->at <= '9' && r->at - begin < 19)
+        *value = 10 * *value + (uint64_t)(*r->at++ - '0');
+    if (r->at == begin || (*begin == '0' && r->at - begin > 1))
+        return certificate_reject(r, "a whole number is expected here");
+    if (*value > most) {
+        snprintf(message, sizeof message,
+                 "%llu is out of range: %llu is the most that may stand here",
+                 (unsigned long long)*value, (unsigned long long)most);
+        return certificate_reject(r, message);
+    }
+    return STARG_OK;
+}
+
+/* A number of things of at least `size` bytes each, which are still to come. */
+static starg_status certificate_take_count(certificate_reader *r, const char *word, size_t size,
+                                           size_t *count) {
+    starg_status status = STARG_OK;
+    uint64_t value;
+    STARG_TRY(certificate_take_text(r, word));
+    STARG_TRY(certificate_take_number(r, (uint64_t)(r->end - r->at) / size, &value));
+    *count = (size_t)value;
+    STARG_TRY(certificate_end_line(r));
+done:
+    return status;
+}
+
+/* M:K is M times 2 to the power of K. */
+static starg_status certificate_take_double(certificate_reader *r, double *value) {
+    starg_status status = STARG_OK;
+    uint64_t whole, power;
+    bool negative = certificate_take(r, '-');
+    STARG_TRY(certificate_take_number(r, UINT64_C(1) << 53, &whole));
+    STARG_TRY(certificate_take_text(r, ":"));
+    bool small = certificate_take(r, '-');
+    STARG_TRY(certificate_take_number(r, 1074, &power));
+    double size = ldexp((double)whole, small ? -(int)power : (int)power);
+    if (!(size < 1e100))
+        return certificate_reject(r, "numbers are below 1e100 in magnitude");
+    *value = negative ? -size : size;
+done:
+    return status;
+}
+
+/* Three of them, with a blank before each. */
+static starg_status certificate_take_point(certificate_reader *r, double out[3]) {
+    starg_status status = STARG_OK;
+    for (int k = 0; k < 3; k++) {
+        STARG_TRY(certificate_take_text(r, " "));
+        STARG_TRY(certificate_take_double(r, &out[k]));
+    }
+done:
+    return status;
+}
 
 /* ---- the head ---- */
 
@@ -38,27 +146,10 @@ done:
     return status;
 }
 
-/* Of two pieces: what guards of pieces have to see, and how few there are. */
-static starg_status read_pairs_question(certificate_reader *r) {
-    starg_status status = STARG_OK;
-    starg_certificate *own = r->own;
-    own->pairs = true;
-    own->target = STARG_TARGET_CORNERS;
-    own->range = INFINITY;
-    own->redundancy = 1;
-    own->bound = 3;
-    STARG_TRY(certificate_take_text(r, "pairs"));
-    STARG_TRY(certificate_end_line(r));
-done:
-    return status;
-}
-
 static starg_status read_question(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     STARG_TRY(certificate_take_text(r, "target "));
-    if (r->at < r->end && *r->at == 'p')
-        return read_pairs_question(r);
     char first = r->at < r->end ? *r->at : 'f';
     own->target = first == 'v'   ? STARG_TARGET_VERTICES
                   : first == 'c' ? STARG_TARGET_CORNERS
@@ -87,9 +178,9 @@ static starg_status read_head(certificate_reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     STARG_TRY(certificate_take_text(r, "starguard-certificate "));
-    /* the first version has no cuts at given places and no odd sets, the second no pairs, the third
-       no parts */
-    if (!certificate_take(r, '1') && !certificate_take(r, '2') && !certificate_take(r, '3'))
+    /* the first version has no cuts at given places and no odd sets, the second no parts; the third
+       was of another kind of proof */
+    if (!certificate_take(r, '1') && !certificate_take(r, '2'))
         STARG_TRY(certificate_take_text(r, "4"));
     STARG_TRY(certificate_end_line(r));
     STARG_TRY(read_size(r, "vertices ", &own->vertex_count));
@@ -402,14 +493,10 @@ static starg_status read_all(certificate_reader *r) {
     verify_box root;
     STARG_TRY(read_head(r));
     STARG_TRY(read_root(r, &root));
-    if (r->own->pairs) {
-        STARG_TRY(certificate_read_pairs(r, &root));
-    } else {
-        STARG_TRY(read_witnesses(r));
-        STARG_TRY(read_rows(r));
-        STARG_TRY(read_cells(r, &root));
-        STARG_TRY(read_nodes(r));
-    }
+    STARG_TRY(read_witnesses(r));
+    STARG_TRY(read_rows(r));
+    STARG_TRY(read_cells(r, &root));
+    STARG_TRY(read_nodes(r));
     if (r->at < r->end)
         status = certificate_reject(r, "the file goes on where its end is expected");
 done:
@@ -443,8 +530,75 @@ void starg_certificate_free(starg_certificate *own) {
     starg_release(context, own->cells);
     STARG_ARRAY_FREE(context, &own->reasons);
     starg_release(context, own->nodes);
-    STARG_ARRAY_FREE(context, &own->points);
-    STARG_ARRAY_FREE(context, &own->leaves);
     STARG_ARRAY_FREE(context, &own->numbers);
     starg_release(context, own);
+}
+
+/* The outline of a certificate: its witnesses, and the cells from which a guard may see its share
+ * of them. The prices are those of the first node; a proof that begins with a branch has none
+ * there, and all witnesses weigh the same. Of an odd set each witness weighs half. Nothing is
+ * checked. Cost: the witnesses of all leaves.
+ */
+
+typedef struct sharing {
+    const starg_certificate *own;
+    const everywhere_node *priced; /* NULL: all witnesses weigh the same */
+    starg_uint128 all;
+    starg_certificate_outline *out;
+} sharing;
+
+static void set_prices(sharing *s) {
+    const starg_certificate *own = s->own;
+    if (own->node_count > 0 && own->nodes[0].witness == UINT32_MAX)
+        s->priced = &own->nodes[0];
+    s->all = s->priced != NULL ? verify_least_paid(own, s->priced, own->redundancy)
+                               : (starg_uint128)own->witness_count * own->redundancy;
+}
+
+static bool keep_leaf(void *user, size_t cell, const uint64_t *open) {
+    sharing *s = user;
+    const verify_box *box = &s->own->cells[cell].box;
+    starg_uint128 sum = s->priced != NULL ? verify_paid(s->own, s->priced, open)
+                                          : starg_bit_count(open, s->own->words);
+    if (sum > 0 && sum * s->own->bound >= s->all) {
+        double *kept = s->out->cells + 6 * s->out->cell_count++;
+        memcpy(kept, box->lower, sizeof box->lower);
+        memcpy(kept + 3, box->upper, sizeof box->upper);
+    }
+    return true;
+}
+
+starg_status starg_certificate_outline_create(starg_context *context,
+                                              const starg_certificate *certificate,
+                                              starg_certificate_outline **out) {
+    starg_status status = STARG_OK;
+    const starg_certificate *own = certificate;
+    sharing s = {.own = own};
+    bool all;
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, s.out, 1);
+    s.out->vertex_count = own->vertex_count;
+    s.out->face_count = own->face_count;
+    s.out->target = own->target == STARG_TARGET_CORNERS ? STARG_TARGET_FACES : own->target;
+    s.out->bound = own->bound;
+    s.out->witness_count = own->witness_count;
+    STARG_NEW(context, STAGE, s.out->witnesses, own->witness_count);
+    if (own->witness_count > 0)
+        memcpy(s.out->witnesses, own->witnesses, own->witness_count * sizeof *own->witnesses);
+    STARG_NEW(context, STAGE, s.out->cells, 6 * own->cell_count);
+    set_prices(&s);
+    STARG_TRY(verify_visit_leaves(own, keep_leaf, &s, &all));
+    *out = s.out;
+    s.out = NULL;
+done:
+    starg_certificate_outline_free(context, s.out);
+    return status;
+}
+
+void starg_certificate_outline_free(starg_context *context, starg_certificate_outline *outline) {
+    if (outline == NULL)
+        return;
+    starg_release(context, outline->witnesses);
+    starg_release(context, outline->cells);
+    starg_release(context, outline);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "verify/exact_sum.h"
+#include "verify/signs.h"
 
 #include <math.h>
 #include <stdbool.h>

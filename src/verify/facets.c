@@ -6,7 +6,7 @@
  * Invariant: mates are mutual, and the sum of the facets without mates, as a chain of oriented
  * triangles, is the boundary of the sum of the tetrahedra. So it is closed (the boundary of a
  * boundary is zero), whatever the tetrahedra are. Cost: O(n). */
-#include "verify/facets.h"
+#include "verify/pieces.h"
 
 #include "core/memory.h"
 #include "core/rng.h"

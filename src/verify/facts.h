@@ -1,13 +1,37 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the guards of a result see, recomputed, and conclusions from it. */
+/* The verdict on guards: claims, and the facts that they are held against. */
 #ifndef STARG_VERIFY_FACTS_H
 #define STARG_VERIFY_FACTS_H
 
 #include "core/bits.h"
+#include "core/context.h"
 #include "starguard/verify.h"
 #include "verify/sight.h"
 #include "verify/surface.h"
-#include "verify/tree.h"
+
+/* A verdict under construction: a list of claims. */
+
+/* Limits on the claims of a verdict, and on those left unchecked. */
+enum { VERIFY_CLAIMS = 64, VERIFY_UNCHECKED = 32 };
+
+starg_status verify_verdict_create(starg_context *context, starg_verdict **out);
+
+/* Adds a claim: what was checked, and, if it does not hold, what was found. */
+void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Adds a claim that holds of all but `bad` elements, the first of which is named if there are any:
+ * "text (not: 3, the first is 17)". */
+void verify_claim_all(starg_verdict *verdict, size_t bad, size_t first, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* Adds a statement of the result that is not checked; the second one, that the verdict is about. */
+void verify_leave(starg_verdict *verdict, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void verify_leave_asked(starg_verdict *verdict, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* What the guards of a result see, recomputed, and conclusions from it. */
 
 typedef struct verify_facts {
     const verify_surface *surface;
@@ -94,7 +118,7 @@ starg_status verify_find_coverable(const verify_facts *known, size_t enough,
 /* Number of guards of the result, chosen among them, that are as good as all (verify/needed.c). */
 starg_status verify_find_needed(const verify_facts *known, size_t *needed);
 
-/* How many faces do two guards see that are the baseline apart (verify/baseline.c)? */
+/* How many faces do two guards see that are the baseline apart (verify/facts.c)? */
 size_t verify_count_paired(const verify_facts *known);
 
 /* Columns seen by fewer guards than redundancy requires (verify/redundancy.c). */
@@ -109,7 +133,7 @@ starg_status verify_find_lack(const verify_facts *known, verify_lack *found);
 /* The numbers of faces that at least 1, 2, ... and `most` guards see. Errors: MEMORY. */
 starg_status verify_count_often(const verify_facts *known, size_t most, size_t *often);
 
-/* Consistency of levels and guards (verify/levels.c). */
+/* Consistency of levels and guards (verify/guards.c). */
 typedef struct verify_levels {
     bool grow;   /* each has more vertices than the one before; the last has those of the model */
     bool kept;   /* guards that are kept were guards of the level before */
@@ -121,7 +145,5 @@ verify_levels verify_check_levels(const verify_facts *known);
 /* The claims of a result, in their order (verify/guards_*.c). Errors: MEMORY, CANCELLED, TIME. */
 starg_status verify_claim_places(starg_verdict *verdict, const verify_facts *known);
 starg_status verify_claim_coverage(starg_verdict *verdict, const verify_facts *known);
-starg_status verify_claim_count(starg_verdict *verdict, const verify_facts *known,
-                                const starg_certificate *certificate);
 
 #endif

@@ -3,9 +3,171 @@
  * compares the claims of the result with it, one by one. What can neither be shown nor refuted is
  * listed as not checked. */
 #include "core/memory.h"
-#include "verify/claims.h"
+#include "verify/everywhere.h"
 #include "verify/facts.h"
-#include "verify/space.h"
+#include "verify/sight.h"
+
+/* Claims about the number of guards, and bounds for it. A bound for candidates, which the result
+ * does not have, can only be refuted: by guards of the result that suffice (verify/needed.c). */
+
+/* A sufficient subset of the guards, which are candidates, refutes a larger lower bound. Not in
+ * files of morph --guards, where `count` is the number of guards: those must suffice in another
+ * shape, too. */
+static starg_status claim_bound(starg_verdict *verdict, const verify_facts *known,
+                                const starg_certificate *certificate) {
+    const starg_guards *guards = known->guards;
+    size_t needed = guards->count;
+    bool pairs = guards->options.candidates == STARG_CANDIDATES_GIVEN &&
+                 guards->options.candidate_count == guards->count;
+    starg_status status = pairs ? STARG_OK : verify_find_needed(known, &needed);
+    if (status != STARG_OK)
+        return status;
+    if (needed < guards->lower_bound && guards->lower_bound <= guards->count)
+        verify_claim(verdict, false,
+                     "the lower bound %zu is at most the number of guards that would do: %zu of "
+                     "the %zu guards do what was asked for",
+                     guards->lower_bound, needed, guards->count);
+    else
+        verify_claim(verdict, guards->lower_bound <= guards->count,
+                     "the lower bound %zu is at most the number of guards %zu", guards->lower_bound,
+                     guards->count);
+    bool follows = certificate != NULL && guards->lower_bound <= certificate->bound;
+    if (guards->lower_bound > 0 && !follows)
+        verify_leave(
+            verdict, "that no fewer than %zu%s candidates would do%s", guards->lower_bound,
+            guards->optimal ? " (\"optimal\")" : "",
+            pairs ? ", nor fewer of the guards: in results of morph they stand for two shapes"
+                  : "");
+    return STARG_OK;
+}
+
+static starg_status verify_claim_count(starg_verdict *verdict, const verify_facts *known,
+                                       const starg_certificate *certificate) {
+    starg_status status = STARG_OK;
+    const starg_guards *guards = known->guards;
+    verify_target goal = verify_target_of(known);
+    /* with fewer guards than required per face, none may suffice */
+    bool too_few =
+        guards->options.max_guards != 0 && guards->options.max_guards < guards->options.redundancy;
+    verify_claim(verdict, guards->count > 0 || goal.coverable == 0 || too_few,
+                 "there are guards (%zu), unless nothing can be seen", guards->count);
+    verify_claim(verdict, guards->count <= guards->candidate_count,
+                 "%zu guards are among %zu candidates", guards->count, guards->candidate_count);
+    if (guards->options.max_guards != 0)
+        verify_claim(verdict, guards->count <= guards->options.max_guards,
+                     "%zu guards are at most %zu", guards->count, guards->options.max_guards);
+    verify_leave(verdict, "that there were %zu candidates: they are not in the file",
+                 guards->candidate_count);
+    STARG_TRY(claim_bound(verdict, known, certificate));
+    bool equal = guards->lower_bound == guards->count;
+    verify_claim(verdict, guards->optimal == equal,
+                 "the result is called %s, with %zu guards and a lower bound of %zu",
+                 guards->optimal ? "optimal" : "not proven optimal", guards->count,
+                 guards->lower_bound);
+    if (guards->lower_bound_everywhere > 0)
+        verify_claim(
+            verdict,
+            guards->lower_bound_everywhere <= guards->lower_bound &&
+                guards->optimal_everywhere == (guards->lower_bound_everywhere == guards->count),
+            "the lower bound for guards anywhere, %zu, is at most that for candidates, and "
+            "the result is called %s",
+            guards->lower_bound_everywhere,
+            guards->optimal_everywhere ? "the fewest possible" : "not proven such");
+    if (certificate != NULL)
+        STARG_TRY(verify_claim_everywhere(verdict, known, certificate));
+    else if (guards->lower_bound_everywhere > 0)
+        verify_leave_asked(
+            verdict,
+            "that at least %zu guards are needed, wherever they stand: the certificate "
+            "would say why",
+            guards->lower_bound_everywhere);
+    double seen = verify_fraction(known->covered_area, known->total_area);
+    verify_claim(verdict, seen <= guards->area_bound * (1 + VERIFY_TOLERANCE),
+                 "the area seen, %.9g, is within its bound %.9g", seen, guards->area_bound);
+    if (guards->area_bound < 1)
+        verify_leave(verdict, "that so many candidates see at most a fraction of %.9g of the area",
+                     guards->area_bound);
+    if (guards->area_bound_everywhere > 0) {
+        verify_claim(verdict, seen <= guards->area_bound_everywhere * (1 + VERIFY_TOLERANCE),
+                     "the area seen, %.9g, is within the bound for guards anywhere, %.9g", seen,
+                     guards->area_bound_everywhere);
+        verify_leave_asked(
+            verdict,
+            "that so many guards see at most a fraction of %.9g of the area, wherever "
+            "they stand",
+            guards->area_bound_everywhere);
+    }
+done:
+    return status;
+}
+
+/* Checks levels of detail for consistency with one another, the model and the guards. Their meshes
+ * are not in the file, so what their guards see of them cannot be checked. Their guards are
+ * candidates of the model, and so inside it. A guard belongs to the first level that chose it, as
+ * long as all later ones choose it; refinement and baselines may add guards of the last level. */
+
+static bool is_among(const double p[3], const starg_guard_level *level) {
+    for (size_t i = 0; i < level->count; i++) {
+        const double *q = level->positions + 3 * i;
+        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
+            return true;
+    }
+    return false;
+}
+
+static bool is_inside(const verify_facts *known, const double p[3]) {
+    bool on_surface;
+    for (int k = 0; k < 3; k++)
+        if (known->surface->ambient == 0 &&
+            !(p[k] >= known->surface->lower[k] && p[k] <= known->surface->upper[k]))
+            return false;
+    int winding = verify_tree_winding(known->tree, p, &on_surface);
+    return !on_surface && winding + known->surface->ambient >= 1;
+}
+
+/* Is the guard listed in its level and in the finer ones? */
+static bool is_named(const starg_guards *guards, size_t guard) {
+    int level = guards->levels[guard];
+    if (level < 0 || (size_t)level >= guards->level_count)
+        return false;
+    bool may_add = guards->options.refine || guards->options.baseline > 0;
+    bool last = (size_t)level + 1 == guards->level_count;
+    for (size_t i = (size_t)level; i < guards->level_count && !(last && may_add); i++)
+        if (!is_among(guards->positions + 3 * guard, &guards->level_list[i]))
+            return false;
+    return true;
+}
+
+static bool are_kept(const starg_guard_level *level, const starg_guard_level *before) {
+    if (level->kept > level->count || level->kept > (before == NULL ? 0 : before->count))
+        return false;
+    for (size_t i = 0; i < level->kept; i++)
+        if (!is_among(level->positions + 3 * i, before))
+            return false;
+    return true;
+}
+
+verify_levels verify_check_levels(const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    verify_levels all = {true, true, true, true};
+    for (size_t i = 0; i < guards->level_count; i++) {
+        const starg_guard_level *level = &guards->level_list[i];
+        const starg_guard_level *before = i > 0 ? level - 1 : NULL;
+        all.grow = all.grow && (before == NULL || before->vertex_count < level->vertex_count);
+        all.kept = all.kept && are_kept(level, before);
+        for (size_t j = 0; j < level->count; j++)
+            all.inside = all.inside && is_inside(known, level->positions + 3 * j);
+    }
+    if (guards->level_count > 0) {
+        const starg_guard_level *last = &guards->level_list[guards->level_count - 1];
+        all.grow = all.grow && last->vertex_count == guards->vertex_count &&
+                   last->face_count == guards->face_count;
+    }
+    for (size_t g = 0; g < guards->count && guards->levels != NULL; g++)
+        all.named =
+            all.named && (guards->level_count > 0 ? is_named(guards, g) : guards->levels[g] == 0);
+    return all;
+}
 
 /* ---- claims about the input ---- */
 

@@ -6,7 +6,6 @@
 #include <stdio.h>
 
 #include "core/memory.h"
-#include "verify/claims.h"
 #include "verify/facts.h"
 
 static const char STAGE[] = "verify";

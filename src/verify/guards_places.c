@@ -2,11 +2,10 @@
 /* Claims about single guards: where they stand, and how much each sees. */
 #include <math.h>
 
-#include "verify/claims.h"
 #include "verify/facts.h"
-#include "verify/measure.h"
+#include "verify/sight.h"
 #include "verify/signs.h"
-#include "verify/space.h"
+#include "verify/surface.h"
 
 /* The guards that a claim does not hold for. */
 typedef struct exceptions {

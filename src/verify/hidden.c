@@ -11,7 +11,7 @@
  * strictly on one side.
  *
  * Cost of a reason: the faces of a patch within the shaft, some 100 ns each. */
-#include "verify/hidden.h"
+#include "verify/everywhere.h"
 
 #include <math.h>
 
@@ -31,8 +31,7 @@ typedef struct shaft {
     uint32_t vertex;
     const double *v;
     const verify_box *box;
-    const verify_box *behind; /* NULL, or a box with no point on the inner side of any face */
-    double corner[24];        /* of the box */
+    double corner[24]; /* of the box */
     outline lines[LINES];
     int line_count;
 } shaft;
@@ -233,7 +232,6 @@ static void make_shaft(const double v[3], uint32_t vertex, const verify_box *box
     s->vertex = vertex;
     s->v = v;
     s->box = box;
-    s->behind = NULL;
     s->line_count = 0;
     for (int i = 0; i < 8; i++)
         box_corner(box, i, s->corner + 3 * i);
@@ -286,8 +284,7 @@ static bool admits(const verify_watch *w, const shaft *s, uint32_t face, int sid
     const double *t[3];
     verify_corners(surface, face, t);
     return !has_corner(surface, face, s->vertex) && verify_side(t[0], t[1], t[2], s->v) == side &&
-           (kind == ENTRY || !face_meets_box(t, s->box)) &&
-           (s->behind == NULL || no_corner_is_inner(t, s->behind));
+           (kind == ENTRY || !face_meets_box(t, s->box));
 }
 
 static void begin_flood(verify_watch *w) {
@@ -534,59 +531,6 @@ bool verify_box_hides(verify_watch *w, starg_target kind, uint32_t target, doubl
     if (reason->clipped)
         clip(t, &w->box, &left);
     return hides_vertex(w, reason->clipped ? &left : &w->box, range, reason);
-}
-
-/* ---- shadows ---- */
-
-bool verify_box_behind(const verify_watch *w, const verify_box *box, uint32_t face) {
-    const double *t[3];
-    verify_corners(w->scene->surface, face, t);
-    return no_corner_is_inner(t, box);
-}
-
-/* Is c the sum of a and b, without rounding? */
-static bool is_sum(double a, double b, double c) {
-    return a + b == c && c - a == b && c - b == a;
-}
-
-/* The image of the box under g -> x + s (x - g), s being a power of two so large that all of the
- * image is outside of the bounds of the surface; false if it would be rounded. */
-static bool reflect(const verify_surface *surface, const verify_box *box, const double x[3],
-                    verify_box *image) {
-    double apart = 0, size = 0, scale = 1;
-    for (int k = 0; k < 3; k++) {
-        apart = fmax(apart, fmax(box->lower[k] - x[k], x[k] - box->upper[k]));
-        size = fmax(size, surface->upper[k] - surface->lower[k]);
-        if (!(surface->lower[k] <= x[k] && x[k] <= surface->upper[k]))
-            return false;
-    }
-    if (!(apart > 0))
-        return false;
-    while (scale * apart <= 2 * size && scale < 0x1p100)
-        scale *= 2;
-    for (int k = 0; k < 3; k++) {
-        const double low = x[k] - box->upper[k], high = x[k] - box->lower[k];
-        image->lower[k] = x[k] + scale * low;
-        image->upper[k] = x[k] + scale * high;
-        if (!is_sum(box->upper[k], low, x[k]) || !is_sum(box->lower[k], high, x[k]) ||
-            !is_sum(x[k], scale * low, image->lower[k]) ||
-            !is_sum(x[k], scale * high, image->upper[k]))
-            return false;
-    }
-    return true;
-}
-
-bool verify_box_shades(verify_watch *w, const verify_box *box, const double x[3], uint32_t seed,
-                       const verify_box *other) {
-    verify_box image;
-    shaft s;
-    const double *t[3];
-    if (seed >= w->scene->surface->face_count || !reflect(w->scene->surface, box, x, &image))
-        return false;
-    verify_corners(w->scene->surface, seed, t);
-    make_shaft(x, UINT32_MAX, &image, &s);
-    s.behind = other;
-    return verify_side(t[0], t[1], t[2], x) > 0 && patch_hides(w, &s, seed, PATCH);
 }
 
 bool verify_box_outside(verify_watch *w) {

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "verify/measure.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-6, WORST = 1000;

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* MAP.json as read for the verifier, and its claims. */
+/* MAP.json and reports of morphs as read for the verifier, and their claims. */
 #ifndef STARG_VERIFY_MAP_H
 #define STARG_VERIFY_MAP_H
 
 #include "starguard/verify.h"
-#include "verify/claims.h"
+#include "verify/facts.h"
 #include "verify/surface.h"
+
+/* MAP.json as read for the verifier, and its claims. */
 
 /* Points of a surface: a face each, and three weights of its corners. */
 typedef struct verify_places {
@@ -48,5 +50,18 @@ starg_status verify_claim_overlay(const verify_map *own);
  * not in the closed face. */
 bool verify_weights_in(const starg_mesh *mesh, const verify_places *places, size_t i,
                        const uint32_t corner[3], double w[3]);
+
+/* The report of a morph as read for the verifier. */
+
+typedef struct verify_frame {
+    double t, volume, area, volume_drift, area_drift;
+    size_t intersections;
+} verify_frame;
+
+struct starg_morph_report {
+    starg_context *context;
+    size_t frame_count;
+    verify_frame *frames;
+};
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "verify/measure.h"
+#include "verify/surface.h"
 
 #include <math.h>
 

@@ -5,17 +5,16 @@
  * The first frame is A if it is equal, face by face, or (with an overlay) lies on A, within a
  * billionth of the diagonal, and covers it once (verify/boundary.c). The last one is B in the same
  * way, or has its vertices on B. Crossings are counted exactly. Cost: O(n log n) for each frame. */
-#include "verify/morph.h"
+#include "verify/map.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "verify/claims.h"
-#include "verify/measure.h"
+#include "verify/facts.h"
 #include "verify/pieces.h"
 #include "verify/signs.h"
-#include "verify/tree.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9;

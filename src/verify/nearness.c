@@ -15,9 +15,8 @@
 #include "core/memory.h"
 #include "core/rng.h"
 #include "verify/pieces.h"
-#include "verify/shells.h"
 #include "verify/signs.h"
-#include "verify/tree.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

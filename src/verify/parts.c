@@ -14,12 +14,10 @@
  * each other, if they have vertices in common. */
 #include <stdlib.h>
 
-#include "verify/parts.h"
+#include "verify/surface.h"
 
 #include "core/memory.h"
-#include "verify/hidden.h"
-#include "verify/sets.h"
-#include "verify/shells.h"
+#include "verify/everywhere.h"
 
 static const char STAGE[] = "verify";
 

@@ -9,7 +9,7 @@
  *     one inside the model and zero outside: the tetrahedra fill it and do not overlap, and each
  *     belongs to one piece by its label.
  *  3. The walls of each piece are closed (verify/facets.c), its guard is strictly on the inner side
- *     of all of them, and they wind around it once (verify/certificate.c): the piece is star-shaped
+ *     of all of them, and they wind around it once (verify/claim_stars.c): the piece is star-shaped
  *     about its guard, which lies in the interior of its kernel.
  * Signs are exact. "On the model's surface" is within a billionth of the diagonal, so overlap is
  * ruled out but for a skin that thin. Edges that hang on the faces of others leave triangles alone
@@ -19,7 +19,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/context.h"
+#include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
 

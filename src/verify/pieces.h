@@ -1,12 +1,57 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A decomposition taken apart for verification, and what is found out about it. */
+/* Pieces as they are checked: labelled tetrahedra, their facets, and the claims about them. */
 #ifndef STARG_VERIFY_PIECES_H
 #define STARG_VERIFY_PIECES_H
 
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/context.h"
 #include "starguard/verify.h"
-#include "verify/facets.h"
-#include "verify/measure.h"
+#include "verify/facts.h"
 #include "verify/surface.h"
+
+/* Triangles of tetrahedra: those shared by two tetrahedra, and those of a single one. */
+
+#define VERIFY_NONE UINT32_MAX
+
+/* Limit on tetrahedra, so that facet numbers are below VERIFY_NONE. */
+#define VERIFY_TETRAHEDRA ((size_t)1 << 29)
+
+/* An invalid use of a triangle: how often, and the first two conflicting facets. */
+typedef struct verify_misuse {
+    size_t count;
+    uint32_t facet, other;
+} verify_misuse;
+
+/* Facet 4 t + i is the side of tetrahedron t opposite its corner i. */
+typedef struct verify_facets {
+    starg_context *context;
+    const uint32_t *tetrahedra;
+    size_t count;            /* of tetrahedra */
+    uint32_t *mate;          /* per facet: the other one of its triangle, or VERIFY_NONE */
+    verify_misuse third;     /* a triangle with more than two tetrahedra */
+    verify_misuse same_side; /* a triangle with two facets of the same orientation */
+} verify_facets;
+
+/* `tetrahedra` (count x 4) must outlive the facets. Errors: MEMORY, CANCELLED. */
+starg_status verify_facets_create(starg_context *context, const uint32_t *tetrahedra, size_t count,
+                                  verify_facets **out);
+void verify_facets_free(verify_facets *facets);
+
+/* The corners of a facet, counter-clockwise seen from outside of a positive tetrahedron. */
+static inline void verify_facet_corners(const uint32_t *tetrahedra, uint32_t facet,
+                                        uint32_t corners[3]) {
+    static const uint8_t opposite[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    for (int i = 0; i < 3; i++)
+        corners[i] = tetrahedra[(size_t)(facet & ~UINT32_C(3)) + opposite[facet % 4][i]];
+}
+
+/* The facets without a mate, ascending, and their triangles (count x 3). Errors: MEMORY. */
+starg_status verify_facets_outer(const verify_facets *facets, uint32_t **outer, uint32_t **faces,
+                                 size_t *count);
+
+/* A decomposition taken apart for verification, and what is found out about it. */
 
 /* Labels that are not 0 to pieces - 1, each in use. */
 typedef struct verify_labels {
@@ -18,7 +63,7 @@ typedef struct verify_labels {
 typedef struct verify_pieces {
     starg_context *context;
     const starg_pieces_mesh *mesh;
-    int scale; /* of the model (verify/measure.h)  */
+    int scale; /* of the model (verify/surface.h)  */
     verify_facets *facets;
     verify_surface *outer;  /* the boundary of all tetrahedra   */
     uint32_t *outer_facets; /* of each face of it               */
@@ -153,5 +198,72 @@ typedef struct verify_seen {
 /* Which vertices of its piece does each guard see past the boundary? Errors: MEMORY, CANCELLED. */
 starg_status verify_find_seen(const verify_pieces *pieces, const starg_pieces_report *report,
                               const verify_certificate *certificates, verify_seen *seen);
+
+/* The distortion of a linear map of a tetrahedron, found in another way than by the solver. */
+
+/* Sums over tetrahedra, initially zero. */
+typedef struct verify_distortion {
+    double worst, sum, above, all;
+    double worst_room, sum_room, above_room; /* how far rounding may move them */
+} verify_distortion;
+
+/* Adds a tetrahedron and its image; coordinates are multiplied by 2^scale first. */
+void verify_add_distortion(verify_distortion *own, const double *const from[4], int from_scale,
+                           const double *const to[4], int to_scale);
+
+/* Do two values agree, up to rounding, which grows as tetrahedra get flatter (`room`)? */
+int verify_near_distortion(double claimed, double found, double room);
+
+/* Verification context of a decomposition: the model, the report, and the claims to check. */
+
+typedef struct verify_context {
+    starg_context *context;
+    const starg_pieces_mesh *mesh;
+    const starg_pieces_report *report; /* or NULL */
+    const verify_surface *model;
+    size_t model_tetrahedra;     /* of a tetrahedral model, or 0 */
+    const verify_surface *solid; /* the same, closed and oriented; NULL: it is not closed */
+    const starg_certificate *certificate; /* of the report's lower bound, or NULL */
+    verify_pieces *pieces;
+    starg_verdict *verdict;
+} verify_context;
+
+/* Claims about the tetrahedra: positive, conforming, labelled, connected by piece. Errors: MEMORY,
+ * CANCELLED. */
+starg_status verify_claim_tetrahedra(const verify_context *own);
+
+/* The boundary and the volume are those of the model. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_boundary(const verify_context *own);
+
+/* The boundary does not cross itself and winds around its inside once, so that positive tetrahedra
+ * do not overlap. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_once(const verify_context *own);
+
+/* The report's numbers. Requires valid labels. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_numbers(const verify_context *own);
+
+/* Star-shapedness, and what guards see. Requires valid labels. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_stars(const verify_context *own);
+
+/* Dihedral angles. Errors: MEMORY. */
+starg_status verify_claim_angles(const verify_context *own);
+
+/* No fewer star-shaped pieces are possible. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_fewest(const verify_context *own);
+/* Maps of pieces to balls, if there are any. Errors: MEMORY. */
+starg_status verify_claim_balls(const verify_context *own);
+
+/* Between the keys of a map no tetrahedron is ever inverted. Errors: CANCELLED. */
+starg_status verify_claim_path(starg_context *context, const starg_solid_map *map,
+                               starg_verdict *verdict);
+
+/* ---- names of elements ---- */
+
+typedef struct verify_words {
+    char text[96];
+} verify_words;
+
+verify_words verify_facet_words(const verify_context *own, uint32_t facet);
+verify_words verify_outer_words(const verify_context *own, size_t face);
 
 #endif

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "verify/measure.h"
 #include "verify/pieces.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

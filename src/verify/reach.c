@@ -15,8 +15,8 @@
 #include "core/bits.h"
 #include "core/memory.h"
 #include "verify/facts.h"
-#include "verify/measure.h"
 #include "verify/signs.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

@@ -5,7 +5,7 @@
 
 #include "core/json.h"
 #include "core/memory.h"
-#include "verify/morph.h"
+#include "verify/map.h"
 
 static const char STAGE[] = "morph report";
 

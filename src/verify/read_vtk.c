@@ -19,7 +19,7 @@
 #include "core/locale.h"
 #include "core/memory.h"
 #include "starguard/verify.h"
-#include "verify/facets.h"
+#include "verify/pieces.h"
 
 static const char STAGE[] = "pieces file";
 

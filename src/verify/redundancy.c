@@ -12,7 +12,7 @@
 #include "core/memory.h"
 #include "core/rng.h"
 #include "verify/facts.h"
-#include "verify/measure.h"
+#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 

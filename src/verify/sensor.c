@@ -4,8 +4,8 @@
  * centroid. Far from the side a rounded comparison is enough. Otherwise the sign of the product is
  * found, and where both sides have the same one, their squares are compared: polynomials, written
  * out in products of up to eight doubles that a long accumulator adds without rounding (as in
- * verify/exact_sum.h, wider). */
-#include "verify/sensor.h"
+ * verify/signs.h, wider). */
+#include "verify/sight.h"
 
 #include <math.h>
 #include <stdint.h>

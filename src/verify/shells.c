@@ -3,11 +3,10 @@
  * second one becomes its partner, a third one invalidates the pair. Faces that touch only in a
  * vertex, or in an edge of more than two faces, stay separate: facts about one say nothing about
  * the other. Cost: O(n). */
-#include "verify/shells.h"
+#include "verify/surface.h"
 
 #include "core/memory.h"
 #include "core/rng.h"
-#include "verify/sets.h"
 
 static const char STAGE[] = "verify";
 

@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "verify/exact_sum.h"
-
 static bool same(const double a[3], const double b[3]) {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }

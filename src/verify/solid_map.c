@@ -12,8 +12,7 @@
 #include <stdio.h>
 
 #include "core/memory.h"
-#include "verify/context.h"
-#include "verify/distortion.h"
+#include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
 

@@ -4,12 +4,12 @@
  * Free is where the winding number, plus 1 where guards are outside, is at least 1.
  *
  * Cost: that of the surfaces. */
-#include "verify/space.h"
+#include "verify/sight.h"
 
 #include <string.h>
 
 #include "core/memory.h"
-#include "verify/exact_sum.h"
+#include "verify/signs.h"
 
 static const char STAGE[] = "verify";
 

@@ -15,8 +15,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "verify/exact_sum.h"
-#include "verify/sets.h"
 #include "verify/signs.h"
 
 static const char STAGE[] = "verify";

@@ -5,13 +5,12 @@
  *
  * Boxes are exact. Only the segment test against a box is rounded: it returns "apart" only if
  * certain. Cost: O(n log n) to build, typically O(log n) per query near a point. */
-#include "verify/tree.h"
+#include "verify/surface.h"
 
 #include <math.h>
 
 #include "core/memory.h"
 #include "core/rng.h"
-#include "verify/measure.h"
 #include "verify/signs.h"
 
 static const char STAGE[] = "verify";

@@ -9,7 +9,6 @@
 #include "core/rng.h"
 #include "verify/signs.h"
 #include "verify/surface.h"
-#include "verify/tree.h"
 
 enum { RNG_STAGE = 0x77696e64 };
 

@@ -25,7 +25,6 @@
 #include "core/memory.h"
 #include "core/rng.h"
 #include "geometry/bvh.h"
-#include "geometry/half_spaces.h"
 #include "geometry/linear_program.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"

@@ -120,7 +120,7 @@ class Schemas(support.Case):
 
     OPTIONAL = {"levels", "flattest_given", "direction", "area_bound", "coarsest", "step",
                 "significance", "refine", "prove", "prove_work", "max_nodes", "refine_lines", "seed",
-                "peak_resident_bytes", "report", "map", "letter", "separate", "cells", "witnesses",
+                "peak_resident_bytes", "report", "map", "letter", "words", "separate", "cells", "witnesses",
                 "work", "landmark_pairs", "directions", "target_directions", "overlay_points",
                 "overlay_faces", "overlay", "lower_bound_everywhere", "optimal_everywhere",
                 "area_bound_everywhere"}

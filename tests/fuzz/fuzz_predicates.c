@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every exact decision against rationals, on points of any doubles: those of the engines
- * (geometry/predicates.h, intersect.h, half_spaces.h) and those of the verifier (verify/signs.h).
+ * (geometry/predicates.h, intersect.h, linear_program.h) and those of the verifier (verify/signs.h).
  */
 #include <string.h>
 
 #include "exact_oracle.h"
-#include "geometry/half_spaces.h"
 #include "geometry/intersect.h"
+#include "geometry/linear_program.h"
 #include "geometry/predicates.h"
 #include "support.h"
-#include "verify/sensor.h"
+#include "verify/sight.h"
 #include "verify/signs.h"
 
 enum { POINTS = 6 };

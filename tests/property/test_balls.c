@@ -12,7 +12,7 @@
 #include "starguard/decompose.h"
 #include "starguard/sample.h"
 #include "starguard/verify.h"
-#include "verify/distortion.h"
+#include "verify/pieces.h"
 
 /* det(a, b, c) in rational numbers. */
 static void slow_determinant(mpq_t out, const double *a, const double *b, const double *c) {

@@ -11,9 +11,9 @@
 #include "core/rng.h"
 #include "guard/bound.h"
 #include "models.h"
-#include "verify/claims.h"
 #include "verify/everywhere.h"
-#include "verify/measure.h"
+#include "verify/facts.h"
+#include "verify/surface.h"
 
 enum { DAMAGED = 10000 };
 

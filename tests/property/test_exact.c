@@ -8,7 +8,7 @@
 #include "adversarial.h"
 #include "exact_oracle.h"
 #include "geometry/exact.h"
-#include "geometry/half_spaces.h"
+#include "geometry/linear_program.h"
 #include "support.h"
 
 enum { POINTS = 12, VALUES = 3 * POINTS, MOST_BITS = 800 };

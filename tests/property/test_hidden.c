@@ -10,7 +10,7 @@
 #include "core/bits.h"
 #include "models.h"
 #include "starguard/visibility.h"
-#include "verify/hidden.h"
+#include "verify/everywhere.h"
 #include "visibility/box.h"
 
 enum { POINTS = 12 };

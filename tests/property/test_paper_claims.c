@@ -17,8 +17,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "star/paper/dependency.h"
-#include "star/paper/view.h"
+#include "star/paper/state.h"
 #include "tetrahedra.h"
 
 /* ---- a solid made of some of the tetrahedra ---- */

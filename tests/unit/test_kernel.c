@@ -14,7 +14,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "geometry/half_spaces.h"
+#include "geometry/linear_program.h"
 #include "models.h"
 #include "starguard/kernel.h"
 

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 
 #include "core/rng.h"
-#include "geometry/largest_ball.h"
 #include "geometry/linear_program.h"
 
 enum { MOST = 30, BOX = 6, ROUNDS = 2000 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Levels of detail for descriptors: noise disappears, the shape stays. */
-#include "shape/level.h"
+#include "shape/measures.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@
 #include "exact_oracle.h"
 #include "shapes.h"
 #include "star/decomposition.h"
-#include "star/paper/smooth.h"
+#include "star/paper/state.h"
 #include "starguard/decompose.h"
 #include "tetra/tetmesh.h"
 #include "tetrahedra.h"

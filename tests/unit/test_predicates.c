@@ -7,7 +7,7 @@
 #include "exact_oracle.h"
 #include "geometry/predicates.h"
 #include "support.h"
-#include "verify/sensor.h"
+#include "verify/sight.h"
 
 enum { ROUNDS = 1500, LONG_ROUNDS = 70000, POINTS = 5 };
 

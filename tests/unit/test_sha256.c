@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* SHA-256 against the examples of FIPS 180-4 and its test vectors. */
-#include "shape/sha256.h"
+#include "shape/database.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -9,9 +9,7 @@
 #include "adversarial.h"
 #include "core/rng.h"
 #include "models.h"
-#include "shape/laplacian.h"
 #include "shape/signature_kinds.h"
-#include "shape/sketch.h"
 #include "shape/spectrum.h"
 
 enum { BINS = 64 };

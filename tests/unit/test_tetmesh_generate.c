@@ -16,7 +16,7 @@
 #include "core/rng.h"
 #include "models.h"
 #include "starguard/tetra.h"
-#include "tetra/hollow.h"
+#include "tetra/generate.h"
 
 static const double DEGREES = 57.29577951308232;
 

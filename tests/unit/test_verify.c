@@ -13,7 +13,6 @@
 #include "models.h"
 #include "starguard/verify.h"
 #include "support.h"
-#include "verify/exact_sum.h"
 #include "verify/sight.h"
 #include "verify/signs.h"
 #include "visibility_oracle.h"

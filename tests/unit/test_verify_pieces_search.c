@@ -8,10 +8,9 @@
 #include "core/memory.h"
 #include "cut.h"
 #include "support.h"
-#include "verify/facets.h"
-#include "verify/measure.h"
+#include "verify/pieces.h"
 #include "verify/signs.h"
-#include "verify/tree.h"
+#include "verify/surface.h"
 
 /* ---- the search tree ---- */
 

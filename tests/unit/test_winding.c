@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "core/rng.h"
-#include "geometry/winding.h"
+#include "geometry/bvh.h"
 #include "shapes.h"
 
 /* Solid angle by its definition on the sphere: the sum of the angles minus pi. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Wave kernel signatures on a string, whose modes are known in closed form, against the
  * definition. */
-#include "shape/wks.h"
+#include "shape/spectrum.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -22,9 +22,6 @@
 #include "star/compatible/compatible.h"
 
 #include "core/memory.h"
-#include "star/compatible/cuts.h"
-#include "star/compatible/groups.h"
-#include "star/compatible/planes.h"
 #include "star/compatible/twin_pieces.h"
 #include "star/decomposition.h"
 

@@ -5,12 +5,11 @@
  * together, about across from one guard to another; it is cut through the tetrahedra in both places
  * (through.c). If both parts have kernels in both places, they take the place of the group. It ends
  * when that has long saved nothing, or after a number of tetrahedra in proportion to all. */
-#include "star/compatible/cuts.h"
+#include "star/compatible/twin_pieces.h"
 
 #include <string.h>
 
 #include "geometry/vec3.h"
-#include "star/compatible/through.h"
 
 static const char STAGE[] = "join";
 

@@ -4,7 +4,7 @@
  * Method: a random group of pieces that hang together is given up, its tetrahedra are grown into
  * regions and joined; the outcome stays if there are no more pieces than before. It ends when that
  * has long saved nothing, or after a number of tetrahedra in proportion to all. */
-#include "star/compatible/groups.h"
+#include "star/compatible/twin_pieces.h"
 
 #include "star/strict/start/region_growing.h"
 

@@ -14,7 +14,7 @@
  * exact signs: what rounding of later cuts has spoilt is given up, too.
  *
  * Cost: for each part that of the split plane search, and a pass over all tetrahedra. */
-#include "star/compatible/planes.h"
+#include "star/compatible/twin_pieces.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +22,6 @@
 
 #include "core/rng.h"
 #include "geometry/vec3.h"
-#include "star/compatible/through.h"
 #include "star/piece_faces.h"
 #include "star/strict/search/split_plane.h"
 #include "visibility/kernel.h"

@@ -12,7 +12,7 @@
  *
  * Stages: the edges; the faces around both parts, and their kernels; the divided mesh. The kernels
  * are found before anything is divided, and proven by the caller afterwards. Cost: O(n log n). */
-#include "star/compatible/through.h"
+#include "star/compatible/twin_pieces.h"
 
 #include <stdlib.h>
 #include <string.h>

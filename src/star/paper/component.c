@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Breadth-first search through uncoloured tetrahedra. Marks are numbers of searches, so that
  * nothing has to be cleared in between: the cost of a search is the size of what it finds. */
-#include "star/paper/component.h"
+#include "star/paper/state.h"
 
 starg_status component_create(const paper_state *s, component_search *out) {
     starg_status status = STARG_OK;

@@ -10,9 +10,7 @@
  * Stages: count the edges that leave each node; take nodes without any, hand on their counts, take
  * away the edges that enter them. Nodes on a cycle, which tetrahedra of general position can have
  * but seldom do, keep what has reached them. Cost: O(n). */
-#include "star/paper/cost.h"
-
-#include "star/paper/dependency.h"
+#include "star/paper/state.h"
 
 /* The predecessors that a visible tetrahedron waits for; a repeated one counts as often. */
 static int find_predecessors(const paper_state *s, const paper_guard *g, uint32_t tetrahedron,

@@ -22,7 +22,7 @@
  * where something reaches between them.
  *
  * All signs are exact. Cost: O(degree) for a vertex, O(1) for a predecessor. */
-#include "star/paper/dependency.h"
+#include "star/paper/state.h"
 
 #include "geometry/predicates.h"
 

@@ -15,12 +15,11 @@
  * Invariants: regions hang together by faces; a colour is never changed; offers stay valid, because
  * colours do. Ties go to the lower colour, then to the lower tetrahedron. Cost: O(n log n) for n
  * coloured tetrahedra. */
-#include "star/paper/growth.h"
+#include "star/paper/state.h"
 
 #include <math.h>
 
 #include "geometry/vec3.h"
-#include "star/paper/dependency.h"
 
 static const paper_guard *guard_of(const paper_front *front, int32_t colour) {
     return &front->guards[colour - front->first_colour];

@@ -20,10 +20,7 @@
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
-#include "star/paper/component.h"
-#include "star/paper/growth.h"
-#include "star/paper/smooth.h"
-#include "star/paper/uncoloured.h"
+#include "star/paper/state.h"
 #include "starguard/guard.h"
 
 /* ---- state ---- */

@@ -10,7 +10,7 @@
  *
  * Vertices move one after the other, in their order, a fixed number of times. What they cover
  * together never changes. Cost: O(degree) and some look-ups a border vertex and round. */
-#include "star/paper/smooth.h"
+#include "star/paper/state.h"
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"

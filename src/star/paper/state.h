@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the stages of the paper's decomposition share. */
+/* Region growing as in the paper: the state, and the steps that change it. */
 #ifndef STARG_STAR_PAPER_STATE_H
 #define STARG_STAR_PAPER_STATE_H
 
 #include "core/memory.h"
 #include "mesh/levels/heap.h"
-#include "star/sight.h"
+#include "star/piece_faces.h"
+
+/* What the stages of the paper's decomposition share. */
 
 #define PAPER_STAGE "growth"
 #define PAPER_NONE  UINT32_MAX
@@ -60,5 +62,113 @@ static inline void paper_centroid(const paper_state *s, size_t tetrahedron, doub
 static inline size_t paper_pieces(const paper_state *s) {
     return s->guards.count / 3;
 }
+
+/* What guards see of the vertices of tetrahedra, and what follows from it for growth. */
+
+/* A part of the mesh: tetrahedra and their vertices, none twice. */
+typedef struct paper_domain {
+    uint32_t *tetrahedra, *vertices;
+    size_t count, vertex_count;
+} paper_domain;
+
+/* Memory for the mesh as a whole, with `waiting` zero. Errors: MEMORY. */
+typedef struct view_scratch {
+    uint32_t *waiting, *stack;
+} view_scratch;
+starg_status view_scratch_create(const paper_state *s, view_scratch *out);
+void view_scratch_free(const paper_state *s, view_scratch *scratch);
+
+/* An empty view: nothing is seen. Errors: MEMORY. */
+starg_status view_create(const paper_state *s, paper_guard *g);
+void view_free(const paper_state *s, paper_guard *g);
+
+/* Fills `toward` and `cost` within a domain; the position is known. */
+void view_fill(const paper_state *s, paper_guard *g, const paper_domain *domain,
+               view_scratch *scratch);
+/* Takes away what was filled. */
+void view_clear(paper_guard *g, const paper_domain *domain);
+
+/* Views of the whole mesh, with homes, for `count` guards strictly inside; `guards` is zero. In
+ * parallel. Errors: MEMORY, CANCELLED. */
+starg_status views_create(paper_state *s, const paper_domain *all, const double *positions,
+                          size_t count, paper_guard *guards);
+
+/* What hangs together by faces and has no colour yet. */
+
+typedef struct component_search {
+    paper_domain found;
+    uint32_t *number;                 /* of a found vertex in `found` */
+    uint32_t *tet_mark, *vertex_mark; /* the search in which it was found last */
+    uint32_t search;
+} component_search;
+
+/* Memory for all searches; free it also after a failure. Errors: MEMORY. */
+starg_status component_create(const paper_state *s, component_search *out);
+void component_free(const paper_state *s, component_search *c);
+
+/* Finds the uncoloured component of a tetrahedron, breadth first. */
+void component_find(const paper_state *s, component_search *c, uint32_t tetrahedron);
+
+/* On which tetrahedra does the visibility of a tetrahedron depend? */
+
+/* The first tetrahedron, in the order of the mesh, whose closed hull holds p; PAPER_NONE outside.
+ */
+uint32_t dependency_home(const starg_tetmesh *mesh, const double p[3]);
+
+/* The first tetrahedron around `vertex` into which the segment from there to p runs. */
+uint32_t dependency_toward(const paper_state *s, uint32_t vertex, const double p[3]);
+
+/* The tetrahedron that vertex k of a tetrahedron asks for when the latter is coloured, or
+ * PAPER_NONE where it asks for none. The guard sees the vertex. */
+uint32_t dependency_predecessor(const paper_state *s, const paper_guard *g, uint32_t tetrahedron,
+                                int k);
+
+/* Vertices of a tetrahedron that the guard sees, 0 to 4. */
+int dependency_seen(const paper_state *s, const paper_guard *g, uint32_t tetrahedron);
+
+/* How many tetrahedra depend on each. */
+
+/* Fills the costs of the `count` tetrahedra of `domain` (none twice) from the guard's `toward`.
+ * `waiting` and `stack` have room for every tetrahedron of the mesh; `waiting` is zero in the
+ * domain and left so. */
+void cost_accumulate(const paper_state *s, paper_guard *g, const uint32_t *domain, size_t count,
+                     uint32_t *waiting, uint32_t *stack);
+
+/* Region growing by node merging. */
+
+/* Guards whose pieces grow: guard i gives colour first_colour + i. */
+typedef struct paper_front {
+    const paper_guard *guards;
+    size_t count;
+    int32_t first_colour;
+} paper_front;
+
+/* Colours the homes of the guards, as far as they are uncoloured, and from there every uncoloured
+ * tetrahedron whose predecessors have its colour, biggest cost first. */
+void growth_strict(paper_state *s, const paper_front *front);
+
+/* Colours uncoloured tetrahedra of `domain` that share a face with a region of the front and have
+ * at least `least` vertices that its guard sees; most vertices first, then the nearest to the
+ * guard. */
+void growth_relaxed(paper_state *s, const paper_front *front, const uint32_t *domain, size_t count,
+                    int least);
+
+/* Colours uncoloured tetrahedra of `domain` like a region that they touch, whatever its guard sees;
+ * those that hang together with no region stay as they are. */
+void growth_absorb(paper_state *s, const uint32_t *domain, size_t count);
+
+/* What no guard's region holds. */
+
+/* Guards each uncoloured component anew and grows again, until every tetrahedron has a colour.
+ * There are no more than `max_pieces` pieces (0: any number) unless parts of the mesh have no guard
+ * yet, and no more of them once time is over, which *time_limited then tells. Errors: MEMORY,
+ * CANCELLED. */
+starg_status uncoloured_regrow(paper_state *s, size_t max_pieces, bool *time_limited);
+
+/* Smoothing of the borders between pieces. */
+
+/* Moves inner vertices where pieces meet; every tetrahedron stays positive. Errors: MEMORY,
+ * CANCELLED. */
+starg_status smooth_borders(paper_state *s);
 
 #endif

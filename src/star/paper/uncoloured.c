@@ -12,12 +12,10 @@
  *
  * Invariant: each guard colours at least the tetrahedron that it stands in, so that it ends. Cost:
  * for each guard a look-up for each candidate and vertex of its component. */
-#include "star/paper/uncoloured.h"
+#include "star/paper/state.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
-#include "star/paper/component.h"
-#include "star/paper/growth.h"
 
 enum { CANDIDATES = 32, RNG_STAGE = 0x7265 };
 static const double GRACE = 1; /* seconds */

@@ -2,12 +2,10 @@
 /* Visibility carried over to the vertices of tetrahedra [YL11, section 4]: for each guard, which
  * vertices it sees past the boundary of the whole solid, into which tetrahedron each of them looks
  * for it, and the costs that follow. Cost: a look-up in the tree for each guard and vertex. */
-#include "star/paper/view.h"
+#include "star/paper/state.h"
 
 #include "core/parallel.h"
 #include "geometry/vec3.h"
-#include "star/paper/cost.h"
-#include "star/paper/dependency.h"
 
 starg_status view_scratch_create(const paper_state *s, view_scratch *out) {
     starg_status status = STARG_OK;

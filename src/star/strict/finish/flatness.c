@@ -12,7 +12,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "star/angles.h"
+#include "star/piece_faces.h"
 
 /* Of a margin, in angles. */
 static const double WEIGHT = 100;

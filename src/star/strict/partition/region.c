@@ -24,7 +24,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "geometry/largest_ball.h"
+#include "geometry/linear_program.h"
 #include "geometry/vec3.h"
 #include "star/strict/search/scan.h"
 

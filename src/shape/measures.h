@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a descriptor measures of a solid. */
+#ifndef STARG_SHAPE_MEASURES_H
+#define STARG_SHAPE_MEASURES_H
+
+#include "core/context.h"
+#include "star/piece_faces.h"
+#include "starguard/descriptor.h"
+#include "starguard/mesh.h"
+#include "starguard/tetra.h"
+
+/* A model at a standard level of detail. */
+
+/* The model without detail finer than a mesh of `vertices` vertices can show: noise smoothed, at
+ * most that many vertices (or nearly, if the topology needs more), local self-intersections
+ * repaired. *out is NULL, without error, if the mesh is not a closed and oriented 2-manifold or
+ * nothing usable results: use the mesh itself then. Errors: MEMORY, CANCELLED, TIME. */
+starg_status level_create(starg_context *context, const starg_mesh *mesh, size_t vertices,
+                          starg_mesh **out);
+
+/* Without smoothing: a closed and oriented 2-manifold simplified and repaired. As above. */
+starg_status level_coarsen(starg_context *context, const starg_mesh *mesh, size_t vertices,
+                           starg_mesh **out);
+
+/* Distance from an interior point to the boundary of a tetrahedral mesh, in a given direction. */
+
+typedef struct ray_caster {
+    tet_sight sight;
+    double length; /* longer than any ray inside */
+    double scale;  /* scales differences to at most 1 */
+} ray_caster;
+
+/* The mesh must outlive it. Errors: MEMORY. */
+starg_status ray_caster_create(starg_context *context, const starg_tetmesh *mesh, ray_caster *out);
+void ray_caster_free(starg_context *context, ray_caster *caster);
+
+/* From a point strictly inside to the first boundary point; at most `length`. */
+double ray_length(const ray_caster *caster, const double from[3], const double direction[3]);
+
+/* Views from all over a solid. */
+
+/* STARG_DESCRIPTOR_VIEW rows of STARG_DESCRIPTOR_SPREAD lengths: row k has quantiles, over points
+ * uniform in the solid, of the k-th quantile of a point's distances to the boundary. Errors:
+ * MEMORY, CANCELLED. */
+starg_status views_measure(starg_context *context, const starg_tetmesh *mesh,
+                           const ray_caster *caster, double *out);
+
+/* Vibration modes of a solid's boundary. */
+
+/* The smallest nonzero eigenvalues of the surface's Laplacian, ascending, times the area; and where
+ * the surface vibrates (spectrum.h). Fills these fields of the descriptor. `surface` is the boundary
+ * before pieces cut it; NULL: that of `mesh`. Errors: MESH (no area), SOLVER, MEMORY, CANCELLED. */
+starg_status vibrations_measure(starg_context *context, const starg_tetmesh *mesh,
+                                const starg_mesh *surface, starg_descriptor *out);
+
+#endif
