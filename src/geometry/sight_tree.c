@@ -141,8 +141,7 @@ static ray ray_make(const sight_tree *tree, const double p[3], const double q[3]
 }
 
 /* Where the ray enters each of the boxes; 2: it misses. */
-STARG_SEVERAL_VERSIONS
-static void enter_boxes(const wide_node *node, const ray *r, float at[WIDTH]) {
+static inline __attribute__((always_inline)) void enter_boxes(const wide_node *node, const ray *r, float at[WIDTH]) {
     const float *nx = node->bound[r->near[0]], *ny = node->bound[r->near[1]];
     const float *nz = node->bound[r->near[2]], *fx = node->bound[r->far[0]];
     const float *fy = node->bound[r->far[1]], *fz = node->bound[r->far[2]];
@@ -167,9 +166,8 @@ typedef struct entry {
     uint32_t first, count;
 } entry;
 
-bool sight_tree_query(const sight_tree *tree, const double p[3], const double q[3],
-                      bvh_visit_rank *visit, void *user) {
-    const ray r = ray_make(tree, p, q);
+STARG_SEVERAL_VERSIONS
+static bool query(const sight_tree *tree, const ray *r, bvh_visit_rank *visit, void *user) {
     entry stack[MOST_STACK];
     size_t depth = 0;
     stack[depth++] = (entry){0, 0};
@@ -183,7 +181,7 @@ bool sight_tree_query(const sight_tree *tree, const double p[3], const double q[
         const wide_node *node = &tree->nodes[top.first];
         float at[WIDTH], entered[WIDTH];
         size_t bottom = depth;
-        enter_boxes(node, &r, at);
+        enter_boxes(node, r, at);
         for (size_t i = 0; i < WIDTH; i++) {
             if (at[i] > 1)
                 continue;
@@ -197,4 +195,10 @@ bool sight_tree_query(const sight_tree *tree, const double p[3], const double q[
         }
     }
     return true;
+}
+
+bool sight_tree_query(const sight_tree *tree, const double p[3], const double q[3],
+                      bvh_visit_rank *visit, void *user) {
+    const ray r = ray_make(tree, p, q);
+    return query(tree, &r, visit, user);
 }
