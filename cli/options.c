@@ -134,11 +134,38 @@ __attribute__((format(printf, 2, 3))) static bool fail_parse(parser *p, const ch
 
 /* ---- values ---- */
 
+static bool set_choice(parser *p, const match *m, const char *word) {
+    char list[256] = "";
+    size_t used = 0;
+    cli_suggestion near;
+    if (starg_field_set_word(m->option, m->group->values, word))
+        return true;
+    cli_suggest_begin(&near, word);
+    for (int i = 0; m->option->words[i] != NULL; i++) {
+        const char *choice = m->option->words[i];
+        cli_suggest_try(&near, choice);
+        bool last = m->option->words[i + 1] == NULL && m->option->kind == STARG_FIELD_CHOICE;
+        const char *comma = i == 0 ? "" : last ? " or " : ", ";
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", comma, choice);
+        if (used >= sizeof list)
+            used = sizeof list - 1;
+    }
+    if (m->option->kind == STARG_FIELD_COUNT && used < sizeof list)
+        snprintf(list + used, sizeof list - used, " or a whole number");
+    if (near.best != NULL)
+        return fail_parse(p, "%s takes %s, not '%.100s'; did you mean '%s'?", m->shown, list, word,
+                          near.best);
+    return fail_parse(p, "%s takes %s, not '%.100s'", m->shown, list, word);
+}
+
 static bool set_count(parser *p, const match *m, const char *word) {
     const cli_option *o = m->option;
     uint64_t value;
-    if (cli_number_count(word, &value) && starg_field_set_count(o, m->group->values, value))
+    if (cli_number_count(word, &value) && value <= o->most &&
+        starg_field_set_count(o, m->group->values, value))
         return true;
+    if (o->words != NULL)
+        return set_choice(p, m, word);
     if (o->most == UINT64_MAX)
         return fail_parse(p, "%s takes a whole number of at least %llu, not '%.100s'", m->shown,
                           (unsigned long long)o->least, word);
@@ -154,27 +181,6 @@ static bool set_real(parser *p, const match *m, const char *word) {
     return fail_parse(p, "%s takes a number %s %g and at most %g, not '%.100s'", m->shown,
                       (o->flags & STARG_FIELD_ABOVE) ? "above" : "of at least", o->low, o->high,
                       word);
-}
-
-static bool set_choice(parser *p, const match *m, const char *word) {
-    char list[256] = "";
-    size_t used = 0;
-    cli_suggestion near;
-    cli_suggest_begin(&near, word);
-    for (int i = 0; m->option->words[i] != NULL; i++) {
-        const char *choice = m->option->words[i];
-        if (strcmp(word, choice) == 0)
-            return starg_field_set_count(m->option, m->group->values, (uint64_t)i);
-        cli_suggest_try(&near, choice);
-        const char *comma = i == 0 ? "" : m->option->words[i + 1] == NULL ? " or " : ", ";
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", comma, choice);
-        if (used >= sizeof list)
-            used = sizeof list - 1;
-    }
-    if (near.best != NULL)
-        return fail_parse(p, "%s takes %s, not '%.100s'; did you mean '%s'?", m->shown, list, word,
-                          near.best);
-    return fail_parse(p, "%s takes %s, not '%.100s'", m->shown, list, word);
 }
 
 /* Numbers with commas between them. */

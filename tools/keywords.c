@@ -11,8 +11,10 @@ static void put_type(FILE *stub, const starg_field *f) {
                                         [STARG_FIELD_REAL] = "SupportsFloat",
                                         [STARG_FIELD_TEXT] = "PathLike",
                                         [STARG_FIELD_NUMBERS] = "Iterable[SupportsFloat]"};
-    if (f->kind != STARG_FIELD_CHOICE) {
-        fprintf(stub, "%s | None\n", names[f->kind]);
+    if (f->kind != STARG_FIELD_CHOICE)
+        fprintf(stub, "%s | ", names[f->kind]);
+    if (f->words == NULL) {
+        fputs("None\n", stub);
         return;
     }
     fputs("Literal[", stub);

@@ -114,7 +114,9 @@ static json_t *value_schema(const starg_field *f) {
     case STARG_FIELD_FLAG:
         return typed("boolean");
     case STARG_FIELD_COUNT:
-        return count_schema(f);
+        return f->words == NULL
+                   ? count_schema(f)
+                   : json_pack("{s:[o, o]}", "anyOf", count_schema(f), choice_schema(f));
     case STARG_FIELD_REAL:
         return real_schema(f);
     case STARG_FIELD_CHOICE:

@@ -79,7 +79,8 @@ typedef struct starg_field {
     uint64_t least, most, initial, none; /* COUNT: range, default, meaning of null. CHOICE and FLAG:
                                             `initial` is the default. LIST: `least` items */
     double low, high, standard;          /* REAL, NUMBERS: range, default                       */
-    const char *const *words;            /* CHOICE: by number, NULL-terminated */
+    const char *const *words;            /* NULL-terminated. CHOICE: by number. COUNT: names of the
+                                            numbers from `most` + 1 on; NULL: none */
 
     size_t length, limit;  /* LIST, INDICES: offsets of size_t members. NUMBERS: `length` is their
                               number; PLACES: numbers per row */
@@ -111,6 +112,13 @@ struct starg_fields {
     starg_form form;
 };
 
+/* How long searches go on: words of options that are otherwise numbers. Quick: what is there at
+ * once, and a short search; normal: at most some three times as long; best: until more is unlikely
+ * to help. */
+#define STARG_EFFORT_QUICK ((uint64_t)INT64_MAX + 1)
+#define STARG_EFFORT_NORMAL ((uint64_t)INT64_MAX + 2)
+#define STARG_EFFORT_BEST ((uint64_t)INT64_MAX + 3)
+
 /* Sets every member of a table to its default; other members are not changed. */
 STARG_API void starg_fields_default(const starg_fields *fields, void *record);
 
@@ -121,6 +129,13 @@ STARG_API void starg_field_default_text(const starg_field *field, char *text, si
 /* The range of a FLAG, COUNT, REAL or CHOICE for messages ("above 0 and at most 1") in `text`,
  * truncated to `size` bytes. */
 STARG_API void starg_field_expectation(const starg_field *field, char *text, size_t size);
+
+/* Sets a CHOICE, or a COUNT that has words, to a word; false, without a change, if it has no such
+ * word. */
+STARG_API bool starg_field_set_word(const starg_field *field, void *record, const char *word);
+
+/* The word for a number of a CHOICE or COUNT; NULL if there is none. */
+STARG_API const char *starg_field_word(const starg_field *field, uint64_t number);
 
 /* The word for a number of the CHOICE with a given key; NULL if there is none. */
 STARG_API const char *starg_fields_word(const starg_fields *fields, const char *key,

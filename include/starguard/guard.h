@@ -28,9 +28,13 @@ typedef enum starg_guard_method {
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
-/* For refine_lines: what suits the model, which is 4,000,000 and, for each guard of the
- * candidates, 10 for each face, but at least 200,000. */
+/* For refine_lines: what suits the effort and the model. For the best effort that is 4,000,000 and,
+ * for each guard of the candidates, 10 for each face, but at least 200,000. */
 #define STARG_DEFAULT_LINES UINT64_MAX
+
+/* Candidates to begin with: 1,000, or 200 where a search for better guards follows that moves them
+ * (PILP with refinement and less than the best effort). */
+#define STARG_DEFAULT_COUNT SIZE_MAX
 
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000
  * above the coarsest level. Each level costs a row of bits per candidate. */
@@ -47,8 +51,8 @@ typedef enum starg_candidates {
 typedef struct starg_guard_options {
     starg_guard_method method;
     starg_candidates candidates;
-    size_t candidate_count; /* approximate number, at least 1; more are added for faces that none of
-                               them sees */
+    size_t candidate_count; /* approximate number, at least 1, or STARG_DEFAULT_COUNT; more are
+                               added for faces that none of them sees */
     const double *points;   /* STARG_CANDIDATES_GIVEN: point_count x 3                     */
     const double *directions; /* of these, with a cone or a field of view: point_count x 3; NULL:
                                  they may look anywhere */
@@ -75,6 +79,8 @@ typedef struct starg_guard_options {
     /* STARG_GUARD_PILP with full coverage and generated candidates: search fewer guards beside the
      * candidates */
     bool refine;
+    uint64_t effort; /* of that search: STARG_EFFORT_QUICK, _NORMAL or _BEST (starguard/fields.h), or
+                        as many units of work as refine_lines, as with the best effort */
     uint64_t refine_lines; /* budget in sight lines (about a microsecond each) and what takes as
                               long, or STARG_DEFAULT_LINES */
 
@@ -86,8 +92,8 @@ typedef struct starg_guard_options {
     uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_guard_options;
 
-/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (STARG_DEFAULT_LINES), 1,000 skeletal
- * candidates, the fastest engine, faces by vertices, full coverage once, no clearance,
+/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (STARG_EFFORT_NORMAL), skeletal candidates,
+ * as many as STARG_DEFAULT_COUNT, the fastest engine, faces by vertices, full coverage once, no clearance,
  * STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
 

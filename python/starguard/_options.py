@@ -35,7 +35,7 @@ class Field:
             name = name[3:]
         self.name = name.replace("-", "_")
         self.words: list[str] = []
-        while self.kind == lib.STARG_FIELD_CHOICE and row.words[len(self.words)]:
+        while row.words and row.words[len(self.words)]:
             self.words.append(text(row.words[len(self.words)]))
 
     def _at(self, struct: Any, kind: str) -> Any:
@@ -78,6 +78,8 @@ class Field:
             return bool(value)
         if self.kind == lib.STARG_FIELD_CHOICE:
             return self.words[value]
+        if word := text(lib.starg_field_word(self._row, value)):
+            return word
         return value if self._row.least <= value <= self._row.most else None
 
     def set(self, struct: Any, value: Any) -> Any:
@@ -98,13 +100,16 @@ class Field:
                 if fits:
                     ffi.memmove(self._at(struct, "double *"), ffi.new("double[]", numbers), 8 * len(numbers))
             elif self.kind == lib.STARG_FIELD_CHOICE:
-                fits = lib.starg_field_set_count(self._row, struct, self.words.index(value))
+                fits = lib.starg_field_set_word(self._row, struct, value.encode())
             elif self.kind == lib.STARG_FIELD_FLAG:
                 fits = (value in (True, False)
                         and lib.starg_field_set_count(self._row, struct, bool(value)))
+            elif self.words and isinstance(value, str):
+                fits = lib.starg_field_set_word(self._row, struct, value.encode())
             else:
-                fits = lib.starg_field_set_count(self._row, struct, operator.index(value))
-        except (TypeError, ValueError, OverflowError) as error:
+                number = operator.index(value)
+                fits = number <= self._row.most and lib.starg_field_set_count(self._row, struct, number)
+        except (AttributeError, TypeError, ValueError, OverflowError) as error:
             raise self._wrong(value) from error
         if not fits:
             raise self._wrong(value)

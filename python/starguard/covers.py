@@ -17,7 +17,8 @@ from ._types import Array, Progress
 from .errors import ArgumentError
 from .visibility import Bits
 
-_METHODS = {"greedy": lib.STARG_COVER_GREEDY, "ilp": lib.STARG_COVER_ILP, "lp": lib.STARG_COVER_LP}
+_METHODS = {"greedy": lib.STARG_COVER_GREEDY, "ilp": lib.STARG_COVER_ILP, "lp": lib.STARG_COVER_LP,
+            "local": lib.STARG_COVER_LOCAL}
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,18 +50,39 @@ static double real_of(const starg_field *f, const void *record) {
 
 /* ---- ranges ---- */
 
+const char *const effort_words[] = {"quick", "normal", "best", NULL};
+
 static size_t word_count(const starg_field *f) {
     size_t count = 0;
-    while (f->words[count] != NULL)
+    while (f->words != NULL && f->words[count] != NULL)
         count++;
     return count;
+}
+
+/* The number of its first word. */
+static uint64_t first_word(const starg_field *f) {
+    return f->kind == STARG_FIELD_COUNT ? f->most + 1 : 0;
+}
+
+const char *starg_field_word(const starg_field *field, uint64_t number) {
+    uint64_t at = number - first_word(field);
+    return number >= first_word(field) && at < word_count(field) ? field->words[at] : NULL;
+}
+
+bool starg_field_set_word(const starg_field *field, void *record, const char *word) {
+    for (size_t i = 0; i < word_count(field); i++)
+        if (strcmp(field->words[i], word) == 0) {
+            store_count(field, record, first_word(field) + i);
+            return true;
+        }
+    return false;
 }
 
 const char *starg_fields_word(const starg_fields *fields, const char *key, uint64_t number) {
     for (size_t i = 0; i < fields->count; i++) {
         const starg_field *f = &fields->fields[i];
         if (f->kind == STARG_FIELD_CHOICE && f->key != NULL && strcmp(f->key, key) == 0)
-            return number < word_count(f) ? f->words[number] : NULL;
+            return starg_field_word(f, number);
     }
     return NULL;
 }
@@ -71,7 +92,8 @@ static bool count_fits(const starg_field *f, uint64_t value) {
         return value <= 1;
     if (f->kind == STARG_FIELD_CHOICE)
         return value < word_count(f);
-    return value >= f->least && value <= f->most;
+    return (value >= f->least && value <= f->most) ||
+           (word_count(f) > 0 && starg_field_word(f, value) != NULL);
 }
 
 static bool real_fits(const starg_field *f, double value) {
@@ -93,9 +115,12 @@ bool starg_field_set_real(const starg_field *field, void *record, double value) 
 }
 
 static void list_words(const starg_field *f, char *text, size_t size) {
-    size_t used = (size_t)snprintf(text, size, "one of ");
+    bool count = f->kind == STARG_FIELD_COUNT;
+    size_t used = (size_t)snprintf(text, size, count ? "" : "one of ");
     for (size_t i = 0; f->words[i] != NULL && used < size; i++)
         used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", f->words[i]);
+    if (count && used < size)
+        snprintf(text + used, size - used, " or a number");
 }
 
 void starg_field_expectation(const starg_field *field, char *text, size_t size) {
@@ -103,7 +128,7 @@ void starg_field_expectation(const starg_field *field, char *text, size_t size) 
     bool unlimited = f->kind == STARG_FIELD_COUNT ? f->most >= UINT32_MAX : f->high >= 1e100;
     if (f->kind == STARG_FIELD_FLAG)
         snprintf(text, size, "true or false");
-    else if (f->kind == STARG_FIELD_CHOICE)
+    else if (word_count(f) > 0)
         list_words(f, text, size);
     else if (f->kind == STARG_FIELD_COUNT && unlimited)
         snprintf(text, size, f->least == 0 ? "a whole number, zero or more" : "%llu or more",
@@ -206,12 +231,12 @@ void starg_field_default_text(const starg_field *field, char *text, size_t size)
     text[0] = '\0';
     if (words != NULL && words[0] == '\0')
         return;
+    if (words == NULL && word_count(field) > 0)
+        words = starg_field_word(field, field->initial);
     if (words == NULL && field->kind == STARG_FIELD_COUNT)
         put_count(number, sizeof number, field->initial);
     else if (words == NULL && field->kind == STARG_FIELD_REAL)
         snprintf(number, sizeof number, "%g", field->standard);
-    else if (words == NULL && field->kind == STARG_FIELD_CHOICE)
-        words = field->words[field->initial];
     if (words != NULL || number[0] != '\0')
         snprintf(text, size, "Default: %s.", words != NULL ? words : number);
 }

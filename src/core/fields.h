@@ -13,6 +13,9 @@
 /* Rows of a table and their count. */
 #define FIELD_ROWS(ROWS) .fields = (ROWS), .count = sizeof(ROWS) / sizeof *(ROWS)
 
+/* The words of an effort, from `most` = INT64_MAX on. */
+extern const char *const effort_words[];
+
 /* Is a COUNT, CHOICE, FLAG or REAL within its range or at the value that stands for null? */
 bool field_fits(const starg_field *field, const void *record);
 

@@ -71,6 +71,9 @@ static json_t *count_json(const starg_field *f, const void *record) {
     uint64_t value = starg_field_count(f, record);
     if ((f->flags & STARG_FIELD_NULLABLE) && value == f->none)
         return json_null();
+    const char *word = starg_field_word(f, value);
+    if (word != NULL)
+        return json_string(word);
     if (value <= INT64_MAX)
         return json_integer((json_int_t)value);
     char digits[32];
@@ -132,7 +135,7 @@ static json_t *field_json(const starg_field *f, const void *record) {
     case STARG_FIELD_REAL:
         return real_json(f, at);
     case STARG_FIELD_CHOICE:
-        return json_string(f->words[starg_field_count(f, record)]);
+        return json_string(starg_field_word(f, starg_field_count(f, record)));
     case STARG_FIELD_TEXT:
         at = load_pointer(record, f->offset);
         return at != NULL ? json_string(at) : json_null();
@@ -335,12 +338,8 @@ static void set_none(const starg_field *f, void *record) {
 }
 
 static starg_status read_word(const reader *r, json_t *value, const starg_field *f, void *record) {
-    for (size_t i = 0; f->words[i] != NULL && json_is_string(value); i++)
-        if (strcmp(json_string_value(value), f->words[i]) == 0) {
-            starg_field_set_count(f, record, i);
-            return STARG_OK;
-        }
-    return reject_value(r, f);
+    bool good = json_is_string(value) && starg_field_set_word(f, record, json_string_value(value));
+    return good ? STARG_OK : reject_value(r, f);
 }
 
 /* A count above 2^63 - 1, which JSON readers may not hold as a number: its digits. */
@@ -364,6 +363,8 @@ static starg_status read_number(const reader *r, json_t *value, const starg_fiel
     else if (f->kind == STARG_FIELD_COUNT && json_is_integer(value) &&
              json_integer_value(value) >= 0)
         good = starg_field_set_count(f, record, (uint64_t)json_integer_value(value));
+    else if (f->kind == STARG_FIELD_COUNT && f->words != NULL && json_is_string(value))
+        good = starg_field_set_word(f, record, json_string_value(value));
     else if (f->kind == STARG_FIELD_COUNT && json_is_string(value) &&
              read_digits(json_string_value(value), &large))
         good = starg_field_set_count(f, record, large);

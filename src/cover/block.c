@@ -6,7 +6,7 @@
  *      reductions of the rest;
  *   3. branch and bound on the rest.
  * Each step ends as soon as the bound meets the cover. A relaxed run computes the bound of the
- * linear relaxation at once and stops there.
+ * linear relaxation at once and stops there; a local one stops after a short local search.
  *
  * Invariant of a block: every cover with fewer rows than the best one consists of the forced rows
  * and a cover of the rest. */
@@ -34,6 +34,11 @@ typedef struct block_solve {
 
 static bool is_closed(const block_solve *block) {
     return block->lower_bound >= block->best.count;
+}
+
+/* Does the run leave blocks as the first round found them? */
+static bool is_brief(const block_solve *block) {
+    return block->run->relaxed || block->run->local;
 }
 
 /* No cover has fewer than `rows` rows besides the forced ones, unless the best cover is optimal. */
@@ -108,6 +113,11 @@ static starg_status bound_rest(block_solve *block, cover_dual *dual, cover_state
     }
     if (relaxed)
         goto done;
+    if (block->run->local) {
+        STARG_TRY(cover_local_search(block->run, 1, cover));
+        status = offer_cover(block, cover);
+        goto done;
+    }
     STARG_TRY(cover_lagrange(block->run, &block->rest, dual, cover));
     STARG_TRY(cover_local_search(block->run, cover_dual_rows(dual->value), cover));
     STARG_TRY(offer_cover(block, cover));
@@ -167,7 +177,7 @@ static starg_status run_round(block_solve *block, bool *again) {
     STARG_TRY(cover_dual_create(&block->rest, &dual));
     STARG_TRY(bound_rest(block, &dual, &cover));
     export_prices(block, &dual);
-    if (is_closed(block) || block->run->relaxed || cover_time_is_over(block->run))
+    if (is_closed(block) || is_brief(block) || cover_time_is_over(block->run))
         goto done;
     cover_state_free(&cover); /* the rest is about to change */
     STARG_TRY(fix_rest(block, &dual, again));
@@ -210,7 +220,7 @@ static starg_status run_rounds(block_solve *block) {
     starg_progress_begin(block->run->context, "bound");
     while (again) {
         STARG_TRY(run_round(block, &again));
-        again = again && !is_closed(block) && !block->run->relaxed;
+        again = again && !is_closed(block) && !is_brief(block);
     }
 done:
     starg_progress_end(block->run->context);
@@ -224,7 +234,7 @@ static starg_status solve_block(block_solve *block) {
     for (size_t i = 0; i < block->rest.rows; i++)
         STARG_PUSH(context, "cover", &block->best, block->rest.row_names[i]);
     STARG_TRY(run_rounds(block));
-    if (is_closed(block) || block->run->relaxed || is_too_large(block, 0) ||
+    if (is_closed(block) || is_brief(block) || is_too_large(block, 0) ||
         cover_time_is_over(block->run))
         goto done;
     starg_progress_begin(context, "ilp");

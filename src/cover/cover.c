@@ -54,7 +54,7 @@ static starg_status check(starg_context *context, const starg_cover_problem *pro
             return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
                               "given row %zu has the index %u; there are %zu rows", k,
                               problem->given[k], problem->rows->rows);
-    if (options->method > STARG_COVER_LP)
+    if (options->method > STARG_COVER_LOCAL)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "cover", "unknown method %d",
                           (int)options->method);
     return check_weights(context, problem);
@@ -183,6 +183,7 @@ starg_status starg_cover_solve(starg_context *context, const starg_cover_problem
     run.max_nodes = options->max_nodes;
     bool exact = options->method != STARG_COVER_GREEDY;
     run.relaxed = !exact || options->method == STARG_COVER_LP;
+    run.local = options->method == STARG_COVER_LOCAL;
     STARG_TRY(cover_instance_build(context, problem, &instance, &given));
     uint64_t goal = problem->target > given ? problem->target - given : 0;
     if (goal > instance.total)

@@ -23,6 +23,7 @@
 /* Without a better cover the search ends after this many steps per row, or this much work. */
 static const uint64_t PATIENT_STEPS = 50;
 static const uint64_t PATIENT_WORK = 100000000; /* some tenths of a second */
+static const uint64_t SHORT_WORK = 20000000;    /* where there is nothing else */
 static const uint64_t WORK_PER_CHECK = 2000000; /* between checks of the clock */
 
 typedef struct local_search {
@@ -193,8 +194,9 @@ done:
 static starg_status iterate(cover_run *run, local_search *search, size_t enough,
                             cover_state *best) {
     uint64_t check = 0, last_work = search->work, last_step = search->step;
+    uint64_t patience = run->local ? SHORT_WORK : PATIENT_WORK;
     record_cover(search, best);
-    while (best->count > enough && search->work - last_work < PATIENT_WORK &&
+    while (best->count > enough && search->work - last_work < patience &&
            search->step - last_step < PATIENT_STEPS * search->instance->rows) {
         if (search->work >= check) {
             starg_status status = starg_check_cancel(run->context, "cover");

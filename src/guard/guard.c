@@ -35,7 +35,14 @@ static bool wants_part(const starg_guard_options *o) {
     return o->coverage < 1 || o->max_guards > 0;
 }
 
+static bool may_refine(const starg_guard_options *options) {
+    return options->method == STARG_GUARD_PILP && options->refine && !wants_part(options) &&
+           options->candidates != STARG_CANDIDATES_GIVEN;
+}
+
 static void set_defaults(starg_guard_options *o, size_t vertices) {
+    if (o->candidate_count == STARG_DEFAULT_COUNT)
+        o->candidate_count = may_refine(o) && guard_is_brief(o) ? 200 : 1000;
     if (o->max_nodes == STARG_DEFAULT_NODES)
         o->max_nodes = o->method == STARG_GUARD_PILP && !chooses_exactly(o) ? 30 : 100000;
     if (o->step == STARG_DEFAULT_STEP)
@@ -256,11 +263,6 @@ static starg_status choose_at_once(const guard_problem *problem, const guard_poo
 done:
     starg_cover_free(cover);
     return status;
-}
-
-static bool may_refine(const starg_guard_options *options) {
-    return options->method == STARG_GUARD_PILP && options->refine && !wants_part(options) &&
-           options->candidates != STARG_CANDIDATES_GIVEN;
 }
 
 /* Without levels, the first choice is that of the whole problem, with its bounds. */
@@ -507,6 +509,7 @@ starg_status corner_guards_find(starg_context *context, const starg_solid *solid
     *out = (corner_guards){0};
     starg_guard_options_default(&used);
     used.visibility.target = STARG_TARGET_CORNERS;
+    used.effort = STARG_EFFORT_BEST;
     used.prove = true;
     used.prove_work = work;
     set_defaults(&used, solid->mesh->vertex_count);

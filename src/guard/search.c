@@ -249,8 +249,8 @@ done:
     return status;
 }
 
-/* Looks for better guards. Where local search gives up early, cells show where else guards may
- * stand: a proof begins, with what is left of the budget. Tests of boxes take longer in larger
+/* Looks for better guards. Where local search gives up early and the effort is to be the best, cells
+ * show where else guards may stand: a proof begins, with what is left of the budget. Tests of boxes take longer in larger
  * models, so that there are fewer; where guards are few, one fewer is worth more. */
 static starg_status improve(search *s) {
     starg_status status = STARG_OK;
@@ -259,7 +259,8 @@ static starg_status improve(search *s) {
     most *= fmax(1, MANY_GUARDS / (double)s->count);
     STARG_TRY(run_improvement(s, work));
     double left = (double)work - (double)(s->scene.work - begun);
-    if (s->problem->options->prove || s->bound == s->count || !(left > 0))
+    const starg_guard_options *o = s->problem->options;
+    if (o->prove || guard_is_brief(o) || s->bound == s->count || !(left > 0))
         STARG_TRY(close_and_resume(s));
     else
         STARG_TRY(run_proof(s, (uint64_t)fmin(left, most)));

@@ -13,6 +13,7 @@
  * are few; if that does not finish, over all faces and the candidates that may be among fewer
  * guards, extended by the most valuable points. guard/search.c repeats both: with many guards,
  * these programs find more in the points of a few rounds than many rounds do. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "guard/search_parts.h"
@@ -30,16 +31,24 @@ enum {
 
 static const char STAGE[] = "search";
 
+/* Of the work of the best effort. */
+static const double QUICK = 0.05, NORMAL = 0.3;
+
 /* Programs grow with the guards, and their rows with the faces. */
-static uint64_t default_work(const search *s) {
-    uint64_t rows = 10 * s->pool->columns;
-    return LEAST_WORK + s->count * (rows > WORK_PER_GUARD ? rows : WORK_PER_GUARD);
+static double best_work(const search *s) {
+    double rows = 10 * (double)s->pool->columns;
+    return LEAST_WORK + (double)s->count * fmax(rows, WORK_PER_GUARD);
 }
 
 uint64_t search_improve_work(const search *s) {
-    uint64_t asked = s->problem->options->refine_lines;
-    return asked == STARG_DEFAULT_LINES ? default_work(s)
-                                        : (uint64_t)((double)asked / search_scene_unit(&s->scene));
+    const starg_guard_options *o = s->problem->options;
+    uint64_t asked = o->refine_lines != STARG_DEFAULT_LINES ? o->refine_lines : o->effort;
+    double share = asked == STARG_EFFORT_QUICK    ? QUICK
+                   : asked == STARG_EFFORT_NORMAL ? NORMAL
+                                                  : 1;
+    bool counted = asked <= INT64_MAX;
+    return (uint64_t)(counted ? (double)asked / search_scene_unit(&s->scene)
+                              : share * best_work(s));
 }
 
 starg_status search_improve(search *s, row_list *list) {

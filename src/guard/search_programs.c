@@ -66,6 +66,8 @@ static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) 
     problem.rows = rows;
     problem.redundancy = (uint32_t)s->redundancy;
     options.max_nodes = s->nodes;
+    if (guard_is_brief(s->problem->options))
+        options.method = STARG_COVER_LOCAL;
     starg_status status = starg_cover_solve(context_of(s), &problem, &options, out);
     if (status == STARG_OK)
         s->scene.work += cost_of(rows, *out);
@@ -138,6 +140,8 @@ starg_status search_ask_candidates(search *s) {
     problem.rows = rows;
     problem.redundancy = (uint32_t)s->redundancy;
     options.max_nodes = s->problem->options->max_nodes;
+    if (guard_is_brief(s->problem->options))
+        options.method = STARG_COVER_LOCAL;
     STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
     size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;
     for (size_t k = 0; k < cover->count; k++)

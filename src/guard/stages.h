@@ -60,6 +60,13 @@ static inline candidate_shape guard_shape(const guard_problem *problem,
     return (candidate_shape){problem->solid, proxy, problem->options->clearance};
 }
 
+/* May the search begin with few candidates, and end without bounds beyond those that it needs
+ * itself? */
+static inline bool guard_is_brief(const starg_guard_options *o) {
+    return !o->prove && o->refine_lines == STARG_DEFAULT_LINES &&
+           (o->effort == STARG_EFFORT_QUICK || o->effort == STARG_EFFORT_NORMAL);
+}
+
 /* The rows of a cover as the choice, with its bounds. Those chosen `before` keep their level, the
  * others get `level`. Errors: MEMORY. */
 starg_status selection_of_cover(starg_context *context, const starg_cover *cover,

@@ -102,7 +102,7 @@ static void solve(starg_context *context, const instance *own, starg_cover_metho
 
 int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size) {
     static const starg_cover_method methods[] = {STARG_COVER_GREEDY, STARG_COVER_ILP,
-                                                 STARG_COVER_LP};
+                                                 STARG_COVER_LP, STARG_COVER_LOCAL};
     fuzz_input in = {data, size};
     starg_context *context = fuzz_context();
     instance own = {0};

@@ -99,7 +99,9 @@ static uint64_t random_count(maker *m, const starg_field *f) {
     case 1:
         return f->most;
     case 2:
-        return f->flags & STARG_FIELD_NULLABLE ? f->none : f->least;
+        return f->flags & STARG_FIELD_NULLABLE ? f->none
+               : f->words != NULL              ? f->most + 1 /* its first word */
+                                               : f->least;
     default:
         return f->least + starg_rng_next(&m->rng) % (span < UINT64_MAX ? span + 1 : span);
     }
