@@ -162,6 +162,7 @@ static starg_status make_job(starg_context *context, const augmentation *all, si
     size_t face_count = all->solid->mesh->face_count;
     *job = (augmentation_job){.all = all};
     STARG_TRY(scene_create(context, all->solid, &job->scene));
+    STARG_TRY(scene_add_sights(job->scene));
     STARG_NEW(context, STAGE, job->rank_of, face_count);
     STARG_NEW(context, STAGE, job->faces, most);
     STARG_NEW(context, STAGE, job->found, most);

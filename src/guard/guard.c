@@ -31,18 +31,9 @@ static bool chooses_exactly(const starg_guard_options *o) {
     return o->prove && o->candidates == STARG_CANDIDATES_GIVEN;
 }
 
-static bool wants_part(const starg_guard_options *o) {
-    return o->coverage < 1 || o->max_guards > 0;
-}
-
-static bool may_refine(const starg_guard_options *options) {
-    return options->method == STARG_GUARD_PILP && options->refine && !wants_part(options) &&
-           options->candidates != STARG_CANDIDATES_GIVEN;
-}
-
 static void set_defaults(starg_guard_options *o, size_t vertices) {
     if (o->candidate_count == STARG_DEFAULT_COUNT)
-        o->candidate_count = may_refine(o) && guard_is_brief(o) ? 200 : 1000;
+        o->candidate_count = guard_is_brief(o) ? 200 : 1000;
     if (o->max_nodes == STARG_DEFAULT_NODES)
         o->max_nodes = o->method == STARG_GUARD_PILP && !chooses_exactly(o) ? 30 : 100000;
     if (o->step == STARG_DEFAULT_STEP)
@@ -54,7 +45,7 @@ static starg_status check_options(starg_context *context, const starg_guard_opti
     STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
-    if (o->baseline > 0 && (o->redundancy < 2 || wants_part(o)))
+    if (o->baseline > 0 && (o->redundancy < 2 || guard_wants_part(o)))
         status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                             "a baseline is one of two guards or more, and of all that can be seen; "
                             "ask for a redundancy of 2, and for no part");
@@ -277,7 +268,7 @@ static starg_status choose_by_levels(const guard_problem *problem, const guard_d
     guard_selection first = {0};
     STARG_TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
     bool late = first.lower_bound > 0 && starg_time_is_over(problem->context);
-    if (late || was_whole(detail, &first) || may_refine(problem->options)) {
+    if (late || was_whole(detail, &first) || guard_refines(problem->options)) {
         out->selection = first;
         out->selection.time_limited = first.time_limited || late;
         first = (guard_selection){0};
@@ -292,7 +283,7 @@ done:
 /* Could a single point suffice that is not a candidate? */
 static bool may_be_star(const guard_problem *problem) {
     const starg_guard_options *o = problem->options;
-    bool free = (o->prove && !chooses_exactly(o)) || may_refine(o);
+    bool free = (o->prove && !chooses_exactly(o)) || guard_refines(o);
     return free && !problem->solid->scene && o->redundancy == 1 &&
            !sensor_is_directed(&o->visibility);
 }
@@ -367,9 +358,9 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
     else
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
-    if (!wants_part(problem->options)) {
+    if (!guard_wants_part(problem->options)) {
         STARG_TRY(begin_bound(problem, out));
-        STARG_TRY(search_guards(problem, &detail, may_refine(problem->options), &out->pool,
+        STARG_TRY(search_guards(problem, &detail, guard_refines(problem->options), &out->pool,
                                 &out->selection, &out->search));
     } else if (problem->options->prove)
         STARG_TRY(search_area(problem, &out->pool, &out->selection, &out->search));
@@ -457,7 +448,7 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
     *out = NULL;
     *text = NULL;
     *size = 0;
-    if (options != NULL && wants_part(options))
+    if (options != NULL && guard_wants_part(options))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate is only written where everything is to be seen; ask for a "
                           "coverage of 1 without a limit of guards");

@@ -158,7 +158,8 @@ static starg_status guard_level(const guard_problem *problem, const guard_pool *
     STARG_TRY(column_weights_create(problem->context, pool->solid,
                                     problem->options->visibility.target, &work.weights));
     STARG_TRY(keep_significant(&work, before));
-    const choice how = {.method = STARG_COVER_ILP,
+    bool brief = guard_is_brief(problem->options);
+    const choice how = {.method = brief ? STARG_COVER_LOCAL : STARG_COVER_ILP,
                         .max_nodes = problem->options->max_nodes,
                         .given = work.kept.data,
                         .given_count = work.kept.count};

@@ -60,10 +60,20 @@ static inline candidate_shape guard_shape(const guard_problem *problem,
     return (candidate_shape){problem->solid, proxy, problem->options->clearance};
 }
 
-/* May the search begin with few candidates, and end without bounds beyond those that it needs
+static inline bool guard_wants_part(const starg_guard_options *o) {
+    return o->coverage < 1 || o->max_guards > 0;
+}
+
+/* Does a search beside the candidates follow the choice among them? */
+static inline bool guard_refines(const starg_guard_options *o) {
+    return o->method == STARG_GUARD_PILP && o->refine && !guard_wants_part(o) &&
+           o->candidates != STARG_CANDIDATES_GIVEN;
+}
+
+/* May that search begin with few candidates, and end without bounds beyond those that it needs
  * itself? */
 static inline bool guard_is_brief(const starg_guard_options *o) {
-    return !o->prove && o->refine_lines == STARG_DEFAULT_LINES &&
+    return guard_refines(o) && !o->prove && o->refine_lines == STARG_DEFAULT_LINES &&
            (o->effort == STARG_EFFORT_QUICK || o->effort == STARG_EFFORT_NORMAL);
 }
 

@@ -343,6 +343,7 @@ done:
 static starg_status begin(unseen_search *s) {
     starg_status status = STARG_OK;
     STARG_TRY(scene_create(s->context, s->solid, &s->points));
+    STARG_TRY(scene_add_sights(s->points));
     STARG_TRY(box_scene_create(s->context, s->solid, &s->boxes));
     STARG_NEW(s->context, STAGE, s->rank_of, s->points->face_count);
     for (size_t rank = 0; rank < s->points->face_count; rank++)
