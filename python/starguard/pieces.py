@@ -248,9 +248,10 @@ def decompose(model: Any, *, guards: ArrayLike | None = None,
 
     The model is anything `as_mesh` accepts, or a TetMesh. A surface with holes is filled, with a
     notice, if the filled volume is near the surface or `fill` is true. `guards` (n, 3) are seeds, or
-    points to try first. The search stops after `effort` trials, or by default after a fixed amount
-    of work (about 20 seconds), which gives the same result everywhere. With `time_limit` and no
-    `effort` it continues until that time and returns its best result. With `prove=True`,
+    points to try first. `effort` is "quick", "normal" or "best", a fixed amount of work (about 2, 5
+    and 20 seconds where there is so much to try), which gives the same result everywhere, or a
+    number of trials. With `time_limit` and no number of trials it continues until that time and
+    returns its best result. With `prove=True`,
     `lower_bound` holds for all ways to cut a surface into star-shaped pieces, and `certificate` is a
     file to write that says why; `verify(model, pieces, file)` checks it.
 

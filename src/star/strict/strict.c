@@ -37,9 +37,10 @@ enum {
     EVALUATIONS_EACH = 3 /* for each grown region */
 };
 
-/* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
- * are counted the same at any number of threads. About 2.5e8 take a second. */
-static const uint64_t WORK_MOST = 4700000000;
+/* Of all searches, by effort, unless trials or time are limited: vertices, facets and rows looked
+ * at, which are counted the same at any number of threads. About 2.5e8 take a second. The first
+ * fifth of the best effort saves all but the last piece or two (docs/decomposition.md). */
+static const uint64_t WORK_QUICK = 300000000, WORK_NORMAL = 1000000000, WORK_BEST = 4700000000;
 
 /* The same for the room of guards at the end, and for better places after that: so much and what
  * the searches have taken, up to the second; the third if more is asked for. */
@@ -273,9 +274,21 @@ done:
     return status;
 }
 
-/* The trials that give the same result without a clock. */
+/* Does the effort count trials? */
+static bool counts_trials(const starg_decompose_options *options) {
+    return options->effort > 0 && options->effort <= INT64_MAX;
+}
+
+static uint64_t work_of(const starg_decompose_options *options) {
+    return options->effort == STARG_EFFORT_BEST    ? WORK_BEST
+           : options->effort == STARG_EFFORT_QUICK ? WORK_QUICK
+                                                   : WORK_NORMAL;
+}
+
+/* The effort that gives the same result without a clock. */
 static uint64_t effort_of(const searches *s, const starg_decompose_options *options) {
-    return options->effort == 0 && s->work > WORK_MOST ? INT64_MAX : options->effort;
+    bool more = !counts_trials(options) && s->work > work_of(options);
+    return more ? INT64_MAX : options->effort;
 }
 
 /* How far the search is, by whatever will end it. */
@@ -283,8 +296,8 @@ static void tell_progress(const searches *s, const partition *p) {
     double part = (double)s->idle / (double)idle_most(s, p), passed = starg_clock() - s->began;
     if (s->trials_left != UINT64_MAX)
         part = fmax(part, (double)s->trials / (double)(s->trials + s->trials_left));
-    if (s->work_left <= WORK_MOST)
-        part = fmax(part, 1 - (double)s->work_left / (double)WORK_MOST);
+    if (s->work_left <= WORK_BEST)
+        part = fmax(part, (double)s->work / (double)(s->work + s->work_left));
     part = fmax(part, passed / (passed + fmax(0, starg_seconds_left(p->context))));
     starg_progress_step(p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
 }
@@ -318,9 +331,9 @@ static starg_status decompose(starg_context *context, model of,
     starg_status status = STARG_OK;
     partition p = {.context = context};
     region_scratch scratch = {.context = context};
-    searches s = {.trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
-                  .work_left =
-                      options->effort > 0 || context->deadline.at > 0 ? UINT64_MAX : WORK_MOST,
+    bool trials = counts_trials(options), clocked = context->deadline.at > 0;
+    searches s = {.trials_left = trials ? options->effort : UINT64_MAX,
+                  .work_left = trials || clocked ? UINT64_MAX : work_of(options),
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
     STARG_TRY(begin(&of, options, &p));
