@@ -23,7 +23,8 @@
 static const char STAGE[] = "pruning";
 
 static const double WIDTH_SHARE = 0.3;
-static const double SLENDER = 0.7;
+static const double SLENDER = 0.75;
+static const double OBLONG = 0.55;
 static const double SEPARATION = 2.8; /* in radii; pi on a tube */
 static const double HOOK = 2;         /* in radii: how far a hook reaches */
 static const double SHORT = 0.05;     /* of a radius, by which a limb may end early */
@@ -182,7 +183,7 @@ static void find_ways_up(pruner *p) {
  * ball it continues far enough compared with the solid's width at the joint and its own girth (the
  * height of a ridge is half its girth, however high), and that node's ball touches two separate
  * sides, where balls of noise touch nearly one place. */
-static bool is_limb(const pruner *p, size_t count) {
+static bool is_limb(const pruner *p, size_t count, double slender) {
     const uint32_t *path = p->path;
     double least = fmax((p->reach - 1) * p->widths[path[0]], SPACINGS * p->spacing);
     double farthest = 0, height = p->radii[path[count - 1]];
@@ -194,7 +195,7 @@ static bool is_limb(const pruner *p, size_t count) {
         if (i + 1 < count)
             height += distance(p, v, path[i + 1]);
         if (away >= p->radii[path[0]] && fmin(farthest - away, height) > least &&
-            height > SLENDER * p->girths[v] && is_separated(p, v))
+            height > slender * p->girths[v] && is_separated(p, v))
             return true;
     }
     return false;
@@ -285,7 +286,7 @@ static void choose_paths(pruner *p) {
         if (starts && p->pruned->kept[owner[w]]) {
             p->path[0] = owner[w];
             size_t count = append_way_up(p, v, 1);
-            if (is_limb(p, count)) {
+            if (is_limb(p, count, SLENDER)) {
                 keep_way_down(p, w);
                 keep_path(p, 1, count);
             }
@@ -348,7 +349,7 @@ static void settle_root(pruner *p, uint32_t root) {
     reverse_path(p, count);
     size_t before = count;
     count = front == EDGE_NONE ? count : append_way_up(p, front, count);
-    if (degree < 3 || is_limb(p, count)) {
+    if (degree < 3 || is_limb(p, count, SLENDER)) {
         keep_path(p, before - 1, count);
         return;
     }
@@ -368,7 +369,7 @@ static void widen_root(pruner *p, uint32_t root) {
         reverse_path(p, before);
         p->path[before] = root;
         size_t count = append_way_up(p, side == 0 ? front : back, before + 1);
-        if (side == 0 && !is_limb(p, count))
+        if (side == 0 && !is_limb(p, count, OBLONG))
             return;
         keep_path(p, before, count);
     }
