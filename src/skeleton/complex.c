@@ -7,7 +7,7 @@
  * rounding cannot change the topology: a circumcentre outside the region (coarse samples) is
  * replaced by the centroid, that of a flat tetrahedron by a neighbour's.
  *
- * Cost: linear, and an inside test where a centre is replaced. */
+ * Cost: linear, and an inside test for most nodes. */
 #include "skeleton/complex.h"
 
 #include <stdlib.h>

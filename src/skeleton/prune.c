@@ -11,9 +11,11 @@
  * anything below some sample spacings counts as noise.
  *
  * The joint is the nearest kept node below, so that limbs that meet in a large ball count. A ball
- * keeps only a point. Kept paths end at the first ball that reaches nearly as far as any on them.
+ * keeps only a point, unless two ways from it are together far longer than wide. Kept paths end at
+ * the first ball beyond which none reaches farther in the direction of the path, so that no limb
+ * hooks into the rim of a cap; and a root that is no part of a limb is dropped.
  *
- * Cost: linear. */
+ * Cost: linear in practice; the search for an end is quadratic in the nodes within a hook. */
 #include "skeleton/prune.h"
 
 #include "core/memory.h"
@@ -23,11 +25,14 @@
 static const char STAGE[] = "pruning";
 
 static const double WIDTH_SHARE = 0.3;
+/* Length over half the girth: of a limb (0.71 on a ridge of a right angle), and of a whole solid.
+ */
 static const double SLENDER = 0.75;
 static const double OBLONG = 0.55;
 static const double SEPARATION = 2.8; /* in radii; pi on a tube */
 static const double HOOK = 2;         /* in radii: how far a hook reaches */
-static const double SHORT = 0.05;     /* of a radius, by which a limb may end early */
+static const double SHORT = 0.08;     /* of a radius, by which a limb may end early */
+static const double TINY = 0.3;       /* in sample spacings: no ball of a limb */
 enum { SPACINGS = 3 };                /* lengths within the unevenness of the samples */
 
 typedef struct pruner {
@@ -165,11 +170,12 @@ static bool is_separated(const pruner *p, uint32_t v) {
 }
 
 /* In peeling order, so that what is above a node is known first. Noise zigzags within a ball: of
- * what holds no separated node only the first step counts. */
+ * what holds no separated node, or only balls smaller than the samples tell, only the first step
+ * counts. */
 static void find_ways_up(pruner *p) {
     for (size_t i = 0; i < p->peeled; i++) {
         uint32_t v = p->order[i], w = p->below[v];
-        p->limb[v] = p->limb[v] || is_separated(p, v);
+        p->limb[v] = p->limb[v] || (is_separated(p, v) && p->radii[v] > TINY * p->spacing);
         double height = (p->limb[v] ? p->height[v] : p->radii[v]) + distance(p, v, w);
         if (p->up[w] == EDGE_NONE || height > p->height[w]) {
             p->up[w] = v;

@@ -114,16 +114,21 @@ def circle_radius(sides, radius):
 def last_ball(profile):
     """(z, radius) of the last ball on the axis of a solid of revolution before the end of its profile, a list
     of (z, r): the last that touches the sides no later than the end."""
-    cap = profile[-1][0]
-    low = profile[0][0]
-    best = (cap, 0.0)
-    steps = 4000
-    for i in range(steps, 0, -1):
-        z = low + (cap - low) * i / steps
-        sides = min(distance_to_segment((z, 0.0), a, b) for a, b in zip(profile, profile[1:]))
-        if sides <= cap - z + 1e-9:
-            return z, sides
-    return best
+    low, cap = profile[0][0], profile[-1][0]
+
+    def sides(z):
+        return min(distance_to_segment((z, 0.0), a, b) for a, b in zip(profile, profile[1:]))
+
+    outer = cap
+    for i in range(199, 0, -1):
+        inner = low + (cap - low) * i / 200
+        if sides(inner) <= cap - inner:
+            for _ in range(20):
+                middle = 0.5 * (inner + outer)
+                inner, outer = (middle, outer) if sides(middle) <= cap - middle else (inner, middle)
+            return inner, sides(inner)
+        outer = inner
+    return cap, 0.0
 
 
 def distance_to_segment(p, a, b):
@@ -188,7 +193,7 @@ def vase(sides, rings, height, waves, depth):
     profile = [(height * i / (rings - 1), 1 + depth * math.sin(2 * math.pi * waves * i / (rings - 1)))
                for i in range(rings)]
     return revolved("vase", f"vase_{sides}_{rings}_{height:g}_{waves:g}_{depth:g}", profile, sides,
-                    waves == int(waves) and False)
+                    False)
 
 
 def bulge(sides, rings, length, size):
