@@ -117,7 +117,7 @@ const cli_command cli_command_export = {
     .description =
         "Writes results and their model into one file. Inputs are recognized by "
         "content, at most one of each kind: GUARDS.json, PIECES.vtk and PIECES.json, a "
-        "skeleton (.obj, .cg, .vtk), a model.\n"
+        "skeleton (.obj, .cg, .vtk, .swc), a model.\n"
         ".glb (Blender, browsers, three.js): a named node for the model, obstacles, "
         "each guard, each piece and the skeleton; extras hold the data of guards and pieces.\n"
         ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "

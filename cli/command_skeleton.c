@@ -15,17 +15,20 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE.obj|.cg|.vtk",
-                      "Skeleton; the extension selects OBJ lines, a curve graph, or VTK with radii "
-                      "(docs/formats.md); '-' writes VTK to standard output."),
+    CLI_OUTPUT_OPTION(
+        "FILE.obj|.cg|.vtk|.swc",
+        "Skeleton; the extension selects OBJ lines, a curve graph, VTK with radii, or "
+        "SWC, which holds no loops (docs/formats.md); '-' writes VTK to standard output."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of the translucent model with its skeleton."),
 };
 
 static starg_status choose_format(cli_session *session, const char *name,
                                   starg_skeleton_format *format) {
-    static const cli_extension known[] = {
-        {".obj", STARG_SKELETON_OBJ}, {".cg", STARG_SKELETON_CG}, {".vtk", STARG_SKELETON_VTK}};
+    static const cli_extension known[] = {{".obj", STARG_SKELETON_OBJ},
+                                          {".cg", STARG_SKELETON_CG},
+                                          {".vtk", STARG_SKELETON_VTK},
+                                          {".swc", STARG_SKELETON_SWC}};
     int found;
     starg_status status = cli_format_by_extension(
         session, name, known, sizeof known / sizeof *known, STARG_SKELETON_VTK, &found);
@@ -36,7 +39,7 @@ static starg_status choose_format(cli_session *session, const char *name,
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "FILE.obj, .cg or .vtk"));
+    CLI_TRY(cli_announce_needed(session, v->output, "FILE.obj, .cg, .vtk or .swc"));
     CLI_TRY(choose_format(session, v->output, &v->format));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
@@ -115,7 +118,7 @@ done:
 
 const cli_command cli_command_skeleton = {
     .name = "skeleton",
-    .usage = "MODEL -o FILE.obj|.cg|.vtk [options]",
+    .usage = "MODEL -o FILE.obj|.cg|.vtk|.swc [options]",
     .summary = "compute the curve skeleton of a solid",
     .description =
         "Computes the curve skeleton by eroding the medial axis: a graph of interior points with "

@@ -84,7 +84,7 @@ const cli_command cli_command_view = {
         "PIECES.vtk and PIECES.json: coloured pieces, which can be exploded.\n"
         "MAP.vtu: both solids of 'starguard map --solid' side by side, in the colours of their "
         "pieces, or with a checker or coordinate lines carried over.\n"
-        "A skeleton (.obj, .cg, .vtk of 'starguard skeleton') with its radii.\n"
+        "A skeleton (.obj, .cg, .vtk, .swc of 'starguard skeleton') with its radii.\n"
         "A morph (the folder of 'starguard morph', or its .glb) with a time slider; with its "
         "report (--report) the page names both shapes.\n"
         "A database, or a table of 'starguard db matrix': distances, names and thumbnails.\n"

@@ -49,7 +49,7 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
         return KIND_ANIMATION;
     if (strncmp(head, vtk, sizeof vtk - 1) == 0)
         return strstr(head, "DATASET POLYDATA") != NULL ? KIND_SKELETON : KIND_RESULT;
-    if (strncmp(head, curve, sizeof curve - 1) == 0)
+    if (strncmp(head, curve, sizeof curve - 1) == 0 || cli_has_extension(name, ".swc"))
         return KIND_SKELETON;
     if (*first == '{' || strncmp(first, "<?xml", 5) == 0 || strncmp(first, "<VTKFile", 8) == 0 ||
         strncmp(head, certificate, sizeof certificate - 1) == 0)

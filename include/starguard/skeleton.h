@@ -57,17 +57,19 @@ typedef enum starg_skeleton_format {
     STARG_SKELETON_AUTO = 0, /* by name                                      */
     STARG_SKELETON_OBJ = 1,  /* v and l                                      */
     STARG_SKELETON_CG = 2,   /* curve graph: a line of counts, v and e       */
-    STARG_SKELETON_VTK = 3   /* legacy polydata; radii as point data */
+    STARG_SKELETON_VTK = 3,  /* legacy polydata; radii as point data */
+    STARG_SKELETON_SWC = 4   /* nodes with radius and parent; trees only */
 } starg_skeleton_format;
 
 /* Writes a skeleton; path "-" is standard output and needs a format. The file is written completely
- * or not at all. Errors: ARGUMENT (unknown file extension), WRITE, MEMORY, CANCELLED. */
+ * or not at all. Errors: ARGUMENT (unknown file extension, a loop in SWC), WRITE, MEMORY,
+ * CANCELLED. */
 STARG_API starg_status starg_skeleton_write(starg_context *context, const starg_skeleton *skeleton,
                                             const char *path, starg_skeleton_format format);
 
 /* Reads a file of starg_skeleton_write, recognized by content. Components, loops, joints and ends
- * are counted; radii are NULL unless the file is VTK; vertex_nodes, cuts, mends and homotopic are
- * not stored. Errors: READ, FORMAT (with the line), MEMORY. */
+ * are counted; radii are NULL unless the file is VTK or SWC; vertex_nodes, cuts, mends and
+ * homotopic are not stored. Errors: READ, FORMAT (with the line), MEMORY. */
 STARG_API starg_status starg_skeleton_read(starg_context *context, const char *path,
                                            starg_skeleton **out);
 

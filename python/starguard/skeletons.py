@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _OPTIONS = Options("starg_skeleton_options", old={"node_count": "nodes"})
 _FORMATS = {"auto": lib.STARG_SKELETON_AUTO, "obj": lib.STARG_SKELETON_OBJ,
-            "cg": lib.STARG_SKELETON_CG, "vtk": lib.STARG_SKELETON_VTK}
+            "cg": lib.STARG_SKELETON_CG, "vtk": lib.STARG_SKELETON_VTK, "swc": lib.STARG_SKELETON_SWC}
 
 
 @dataclass(frozen=True, eq=False)

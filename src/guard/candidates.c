@@ -65,6 +65,7 @@ static starg_status skeletal_candidates(starg_context *context, const candidate_
     starg_skeleton_options options;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
+    options.prune = 1; /* short branches are places too */
     starg_status status = starg_skeleton_create(context, shape->proxy, &options, &skeleton);
     if (status == STARG_ERROR_MESH) {
         starg_log(context, STARG_LOG_NOTICE,

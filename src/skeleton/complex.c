@@ -7,13 +7,16 @@
  * rounding cannot change the topology: a circumcentre outside the region (coarse samples) is
  * replaced by the centroid, that of a flat tetrahedron by a neighbour's.
  *
- * Cost: linear, and an inside test where a centre is replaced. */
+ * Cost: linear, and an inside test for most nodes. */
 #include "skeleton/complex.h"
+
+#include <stdlib.h>
 
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
+#include "skeleton/graph.h"
 #include "skeleton/medial.h"
 
 static const char STAGE[] = "medial complex";
@@ -22,6 +25,8 @@ enum { BLOCK = 256 };
 
 /* Threshold on six times the volume over the cubed longest edge. */
 static const double FLAT = 1e-4;
+/* Share of a ball's radius up to which its sphere passes through a point. */
+static const double CLOSE = 1e-3;
 
 typedef struct builder {
     starg_context *context;
@@ -42,6 +47,10 @@ static starg_status take_nodes(builder *b, const bool *inside) {
     STARG_NEW(b->context, STAGE, b->node_of, b->tetrahedra->count);
     for (size_t t = 0; t < b->tetrahedra->count; t++)
         b->node_of[t] = inside[t] ? (uint32_t)c->node_count++ : EDGE_NONE;
+    c->tetrahedron_count = c->node_count;
+    STARG_NEW(b->context, STAGE, c->node_of, c->node_count);
+    for (uint32_t n = 0; n < c->node_count; n++)
+        c->node_of[n] = n;
     STARG_NEW(b->context, STAGE, c->corners, c->node_count);
     STARG_NEW(b->context, STAGE, c->centres, c->node_count);
     STARG_NEW(b->context, STAGE, c->radii, c->node_count);
@@ -95,6 +104,19 @@ static double limit_of_radii(const starg_solid *solid) {
     return solid->check->embedded ? 1.01 * cbrt(0.75 / pi * solid->check->volume) : INFINITY;
 }
 
+/* From the planes of the faces of a tetrahedron; inside, no point of the surface is nearer. */
+static double distance_from_faces(const double *const v[4], const double p[3]) {
+    double least = INFINITY;
+    for (int k = 0; k < 4; k++) {
+        double normal[3], to_p[3];
+        vec3_triangle_normal(v[(k + 1) % 4], v[(k + 2) % 4], v[(k + 3) % 4], normal);
+        vec3_subtract(p, v[(k + 1) % 4], to_p);
+        double length = vec3_length(normal);
+        least = fmin(least, length > 0 ? fabs(vec3_dot(normal, to_p)) / length : 0);
+    }
+    return least;
+}
+
 static void place_node(const builder *b, size_t node) {
     medial_complex *c = b->complex;
     const double *v[4];
@@ -103,29 +125,88 @@ static void place_node(const builder *b, size_t node) {
     medial_ball ball;
     b->poor[node] = is_flat(v);
     if (b->poor[node] || !medial_circumscribe(v, &ball) || ball.radius > b->limit ||
-        is_beyond_border(b, node, v, ball.centre)) {
+        is_beyond_border(b, node, v, ball.centre) || !starg_solid_contains(b->solid, ball.centre)) {
         for (int j = 0; j < 3; j++)
             ball.centre[j] = 0.25 * v[0][j] + 0.25 * v[1][j] + 0.25 * v[2][j] + 0.25 * v[3][j];
-        ball.radius = starg_solid_contains(b->solid, ball.centre)
-                          ? starg_solid_distance(b->solid, ball.centre)
-                          : 0;
+        ball.radius = distance_from_faces(v, ball.centre);
     }
     vec3_copy(ball.centre, c->centres[node]);
     c->radii[node] = ball.radius;
 }
 
-/* A flat tetrahedron gets the largest ball of its neighbours: their spheres pass through three of
- * its points and close to the fourth. */
-static void place_flat_nodes(const builder *b) {
+typedef struct flat_seed {
+    double radius;
+    uint32_t node;
+} flat_seed;
+
+static int compare_seeds(const void *left, const void *right) {
+    const flat_seed *a = left, *b = right;
+    if (a->radius != b->radius)
+        return a->radius > b->radius ? -1 : 1;
+    return (a->node > b->node) - (a->node < b->node);
+}
+
+/* Does the ball of `giver` pass through the corners of `node`? */
+static bool passes_through(const builder *b, uint32_t giver, uint32_t node) {
+    const medial_complex *c = b->complex;
+    for (int k = 0; k < 4; k++) {
+        double d = vec3_distance(c->centres[giver], b->points + 3 * (size_t)c->corners[node][k]);
+        if (fabs(d - c->radii[giver]) > CLOSE * c->radii[giver])
+            return false;
+    }
+    return true;
+}
+
+/* The places of flat tetrahedra. Between cells of many cocircular points there are layers of them;
+ * a ball, the largest first, takes all that it passes through, so that the border between two cells
+ * stays simple. Others get the largest ball of their neighbours, which passes through three of
+ * their points. */
+static starg_status place_flat_nodes(builder *b) {
+    starg_status status = STARG_OK;
     medial_complex *c = b->complex;
-    for (size_t l = 0; l < c->link_count; l++)
-        for (int k = 0; k < 2; k++) {
-            uint32_t flat = c->links[l][k], other = c->links[l][1 - k];
-            if (b->poor[flat] && !b->poor[other] && c->radii[other] > c->radii[flat]) {
-                vec3_copy(c->centres[other], c->centres[flat]);
-                c->radii[flat] = c->radii[other];
+    curve_graph graph = {0};
+    flat_seed *seeds = NULL;
+    uint32_t *queue = NULL, *giver = NULL;
+    size_t count = 0;
+    STARG_NEW(b->context, STAGE, giver, c->node_count);
+    STARG_NEW(b->context, STAGE, queue, c->node_count);
+    STARG_NEW(b->context, STAGE, seeds, 2 * c->link_count);
+    STARG_TRY(graph_create(b->context, c->node_count, c->links, NULL, c->link_count, &graph));
+    for (uint32_t v = 0; v < c->node_count; v++) {
+        giver[v] = EDGE_NONE;
+        for (uint32_t j = graph.first[v]; !b->poor[v] && j < graph.first[v + 1]; j++)
+            if (b->poor[graph.next[j]]) {
+                seeds[count++] = (flat_seed){c->radii[v], v};
+                break;
             }
+    }
+    qsort(seeds, count, sizeof *seeds, compare_seeds);
+    for (int strict = 1; strict >= 0; strict--)
+        for (size_t i = 0; i < count; i++) {
+            size_t taken = 0;
+            queue[taken++] = seeds[i].node;
+            for (size_t at = 0; at < taken; at++)
+                for (uint32_t j = graph.first[queue[at]]; j < graph.first[queue[at] + 1]; j++) {
+                    uint32_t w = graph.next[j];
+                    if (!b->poor[w] || giver[w] != EDGE_NONE ||
+                        (strict && !passes_through(b, seeds[i].node, w)))
+                        continue;
+                    giver[w] = seeds[i].node;
+                    if (strict)
+                        queue[taken++] = w;
+                }
         }
+    for (size_t n = 0; n < c->node_count; n++)
+        if (giver[n] != EDGE_NONE) {
+            vec3_copy(c->centres[giver[n]], c->centres[n]);
+            c->radii[n] = c->radii[giver[n]];
+        }
+done:
+    graph_free(b->context, &graph);
+    starg_release(b->context, seeds);
+    starg_release(b->context, queue);
+    starg_release(b->context, giver);
+    return status;
 }
 
 static starg_status place_block(starg_context *context, void *shared, void *scratch, size_t item) {
@@ -204,13 +285,19 @@ done:
     return status;
 }
 
-/* The links of each edge, by counting sort. */
 static starg_status invert_links(builder *b) {
     starg_status status = STARG_OK;
     medial_complex *c = b->complex;
-    STARG_NEW_ZERO(b->context, STAGE, c->first_link, c->edge_count + 2);
+    STARG_NEW(b->context, STAGE, c->first_link, c->edge_count + 2);
     STARG_NEW(b->context, STAGE, c->edge_links, 3 * c->link_count);
+    complex_invert(c);
+done:
+    return status;
+}
+
+void complex_invert(medial_complex *c) {
     uint32_t *next = c->first_link + 1; /* advances to its final value as the lists fill */
+    memset(c->first_link, 0, (c->edge_count + 2) * sizeof *c->first_link);
     for (size_t l = 0; l < c->link_count; l++)
         for (int k = 0; k < 3; k++)
             next[c->link_edges[l][k] + 1]++;
@@ -219,8 +306,6 @@ static starg_status invert_links(builder *b) {
     for (size_t l = 0; l < c->link_count; l++)
         for (int k = 0; k < 3; k++)
             c->edge_links[next[c->link_edges[l][k]]++] = (uint32_t)l;
-done:
-    return status;
 }
 
 starg_status complex_create(starg_context *context, const starg_solid *solid, const double *points,
@@ -245,7 +330,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
                                 .item = place_block};
     STARG_TRY(starg_parallel_for(context, &loop));
     STARG_TRY(take_links(&b));
-    place_flat_nodes(&b);
+    STARG_TRY(place_flat_nodes(&b));
     STARG_TRY(take_edges(&b));
     STARG_TRY(invert_links(&b));
     *out = complex;
@@ -264,6 +349,7 @@ void complex_free(medial_complex *complex) {
         return;
     starg_context *context = complex->context;
     starg_release(context, complex->corners);
+    starg_release(context, complex->node_of);
     starg_release(context, complex->centres);
     starg_release(context, complex->radii);
     starg_release(context, complex->links);

@@ -8,13 +8,14 @@
 #include "mesh/solid.h"
 
 /* Interior Delaunay tetrahedra, interior triangles and interior edges are dual to Voronoi vertices,
- * edges and facets. Names here: a node is a tetrahedron, a link a triangle between two of them, a
- * sheet an interior edge. */
+ * edges and facets. Names here: a node is a tetrahedron, or several whose centres coincide, a link
+ * a triangle between two nodes, a sheet an interior edge. */
 typedef struct medial_complex {
     starg_context *context;
-    size_t node_count, link_count, edge_count;
+    size_t tetrahedron_count, node_count, link_count, edge_count;
     uint32_t (*corners)[4]; /* sample points of each tetrahedron */
-    double (*centres)[3];   /* circumcentre if inside, else a point of the tetrahedron */
+    uint32_t *node_of;      /* per tetrahedron */
+    double (*centres)[3];   /* of nodes: circumcentre if inside, else a point of the tetrahedron */
     double
         *radii; /* distance from the centre to the surface; 0 if rounding put the centre outside */
     uint32_t (*links)[2];      /* the two nodes of a link */
@@ -32,6 +33,8 @@ typedef struct medial_complex {
 starg_status complex_create(starg_context *context, const starg_solid *solid, const double *points,
                             size_t point_count, const delaunay *tetrahedra, const bool *inside,
                             medial_complex **out);
+/* Makes the lists of links of edges anew, after links have been removed. */
+void complex_invert(medial_complex *complex);
 void complex_free(medial_complex *complex);
 
 #endif

@@ -51,6 +51,15 @@ static uint32_t kept_degree(const curve *c, uint32_t v) {
     return degree;
 }
 
+/* Two links to one kept neighbour. */
+static bool is_doubly_linked(const curve *c, uint32_t v) {
+    for (uint32_t i = c->graph->first[v]; i < c->graph->first[v + 1]; i++)
+        for (uint32_t j = c->graph->first[v]; j < i; j++)
+            if (c->graph->next[i] == c->graph->next[j] && c->pruned->kept[c->graph->next[i]])
+                return true;
+    return false;
+}
+
 /* Copies a place from a neighbour that has one inside. Otherwise the neighbours are searched next;
  * returns true then too. */
 static bool borrow_place(curve *c, bool *placed, bool *tried, uint32_t v) {
@@ -162,7 +171,7 @@ static starg_status find_branches(curve *c) {
     STARG_NEW_ZERO(c->context, STAGE, c->special, count);
     STARG_NEW_ZERO(c->context, STAGE, c->walked, count);
     for (uint32_t v = 0; v < count; v++)
-        c->special[v] = c->pruned->kept[v] && kept_degree(c, v) != 2;
+        c->special[v] = c->pruned->kept[v] && (kept_degree(c, v) != 2 || is_doubly_linked(c, v));
     for (uint32_t v = 0; v < count; v++)
         if (c->special[v])
             STARG_TRY(walk_from(c, v));
@@ -258,7 +267,7 @@ done:
 /* Number of nodes between the special ones of a branch. */
 static size_t inner_count(const curve *c, const branch *b, double step) {
     uint32_t v = c->trails.data[b->first], w = c->trails.data[b->first + b->count - 1];
-    size_t least = v == w ? 2 : kept_degree(c, v) > 2 && kept_degree(c, w) > 2;
+    size_t least = v == w ? 2 : kept_degree(c, v) > 1 && kept_degree(c, w) > 1;
     double steps = step > 0 ? b->length / step : 0;
     size_t count = steps > 1.5 ? (size_t)(steps + 0.5) - 1 : 0;
     return count > least ? count : least;
@@ -366,13 +375,15 @@ static starg_status assign_vertices(curve *c) {
     STARG_NEW(c->context, STAGE, pole, mesh->vertex_count);
     STARG_NEW(c->context, STAGE, c->skeleton->vertex_nodes, mesh->vertex_count);
     memset(pole, 0xff, mesh->vertex_count * sizeof *pole);
-    for (uint32_t n = 0; n < complex->node_count; n++)
+    for (size_t t = 0; t < complex->tetrahedron_count; t++) {
+        uint32_t n = complex->node_of[t];
         for (int k = 0; c->pruned->kept[c->pruned->owner[n]] && k < 4; k++) {
-            uint32_t v = complex->corners[n][k];
+            uint32_t v = complex->corners[t][k];
             if (v < mesh->vertex_count &&
                 (pole[v] == EDGE_NONE || complex->radii[n] > complex->radii[pole[v]]))
                 pole[v] = n;
         }
+    }
     for (size_t v = 0; v < mesh->vertex_count; v++)
         c->skeleton->vertex_nodes[v] = pole[v] == EDGE_NONE
                                            ? nearest_node(c, mesh->vertices + 3 * v)

@@ -14,12 +14,12 @@ starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*
     STARG_NEW(context, STAGE, graph->next, 2 * link_count);
     uint32_t *end = graph->first + 1; /* of each list as it fills */
     for (size_t l = 0; l < link_count; l++)
-        for (int k = 0; marked[l] && k < 2; k++)
+        for (int k = 0; (marked == NULL || marked[l]) && k < 2; k++)
             end[links[l][k] + 1]++;
     for (size_t v = 0; v < node_count; v++)
         end[v + 1] += end[v];
     for (size_t l = 0; l < link_count; l++)
-        for (int k = 0; marked[l] && k < 2; k++)
+        for (int k = 0; (marked == NULL || marked[l]) && k < 2; k++)
             graph->next[end[links[l][k]]++] = links[l][1 - k];
 done:
     if (status != STARG_OK)

@@ -11,7 +11,7 @@ typedef struct curve_graph {
     uint32_t *next;
 } curve_graph;
 
-/* The graph of the marked pairs. Errors: MEMORY. */
+/* The graph of the marked pairs, or of all if `marked` is NULL. Errors: MEMORY. */
 starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*links)[2],
                           const bool *marked, size_t link_count, curve_graph *graph);
 void graph_free(starg_context *context, curve_graph *graph);

@@ -15,9 +15,10 @@ typedef struct pruned_graph {
  * leave their joint's ball as limbs do, by at least `reach` - 1 half widths of the solid at the
  * joint and some `spacing`s of the samples. Every component keeps a node, except components of
  * nodes that are not left, which are dropped. Errors: MEMORY. */
-starg_status prune_graph(starg_context *context, const medial_complex *complex,
-                         const curve_graph *graph, const bool *node_left, const double *values,
-                         double reach, double spacing, pruned_graph *pruned);
+starg_status prune_graph(starg_context *context, const starg_solid *solid,
+                         const medial_complex *complex, const curve_graph *graph,
+                         const bool *node_left, const double *values, double reach, double spacing,
+                         pruned_graph *pruned);
 void prune_free(starg_context *context, pruned_graph *pruned);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Skeleton files in the formats of write.c: OBJ (v and l, from 1), CG (v and e, from 1), and VTK
- * (legacy polydata as text, from 0, with radii). Counts of the graph are recomputed; whether it
- * lies in a solid is not checked. Cost: linear. */
+/* Skeleton files in the formats of write.c: OBJ (v and l, from 1), CG (v and e, from 1), VTK
+ * (legacy polydata as text, from 0, with radii), and SWC (a line of seven numbers for each node).
+ * Counts of the graph are recomputed; whether it lies in a solid is not checked. Cost: linear. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,12 +11,20 @@
 
 static const char STAGE[] = "skeleton file";
 
+/* A line of an SWC file; ids may have gaps, and parents may come later. */
+typedef struct swc_node {
+    int64_t id, parent;
+    size_t line;
+    uint32_t index;
+} swc_node;
+
 typedef struct reader {
     const starg_source *source;
     starg_scan scan;
     STARG_ARRAY(double) points;
     STARG_ARRAY(double) radii;
     STARG_ARRAY(uint32_t) edges;
+    STARG_ARRAY(swc_node) nodes; /* of an SWC file */
 } reader;
 
 static starg_status reject(const reader *r, size_t line, const char *what) {
@@ -181,6 +189,75 @@ done:
     return status;
 }
 
+/* ---- SWC ---- */
+
+static int compare_ids(const void *left, const void *right) {
+    const swc_node *a = left, *b = right;
+    return (a->id > b->id) - (a->id < b->id);
+}
+
+static starg_status read_swc_line(reader *r) {
+    starg_status status = STARG_OK;
+    swc_node node = {.index = (uint32_t)(r->points.count / 3)};
+    int64_t type;
+    double radius;
+    STARG_TRY(starg_scan_integer(&r->scan, "the id of a node", &node.id));
+    node.line = r->scan.line;
+    STARG_TRY(starg_scan_integer(&r->scan, "the type of a node", &type));
+    STARG_TRY(read_point(r));
+    STARG_TRY(starg_scan_real(&r->scan, "a radius", &radius));
+    if (!(radius >= 0 && radius < 1e101))
+        return reject(r, r->scan.line, "a radius is negative or not finite");
+    STARG_PUSH(r->source->context, STAGE, &r->radii, radius);
+    STARG_TRY(starg_scan_integer(&r->scan, "the parent of a node", &node.parent));
+    STARG_PUSH(r->source->context, STAGE, &r->nodes, node);
+    starg_scan_next_line(&r->scan);
+done:
+    return status;
+}
+
+/* Finds parents by their ids. */
+static starg_status join_parents(reader *r) {
+    starg_status status = STARG_OK;
+    swc_node *nodes = r->nodes.data;
+    size_t count = r->nodes.count;
+    qsort(nodes, count, sizeof *nodes, compare_ids);
+    for (size_t i = 0; i < count; i++) {
+        if (i > 0 && nodes[i].id == nodes[i - 1].id)
+            return reject(r, nodes[i].line, "two nodes have one id");
+        if (nodes[i].parent < 0)
+            continue;
+        const swc_node wanted = {.id = nodes[i].parent};
+        const swc_node *parent = bsearch(&wanted, nodes, count, sizeof *nodes, compare_ids);
+        if (parent == NULL || parent == &nodes[i])
+            return reject(r, nodes[i].line, "the parent of a node is missing");
+        STARG_PUSH(r->source->context, STAGE, &r->edges, parent->index);
+        STARG_PUSH(r->source->context, STAGE, &r->edges, nodes[i].index);
+    }
+done:
+    return status;
+}
+
+static starg_status read_swc(reader *r) {
+    starg_status status = STARG_OK;
+    starg_scan ahead;
+    starg_word word;
+    r->scan.comments = true;
+    while (ahead = r->scan, starg_scan_word(&ahead, &word))
+        STARG_TRY(read_swc_line(r));
+    STARG_TRY(join_parents(r));
+done:
+    return status;
+}
+
+/* The first word is a number. */
+static bool is_swc(const starg_source *source) {
+    starg_scan scan = starg_scan_make(source);
+    starg_word word;
+    scan.comments = true;
+    return starg_scan_word(&scan, &word) && word.text[0] >= '0' && word.text[0] <= '9';
+}
+
 /* ---- the graph ---- */
 
 static uint32_t root_of(uint32_t *parents, uint32_t v) {
@@ -249,7 +326,7 @@ starg_status starg_skeleton_read_memory(starg_context *context, const void *byte
     *out = NULL;
     STARG_TRY(starg_c_locale_enter(context, &locale));
     STARG_NEW_ZERO(context, STAGE, skeleton, 1);
-    STARG_TRY(is_vtk(&source) ? read_vtk(&r) : read_lines(&r));
+    STARG_TRY(is_vtk(&source) ? read_vtk(&r) : is_swc(&source) ? read_swc(&r) : read_lines(&r));
     STARG_TRY(finish(&r, skeleton));
     *out = skeleton;
 done:
@@ -257,6 +334,7 @@ done:
     STARG_ARRAY_FREE(context, &r.points);
     STARG_ARRAY_FREE(context, &r.radii);
     STARG_ARRAY_FREE(context, &r.edges);
+    STARG_ARRAY_FREE(context, &r.nodes);
     if (status != STARG_OK)
         starg_skeleton_free(context, skeleton);
     return status;

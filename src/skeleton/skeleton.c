@@ -13,6 +13,7 @@
 #include "core/fields.h"
 #include "skeleton/complex.h"
 #include "skeleton/conform.h"
+#include "skeleton/contract.h"
 #include "skeleton/curve.h"
 #include "skeleton/erosion.h"
 #include "skeleton/graph.h"
@@ -79,15 +80,34 @@ static starg_status count_attempt(starg_context *context, attempt *a) {
                           a->eroded.link_left, a->complex->link_count, &a->parts, &a->loops);
 }
 
-/* Labels, complex and erosion of conformed samples. */
+/* Complex and erosion of labelled samples. */
+static starg_status erode(starg_context *context, const starg_solid *solid, const conformed *from,
+                          bool contract, attempt *a) {
+    starg_status status = STARG_OK;
+    const surface_samples *samples = &from->samples;
+    STARG_TRY(complex_create(context, solid, samples->points, samples->point_count,
+                             from->tetrahedra, a->labels.inside, &a->complex));
+    if (contract)
+        STARG_TRY(contract_complex(context, a->complex));
+    STARG_TRY(erosion_run(context, a->complex, &a->eroded));
+done:
+    return status;
+}
+
+/* Labels, complex and erosion of conformed samples. What shrinks to a point may be stuck once parts
+ * of it are contracted; then nothing is contracted. */
 static starg_status make_attempt(starg_context *context, const starg_solid *solid,
                                  const conformed *from, attempt *a) {
     starg_status status = STARG_OK;
     const surface_samples *samples = &from->samples;
     STARG_TRY(labels_create(context, solid, samples, from->tetrahedra, &a->labels));
-    STARG_TRY(complex_create(context, solid, samples->points, samples->point_count,
-                             from->tetrahedra, a->labels.inside, &a->complex));
-    STARG_TRY(erosion_run(context, a->complex, &a->eroded));
+    STARG_TRY(erode(context, solid, from, true, a));
+    if (a->eroded.cut_count > solid->check->cavities) {
+        complex_free(a->complex);
+        a->complex = NULL;
+        erosion_free(context, &a->eroded);
+        STARG_TRY(erode(context, solid, from, false, a));
+    }
     STARG_TRY(count_attempt(context, a));
     a->spacing = sqrt(1.1547 * solid->check->area / (double)samples->point_count);
 done:
@@ -274,8 +294,8 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     STARG_TRY(find_graph(context, solid, &a));
     STARG_TRY(graph_create(context, a.complex->node_count, a.complex->links, a.eroded.link_left,
                            a.complex->link_count, &graph));
-    STARG_TRY(prune_graph(context, a.complex, &graph, a.node_left, a.eroded.values, options->prune,
-                          a.spacing, &pruned));
+    STARG_TRY(prune_graph(context, solid, a.complex, &graph, a.node_left, a.eroded.values,
+                          options->prune, a.spacing, &pruned));
     STARG_TRY(
         curve_create(context, solid, a.complex, &graph, &pruned, options->node_count, skeleton));
     STARG_TRY(describe(context, solid, &a, skeleton));

@@ -3,6 +3,7 @@
  * line of the error. */
 #include "support.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,6 +72,69 @@ static void polylines(void **state) {
     test_context_free(context);
 }
 
+static void expect_same_trees(const starg_skeleton *read, const starg_skeleton *made) {
+    double sums[2] = {0, 0}, radii[2] = {0, 0};
+    const starg_skeleton *both[] = {read, made};
+    for (int i = 0; i < 2; i++) {
+        const starg_skeleton *s = both[i];
+        for (size_t e = 0; e < s->edge_count; e++) {
+            const double *a = s->positions + 3 * (size_t)s->edges[2 * e];
+            const double *b = s->positions + 3 * (size_t)s->edges[2 * e + 1];
+            sums[i] += fabs(a[0] - b[0]) + 3 * fabs(a[1] - b[1]) + 7 * fabs(a[2] - b[2]);
+        }
+        for (size_t v = 0; v < s->node_count; v++)
+            radii[i] += s->radii[v] * (1 + s->positions[3 * v] * s->positions[3 * v]);
+    }
+    assert_true(fabs(sums[0] - sums[1]) <= 1e-9 * sums[1]);
+    assert_true(fabs(radii[0] - radii[1]) <= 1e-9 * radii[1]);
+    assert_int_equal(read->node_count, made->node_count);
+    assert_int_equal(read->edge_count, made->edge_count);
+    assert_int_equal(read->components, made->components);
+    assert_int_equal(read->joints, made->joints);
+    assert_int_equal(read->ends, made->ends);
+}
+
+/* SWC has an order of its own: each node after its parent. A loop is refused. */
+static void trees(void **state) {
+    (void)state;
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/test_skeleton_%ld.swc", (long)getpid());
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "octopus", 800);
+    starg_skeleton *made = NULL, *read = NULL;
+    test_ok(context, starg_skeleton_create(context, solid, NULL, &made));
+    test_ok(context, starg_skeleton_write(context, made, path, STARG_SKELETON_AUTO));
+    test_ok(context, starg_skeleton_read(context, path, &read));
+    expect_same_trees(read, made);
+    for (size_t e = 0; e < read->edge_count; e++)
+        assert_true(read->edges[2 * e] < read->edges[2 * e + 1]);
+    unlink(path);
+    starg_skeleton_free(context, read);
+    starg_skeleton_free(context, made);
+    starg_solid_free(solid);
+
+    solid = test_sample(context, "torus", 800);
+    test_ok(context, starg_skeleton_create(context, solid, NULL, &made));
+    assert_int_equal(starg_skeleton_write(context, made, path, STARG_SKELETON_AUTO),
+                     STARG_ERROR_ARGUMENT);
+    assert_non_null(strstr(starg_context_error(context)->message, "1 loop, and SWC"));
+    assert_int_equal(access(path, F_OK), -1);
+    starg_skeleton_free(context, made);
+    starg_solid_free(solid);
+
+    /* gaps between ids, a parent after its child, comments */
+    test_ok(context, read_text(context,
+                               "# by hand\n\n7 3 1 0 0 .5 90 # tip\n90 1 0 0 0 1 -1\n"
+                               "8 0 0 1 0 .25 90\n",
+                               &read));
+    assert_int_equal(read->node_count, 3);
+    assert_int_equal(read->edge_count, 2);
+    assert_int_equal(read->ends, 2);
+    assert_true(read->radii[0] == .5 && read->radii[1] == 1 && read->radii[2] == .25);
+    starg_skeleton_free(context, read);
+    test_context_free(context);
+}
+
 #define VTK_HEAD "# vtk DataFile Version 3.0\ncurve\nASCII\nDATASET POLYDATA\n"
 
 static void refusals(void **state) {
@@ -97,6 +161,11 @@ static void refusals(void **state) {
         {VTK_HEAD "POINTS 1 double\n0 0 0\nPOINT_DATA 1\nSCALARS radius double 1\n"
                   "LOOKUP_TABLE default\n-1\n",
          "negative"},
+        {"1 0 0 0 0 1 -1\n1 0 1 0 0 1 -1\n", "two nodes have one id"},
+        {"1 0 0 0 0 1 -1\n2 0 1 0 0 1 3\n", "parent of a node is missing"},
+        {"1 0 0 0 0 1 1\n", "parent of a node is missing"},
+        {"1 0 0 0 0 -1 -1\n", "negative"},
+        {"1 0 0 0 0 1\n", "parent"},
         {"# vtk DataFile Version 3.0\ncurve\nBINARY\nDATASET POLYDATA\n", "ASCII"},
     };
     starg_context *context = test_context(1);
@@ -117,15 +186,17 @@ static const char GOOD[] =
              "LINES 3 9\n2 0 1\n2 1 2\n2 1 3\nPOINT_DATA 4\nSCALARS radius double 1\n"
              "LOOKUP_TABLE default\n.5\n.5\n.25\n.125\n";
 
+static const char TREE[] = "# tree\n1 0 0 0 0 1 -1\n2 0 1 0 0 .5 1\n3 0 0 1 0 .5 1\n"
+                           "4 0 0 2 0 .25 3\n5 0 9 9 9 1 -1\n";
+
 /* Truncated files and files with changed bytes are read or rejected. */
-static void damaged_files(void **state) {
-    (void)state;
+static void damage(const char *good, size_t size_of_good) {
     starg_context *context = test_context(1);
     char text[sizeof GOOD];
     for (size_t i = 0; i < 4000; i++) {
         starg_rng rng = starg_rng_make(3, 1, i);
-        size_t size = sizeof GOOD - 1;
-        memcpy(text, GOOD, sizeof GOOD);
+        size_t size = size_of_good - 1;
+        memcpy(text, good, size_of_good);
         if (i < size)
             size = i;
         else
@@ -139,6 +210,12 @@ static void damaged_files(void **state) {
         starg_skeleton_free(context, s);
     }
     test_context_free(context);
+}
+
+static void damaged_files(void **state) {
+    (void)state;
+    damage(GOOD, sizeof GOOD);
+    damage(TREE, sizeof TREE);
 }
 
 static void scarce_memory(void **state) {
@@ -160,7 +237,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trips),   cmocka_unit_test(polylines),
         cmocka_unit_test(refusals),      cmocka_unit_test(damaged_files),
-        cmocka_unit_test(scarce_memory),
+        cmocka_unit_test(scarce_memory), cmocka_unit_test(trees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Contraction of the medial complex where centres coincide.
+ *
+ * Problem: the vertices of drawn solids are cospherical, ring by ring and cube by cube. Delaunay's
+ * cell of such points is one polytope, its Voronoi vertex one point, but cut into tetrahedra it is
+ * many nodes at one place, with links of no length between them; along them every measure of
+ * lengths, ends and joints fails. Symbolic perturbation leaves it so: it settles the topology of
+ * the cuts and not their geometry. Shaken a little, the nodes lie close together instead.
+ *
+ * Stages: nodes joined by links are gathered about the largest ball whose centre is within a small
+ * share of its radius; not farther, so that a finely sampled axis stays an axis. The links and
+ * sheets within a cluster are then contracted: first a spanning tree, then again and again a sheet
+ * of which one link is left, together with that link. Each is the contraction of a contractible
+ * subcomplex, hence the homotopy type stays, whatever the coordinates are. A cluster of which links
+ * or sheets remain (it holds a loop or a void) is given up.
+ *
+ * Every sheet and link that remains is as before, but that its ends may be clusters: a sheet with a
+ * free link still collapses. Between two clusters there may be several links.
+ *
+ * Cost: linear, and sorting. */
+#include "skeleton/contract.h"
+
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/topology.h"
+#include "skeleton/edge_table.h"
+#include "skeleton/graph.h"
+
+static const char STAGE[] = "medial complex";
+
+/* Of the radius: nearer centres are one. */
+static const double SHARE = 0.01;
+
+typedef struct seed {
+    double radius;
+    uint32_t node;
+} seed;
+
+typedef struct contractor {
+    starg_context *context;
+    medial_complex *complex;
+    uint32_t *leader;  /* per node: that of its cluster */
+    bool *given_up;    /* per leader */
+    bool *contracted;  /* per link */
+    uint32_t *pending; /* per edge: links of its sheet that are not contracted */
+    bool *within;      /* per edge: are all links of its sheet in one cluster, and is it a sheet? */
+    bool *paired;      /* per edge: contracted with its last link */
+    STARG_ARRAY(uint32_t) queue;
+} contractor;
+
+static bool is_near(const medial_complex *c, uint32_t centre, uint32_t other) {
+    double least = SHARE * c->radii[centre];
+    return vec3_distance_squared(c->centres[centre], c->centres[other]) <= least * least;
+}
+
+static int compare_seeds(const void *left, const void *right) {
+    const seed *a = left, *b = right;
+    if (a->radius != b->radius)
+        return a->radius > b->radius ? -1 : 1;
+    return (a->node > b->node) - (a->node < b->node);
+}
+
+/* Nodes that are near to a neighbour, by falling radius. */
+static starg_status find_seeds(const contractor *k, seed **seeds, size_t *count) {
+    starg_status status = STARG_OK;
+    const medial_complex *c = k->complex;
+    bool *close = NULL;
+    STARG_NEW_ZERO(k->context, STAGE, close, c->node_count);
+    STARG_NEW(k->context, STAGE, *seeds, c->node_count);
+    for (size_t l = 0; l < c->link_count; l++) {
+        uint32_t a = c->links[l][0], b = c->links[l][1];
+        if (is_near(c, a, b) || is_near(c, b, a))
+            close[a] = close[b] = true;
+    }
+    for (uint32_t v = 0; v < c->node_count; v++)
+        if (close[v])
+            (*seeds)[(*count)++] = (seed){c->radii[v], v};
+    qsort(*seeds, *count, sizeof **seeds, compare_seeds);
+done:
+    starg_release(k->context, close);
+    return status;
+}
+
+/* Gathers the nodes that links join to `first` within its reach. */
+static starg_status grow(contractor *k, const curve_graph *graph, uint32_t first) {
+    starg_status status = STARG_OK;
+    k->queue.count = 0;
+    k->leader[first] = first;
+    STARG_PUSH(k->context, STAGE, &k->queue, first);
+    for (size_t i = 0; i < k->queue.count; i++) {
+        uint32_t v = k->queue.data[i];
+        for (uint32_t j = graph->first[v]; j < graph->first[v + 1]; j++) {
+            uint32_t w = graph->next[j];
+            if (k->leader[w] != EDGE_NONE || !is_near(k->complex, first, w))
+                continue;
+            k->leader[w] = first;
+            STARG_PUSH(k->context, STAGE, &k->queue, w);
+        }
+    }
+done:
+    return status;
+}
+
+static starg_status find_clusters(contractor *k) {
+    starg_status status = STARG_OK;
+    const medial_complex *c = k->complex;
+    curve_graph graph = {0};
+    seed *seeds = NULL;
+    size_t count = 0;
+    STARG_NEW(k->context, STAGE, k->leader, c->node_count);
+    memset(k->leader, 0xff, c->node_count * sizeof *k->leader);
+    STARG_TRY(find_seeds(k, &seeds, &count));
+    STARG_TRY(graph_create(k->context, c->node_count, c->links, NULL, c->link_count, &graph));
+    for (size_t i = 0; i < count; i++)
+        if (k->leader[seeds[i].node] == EDGE_NONE)
+            STARG_TRY(grow(k, &graph, seeds[i].node));
+    for (uint32_t v = 0; v < c->node_count; v++)
+        if (k->leader[v] == EDGE_NONE)
+            k->leader[v] = v;
+done:
+    graph_free(k->context, &graph);
+    starg_release(k->context, seeds);
+    return status;
+}
+
+static bool is_within(const contractor *k, size_t link) {
+    const uint32_t *ends = k->complex->links[link];
+    return k->leader[ends[0]] == k->leader[ends[1]];
+}
+
+static starg_status contract_link(contractor *k, size_t link) {
+    starg_status status = STARG_OK;
+    k->contracted[link] = true;
+    for (int j = 0; j < 3; j++) {
+        uint32_t edge = k->complex->link_edges[link][j];
+        if (--k->pending[edge] == 1 && k->within[edge])
+            STARG_PUSH(k->context, STAGE, &k->queue, edge);
+    }
+done:
+    return status;
+}
+
+static void count_pending(contractor *k) {
+    const medial_complex *c = k->complex;
+    memcpy(k->within, c->sheet, c->edge_count * sizeof *k->within);
+    for (size_t l = 0; l < c->link_count; l++)
+        for (int j = 0; j < 3; j++) {
+            k->pending[c->link_edges[l][j]]++;
+            if (!is_within(k, l))
+                k->within[c->link_edges[l][j]] = false;
+        }
+}
+
+static starg_status contract_trees(contractor *k) {
+    starg_status status = STARG_OK;
+    const medial_complex *c = k->complex;
+    uint32_t *sets = NULL;
+    STARG_NEW(k->context, STAGE, sets, c->node_count);
+    sets_make(sets, c->node_count);
+    k->queue.count = 0;
+    for (size_t l = 0; l < c->link_count; l++) {
+        uint32_t a = sets_find(sets, c->links[l][0]), b = sets_find(sets, c->links[l][1]);
+        if (!is_within(k, l) || a == b)
+            continue;
+        sets_join(sets, a, b);
+        STARG_TRY(contract_link(k, l));
+    }
+done:
+    starg_release(k->context, sets);
+    return status;
+}
+
+/* Contracts sheets with their last links, which leaves others with one. */
+static starg_status contract_sheets(contractor *k) {
+    starg_status status = STARG_OK;
+    const medial_complex *c = k->complex;
+    while (k->queue.count > 0) {
+        uint32_t edge = k->queue.data[--k->queue.count];
+        if (k->pending[edge] != 1)
+            continue;
+        k->paired[edge] = true;
+        for (uint32_t i = c->first_link[edge]; i < c->first_link[edge + 1]; i++)
+            if (!k->contracted[c->edge_links[i]])
+                STARG_TRY(contract_link(k, c->edge_links[i]));
+    }
+done:
+    return status;
+}
+
+/* Clusters of which something is left. */
+static void give_up(contractor *k) {
+    const medial_complex *c = k->complex;
+    for (size_t l = 0; l < c->link_count; l++) {
+        uint32_t leader = k->leader[c->links[l][0]];
+        if (!is_within(k, l))
+            continue;
+        if (!k->contracted[l])
+            k->given_up[leader] = true;
+        for (int j = 0; j < 3; j++) {
+            uint32_t edge = c->link_edges[l][j];
+            if (k->within[edge] && !k->paired[edge])
+                k->given_up[leader] = true;
+        }
+    }
+}
+
+/* Numbers clusters by their first nodes. */
+static starg_status take_nodes(contractor *k) {
+    starg_status status = STARG_OK;
+    medial_complex *c = k->complex;
+    uint32_t *numbers = NULL; /* of leaders */
+    double(*centres)[3] = NULL, *radii = NULL;
+    size_t count = 0;
+    STARG_NEW(k->context, STAGE, numbers, c->node_count);
+    STARG_NEW(k->context, STAGE, centres, c->node_count);
+    STARG_NEW(k->context, STAGE, radii, c->node_count);
+    memset(numbers, 0xff, c->node_count * sizeof *numbers);
+    for (uint32_t v = 0; v < c->node_count; v++) {
+        uint32_t leader = k->given_up[k->leader[v]] ? v : k->leader[v];
+        if (numbers[leader] == EDGE_NONE) {
+            vec3_copy(c->centres[leader], centres[count]);
+            radii[count] = c->radii[leader];
+            numbers[leader] = (uint32_t)count++;
+        }
+        c->node_of[v] = numbers[leader];
+    }
+    memcpy(c->centres, centres, count * sizeof *centres);
+    memcpy(c->radii, radii, count * sizeof *radii);
+    c->node_count = count;
+done:
+    starg_release(k->context, numbers);
+    starg_release(k->context, centres);
+    starg_release(k->context, radii);
+    return status;
+}
+
+/* Keeps the links between different nodes and all but the contracted sheets. */
+static void take_links(contractor *k) {
+    medial_complex *c = k->complex;
+    size_t count = 0;
+    for (size_t l = 0; l < c->link_count; l++) {
+        uint32_t a = c->links[l][0], b = c->links[l][1];
+        bool kept = !is_within(k, l) || k->given_up[k->leader[a]];
+        for (int j = 0; !kept && j < 3; j++)
+            if (k->paired[c->link_edges[l][j]])
+                c->sheet[c->link_edges[l][j]] = false;
+        if (!kept)
+            continue;
+        c->links[count][0] = c->node_of[a];
+        c->links[count][1] = c->node_of[b];
+        memmove(c->link_edges[count++], c->link_edges[l], sizeof *c->link_edges);
+    }
+    c->link_count = count;
+}
+
+starg_status contract_complex(starg_context *context, medial_complex *complex) {
+    starg_status status = STARG_OK;
+    contractor k = {.context = context, .complex = complex};
+    STARG_TRY(find_clusters(&k));
+    STARG_NEW_ZERO(context, STAGE, k.given_up, complex->node_count);
+    STARG_NEW_ZERO(context, STAGE, k.contracted, complex->link_count);
+    STARG_NEW_ZERO(context, STAGE, k.pending, complex->edge_count);
+    STARG_NEW(context, STAGE, k.within, complex->edge_count);
+    STARG_NEW_ZERO(context, STAGE, k.paired, complex->edge_count);
+    count_pending(&k);
+    STARG_TRY(contract_trees(&k));
+    STARG_TRY(contract_sheets(&k));
+    give_up(&k);
+    STARG_TRY(take_nodes(&k));
+    take_links(&k);
+    complex_invert(complex);
+done:
+    starg_release(context, k.leader);
+    starg_release(context, k.given_up);
+    starg_release(context, k.contracted);
+    starg_release(context, k.pending);
+    starg_release(context, k.within);
+    starg_release(context, k.paired);
+    STARG_ARRAY_FREE(context, &k.queue);
+    return status;
+}
