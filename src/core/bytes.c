@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "core/bytes.h"
+#include "core/ranks.h"
 
 static const char STAGE[] = "ranks";
 

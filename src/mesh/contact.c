@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "mesh/contact.h"
+#include "mesh/topology.h"
 
 #include <string.h>
 

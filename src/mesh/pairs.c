@@ -10,7 +10,7 @@
  * for the boxes of all that come after it. Without hubs the tree of all faces is asked.
  *
  * Cost: O(n log n) and the pairs, where faces are not long compared with their distances. */
-#include "mesh/pairs.h"
+#include "mesh/examine.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,7 +12,7 @@
 #include "star/strict/strict.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
-#include "visibility/parts.h"
+#include "visibility/kernel.h"
 
 static const char STAGE[] = "pieces";
 
