@@ -16,7 +16,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "core/locale.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "starguard/verify.h"
 #include "verify/pieces.h"

@@ -183,8 +183,4 @@ starg_status repair_turn_shells(repair_state *state);
 /* Resolves local intersections within a component. Requires a closed, oriented manifold mesh. */
 starg_status repair_untangle(repair_state *state);
 
-/* Replaces the surface by the boundary of what it encloses. Requires a closed surface with oriented
- * shells; leaves non-manifold edges and vertices to repair_split. */
-starg_status repair_unite(repair_state *state);
-
 #endif

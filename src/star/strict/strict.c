@@ -12,11 +12,10 @@
  * no result (starg_time_is_long_over). Where it fails, which takes roundings that spoil every cut
  * of some piece, others are tried. Given tetrahedra are grown into regions first
  * (region_growing.c), which always succeeds, and the better one of both starts is searched. */
-#include "star/strict/strict.h"
+#include "star/decomposition.h"
 
 #include <math.h>
 
-#include "star/decomposition.h"
 #include "star/strict/finish/finish.h"
 #include "star/strict/partition/apply.h"
 #include "star/strict/partition/partition.h"
