@@ -7,10 +7,10 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-# A folder, and the public headers that it implements.
+# A folder, and the public headers that it implements; star reads the pieces that verify checks.
 layers="core:bits,context,export,fields,ranks,status,version geometry:
 mesh:check,mesh,repair,simplify,solid,space skeleton:skeleton visibility:visibility,kernel cover:cover
-guard:guard tetra:tetra sphere: star:decompose verify:verify sample:sample
+guard:guard tetra:tetra sphere: star:decompose,verify verify:verify sample:sample
 export:animation,page,picture,scene shape:database,descriptor,shape morph:morph,solidmap"
 above=""
 headers_above=""

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Checks format, layers, names of files in comments and pages, and that public headers compile alone.
+# Checks format, layers, sizes of rooms, names of files in comments and pages, and that public headers compile
+# alone.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -10,6 +11,7 @@ clang-format --dry-run -Werror $sources
 
 scripts/check-layers.sh
 python3 scripts/dead-names.py
+python3 scripts/budget.py
 
 # The licence line of each source.
 unmarked=$(git ls-files '*.c' '*.h' '*.cpp' '*.py' '*.sh' '*.js' '*.mjs' '*.cmake' '*CMakeLists.txt' |

@@ -8,7 +8,7 @@
 
 #include "guard/guards_fields.h"
 #include "morph/map.h"
-#include "shape/descriptor_fields.h"
+#include "shape/measures.h"
 #include "star/decomposition.h"
 #include "starguard/starguard.h"
 

@@ -130,8 +130,8 @@ typedef struct starg_pieces_report {
     double ball_worst, ball_mean, ball_above_10;
 } starg_pieces_report;
 
-/* Reads PIECES.vtk with a separate reader: a legacy VTK unstructured grid of tetrahedra with the
- * integers `piece` (docs/formats.md), text or binary; `name` is used in messages. Errors: FORMAT
+/* Reads PIECES.vtk as it stands: a legacy VTK unstructured grid of tetrahedra with the integers
+ * `piece` (docs/formats.md), text or binary; `name` is used in messages. Errors: FORMAT
  * (with line or byte, or the tetrahedron), RANGE (with the vertex), MEMORY, CANCELLED. */
 STARG_API starg_status starg_pieces_mesh_read_memory(starg_context *context, const void *bytes,
                                                      size_t size, const char *name,

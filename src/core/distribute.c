@@ -16,7 +16,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "core/worker_group.h"
+#include "core/workers.h"
 
 enum { PREFETCH = 2, SHARES = 4 };
 

@@ -189,3 +189,19 @@ void starg_output_discard(starg_output *output) {
     }
     reset_output(output);
 }
+
+starg_status starg_c_locale_enter(starg_context *context, starg_c_locale *locale) {
+    locale->own = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (locale->own == (locale_t)0)
+        return starg_fail_memory(context, "locale");
+    locale->before = uselocale(locale->own);
+    return STARG_OK;
+}
+
+void starg_c_locale_leave(starg_c_locale *locale) {
+    if (locale->own == (locale_t)0)
+        return;
+    uselocale(locale->before);
+    freelocale(locale->own);
+    *locale = (starg_c_locale){0};
+}

@@ -4,6 +4,7 @@
 #ifndef STARG_CORE_FILE_H
 #define STARG_CORE_FILE_H
 
+#include <locale.h>
 #include <stdio.h>
 
 #include "core/context.h"
@@ -40,5 +41,18 @@ starg_status starg_output_commit(starg_output *output) STARG_PRIVATE(starg_outpu
 
 /* Closes and removes the temporary file; does nothing after commit. */
 void starg_output_discard(starg_output *output) STARG_PRIVATE(starg_output_discard);
+
+/* Numbers are read and written as in C, whatever the locale of the program. */
+
+typedef struct starg_c_locale {
+    locale_t own, before;
+} starg_c_locale;
+
+/* Gives the calling thread the C locale until it leaves; `locale` starts as zero. Errors: MEMORY.
+ */
+starg_status starg_c_locale_enter(starg_context *context, starg_c_locale *locale)
+    STARG_PRIVATE(starg_c_locale_enter);
+/* Does nothing if it was not entered. */
+void starg_c_locale_leave(starg_c_locale *locale) STARG_PRIVATE(starg_c_locale_leave);
 
 #endif

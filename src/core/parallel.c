@@ -4,7 +4,6 @@
  * processes (core/distribute.c). */
 #include "core/parallel.h"
 
-#include "core/worker_group.h"
 #include "core/workers.h"
 
 void worker_group_fail(worker_group *group, size_t item, starg_status status) {

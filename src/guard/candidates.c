@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "guard/proxy.h"
-#include "mesh/flood.h"
+#include "mesh/solid.h"
 #include "skeleton/medial.h"
 #include "starguard/skeleton.h"
 

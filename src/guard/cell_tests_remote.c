@@ -12,7 +12,6 @@
 #include "core/context.h"
 #include "guard/cell_tests.h"
 #include "guard/cells.h"
-#include "visibility/columns.h"
 #include "visibility/rows.h"
 
 static const char STAGE[] = "search";

@@ -25,7 +25,7 @@
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
-#include "visibility/columns.h"
+#include "visibility/rows.h"
 #include "visibility/scene.h"
 
 enum {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A lower bound for guards anywhere that costs next to nothing: each part of the solid needs as
- * many as must see a face, and one more if its kernel has no interior (visibility/parts.h). What
+ * many as must see a face, and one more if its kernel has no interior (visibility/kernel.h). What
  * must be seen is what enough candidates see. Cost: O(n) for each candidate, and a linear program
  * for each part. */
 #include "guard/stages.h"
-#include "visibility/parts.h"
+#include "visibility/kernel.h"
 
 static const char STAGE[] = "guard";
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "guard/pool.h"
 
-#include "visibility/columns.h"
+#include "visibility/rows.h"
 #include "visibility/scene.h"
 
 static const char STAGE[] = "guard";

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "visibility/columns.h"
+#include "visibility/rows.h"
 
 static const char STAGE[] = "search";
 

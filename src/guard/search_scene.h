@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "guard/witnesses.h"
 #include "visibility/box.h"
-#include "visibility/parts.h"
+#include "visibility/kernel.h"
 #include "visibility/scene.h"
 
 /* Where guards may stand, what occludes, and what must be seen. */

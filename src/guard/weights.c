@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "visibility/columns.h"
+#include "visibility/rows.h"
 
 static const char STAGE[] = "guard";
 

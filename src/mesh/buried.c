@@ -15,14 +15,13 @@
  * Stages: the faces at the vertex; are they a cycle without folds; points above and below them
  * until both parts are known. Cost: O(d^2) contacts of triangles for d faces, and a few segments.
  */
-#include "mesh/buried.h"
+#include "mesh/solid.h"
 
 #include <math.h>
 
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/contact.h"
 #include "mesh/topology.h"
 
 enum { MOST = 64 }; /* faces at a vertex */

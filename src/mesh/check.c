@@ -16,11 +16,9 @@
 #include "core/memory.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
-#include "mesh/contact.h"
 #include "mesh/examine.h"
 #include "mesh/mesh.h"
-#include "mesh/pairs.h"
-#include "mesh/wings.h"
+#include "mesh/topology.h"
 
 typedef struct checker {
     starg_context *context;

@@ -12,7 +12,7 @@
  * Invariant: no face meets a cube that is reached, so a path along the centres of cubes leads
  * there. Cost: linear in the cubes, two bits each, and in the cubes about the boxes of the faces.
  */
-#include "mesh/flood.h"
+#include "mesh/solid.h"
 
 #include <math.h>
 

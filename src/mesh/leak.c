@@ -2,7 +2,7 @@
 /* Where the space that is reached from a point leaks.
  *
  * Problem: whoever stands in a room of a soup means that room. Through a hole that nobody saw, the
- * flood (mesh/flood.h) reaches the outside of the model, or other rooms, and guards stand there.
+ * flood (mesh/solid.h) reaches the outside of the model, or other rooms, and guards stand there.
  * Compilers of game levels show the way to such a hole; so does this.
  *
  * Stages: a flood by breadth from the point, which notes how each cube was reached; another from
@@ -16,7 +16,7 @@
  *
  * Invariant: the way goes through centres of cubes that are reached, so it meets no face. The same
  * scene gives the same way. Cost: linear in the cubes, a byte and a bit each. */
-#include "mesh/leak.h"
+#include "mesh/solid.h"
 
 #include <string.h>
 

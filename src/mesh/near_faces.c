@@ -5,7 +5,7 @@
  * Each list has a tree of its own. A place is above a face if the segment from it straight down, as
  * long as the height, meets the face: exact for the end of the segment as it is rounded. Distances
  * are rounded, as clearances are. Cost of a question: typically O(log n). */
-#include "mesh/near_faces.h"
+#include "mesh/solid.h"
 
 #include <math.h>
 

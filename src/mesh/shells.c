@@ -11,7 +11,7 @@
  * that crosses another along edges has points on both sides.
  *
  * Cost: O(log n) a shell and a contact, if few shells lie around one. */
-#include "mesh/shells.h"
+#include "mesh/examine.h"
 
 #include <math.h>
 

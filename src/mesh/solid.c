@@ -6,8 +6,7 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
-#include "mesh/flood.h"
-#include "mesh/wings.h"
+#include "mesh/topology.h"
 
 /* Findings that rule out a solid, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {

@@ -4,12 +4,47 @@
 #define STARG_MESH_SOLID_H
 
 #include "core/bits.h"
+#include "core/memory.h"
 #include "core/private.h"
 #include "geometry/bvh.h"
 #include "mesh/mesh.h"
-#include "mesh/near_faces.h"
 #include "starguard/solid.h"
 #include "starguard/space.h"
+
+/* Guards that are bound to faces of the model (mesh/near_faces.c). */
+
+/* Some faces of a model; all zero: none. */
+typedef struct near_faces {
+    size_t count;
+    uint32_t *list, *corners;
+    bvh *tree; /* triangle i is that of `corners` at 3 i */
+} near_faces;
+
+/* Errors: ARGUMENT. */
+starg_status near_faces_check(starg_context *context, const starg_space_options *options,
+                              size_t faces);
+
+/* Of a model whose vertices are the first of `vertices`, which must outlive them. Errors: MEMORY.
+ */
+starg_status near_faces_make(starg_context *context, const starg_mesh *model,
+                             const double *vertices, const uint32_t *list, size_t count,
+                             near_faces *out);
+void near_faces_free(starg_context *context, near_faces *faces);
+
+/* What is up, as a unit vector. */
+void near_faces_up(const starg_space_options *options, double up[3]);
+
+/* May a guard stand at p, as far as these faces are concerned? */
+bool near_faces_admit(const near_faces *over, const near_faces *mount,
+                      const starg_space_options *options, const double p[3]);
+
+/* Is it certain that none may stand in the box? */
+bool near_faces_bar(const near_faces *over, const near_faces *mount,
+                    const starg_space_options *options, const bvh_box *box);
+
+/* A box that holds all places where one may; false: there are no such faces. */
+bool near_faces_box(const near_faces *over, const near_faces *mount,
+                    const starg_space_options *options, bvh_box *out);
 
 /* Free space: winding number of the mesh plus `ambient` at least 1. */
 struct starg_solid {
@@ -104,5 +139,56 @@ starg_status solid_must_not_share(starg_context *context, const starg_solid *sol
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,
                             const uint32_t *faces, size_t face_count, const starg_check *check,
                             starg_solid **out);
+
+/* Space that can be reached from a point, in cubes. */
+
+typedef struct flood_cells {
+    starg_context *context;
+    double origin[3], size;
+    size_t count[3], reached;
+    uint64_t *taken, *bits; /* met by a face; reached */
+} flood_cells;
+
+/* The cube of p; false where p is out of the grid. */
+bool flood_locate(const flood_cells *cells, const double p[3], size_t at[3]);
+
+/* The cubes of `size` in the reach of a scene (solid_reach) that are connected to that of `from`
+ * over sides, through cubes that no face meets. Errors: ARGUMENT (`from` is out of reach or in a
+ * cube that a face meets; too many cubes), MEMORY, CANCELLED. */
+starg_status flood_create(starg_context *context, const starg_solid *scene, const double from[3],
+                          double size, flood_cells **out);
+void flood_free(flood_cells *cells);
+
+/* Is p in one of them? */
+bool flood_reaches(const flood_cells *cells, const double p[3]);
+
+/* Is a point of the box in one of them, as far as is known? */
+bool flood_meets(const flood_cells *cells, const bvh_box *box);
+
+/* Their volume. */
+double flood_volume(const flood_cells *cells);
+
+/* Where the space that is reached from a point leaks. */
+
+typedef struct flood_leak {
+    bool outside;            /* it leads out of the model's box */
+    bool gap;                /* through a gap hardly wider than a cube */
+    double place[3];         /* of the gap, or the wider opening */
+    STARG_ARRAY(double) way; /* 3 numbers for each point; none: there is no leak */
+} flood_leak;
+
+/* Free `way`. Errors: MEMORY, CANCELLED. */
+starg_status flood_find_leak(const flood_cells *cells, const bvh_box *model, const double from[3],
+                             flood_leak *out);
+
+/* Vertices and faces that no free space touches where one would have to look from. */
+
+/* True proves that no free space touches the vertex, so that nothing there is ever seen. False may
+ * mean unknown: where other faces touch it, or a fold of its own ones does. */
+bool solid_buries(const starg_solid *solid, uint32_t vertex);
+
+/* True proves that the whole face is seen from nowhere: a corner of it is buried, or there is
+ * matter right before the face beside one, as where furniture stands on a floor. */
+bool solid_hides(const starg_solid *solid, uint32_t face);
 
 #endif

@@ -20,8 +20,6 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
-#include "mesh/flood.h"
-#include "mesh/leak.h"
 #include "mesh/solid.h"
 
 static const char STAGE[] = "scene";

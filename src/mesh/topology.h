@@ -3,7 +3,10 @@
 #ifndef STARG_MESH_TOPOLOGY_H
 #define STARG_MESH_TOPOLOGY_H
 
+#include <stdint.h>
+
 #include "core/private.h"
+#include "geometry/intersect.h"
 #include "mesh/mesh.h"
 
 #define TOPOLOGY_NONE UINT32_MAX
@@ -48,5 +51,23 @@ void sets_make(uint32_t *parent, size_t count) STARG_PRIVATE(sets_make);
 uint32_t sets_find(uint32_t *parent, uint32_t item) STARG_PRIVATE(sets_find);
 /* The smaller root becomes the root. */
 void sets_join(uint32_t *parent, uint32_t a, uint32_t b) STARG_PRIVATE(sets_join);
+
+/* Surfaces that touch themselves in edges and vertices that they share. */
+
+/* topology_create, with twins also at edges of more than two faces: those with solid between them.
+ * Faces without a partner have none. Errors: MEMORY. */
+starg_status wings_create(starg_context *context, const starg_mesh *mesh, mesh_topology **out);
+
+/* Joins the corners at each vertex across twins: sets over corners, whose root is the lowest. */
+void wings_find_fans(const mesh_topology *topology, const starg_mesh *mesh, uint32_t *fan);
+
+/* A copy of the mesh in which each fan but the first at a vertex has a copy of the vertex, behind
+ * the others. *out is NULL if all vertices have one fan. Errors: MEMORY, RANGE. */
+starg_status wings_part(starg_context *context, const starg_mesh *mesh, starg_mesh **out);
+
+/* How two faces of a mesh meet. */
+
+/* Contact of two triangles given by their corners; equal vertices are shared corners. Exact. */
+triangle_contact faces_contact(const double *vertices, const uint32_t a[3], const uint32_t b[3]);
 
 #endif

@@ -9,7 +9,7 @@
  * ends of it.
  *
  * The order by angle is exact. Cost: O(n log n), and the square of the faces at an edge. */
-#include "mesh/wings.h"
+#include "mesh/topology.h"
 
 #include <string.h>
 

@@ -198,9 +198,8 @@ starg_status solid_labyrinth(starg_context *context, size_t vertex_count, starg_
 starg_status solid_plate(starg_context *context, size_t vertex_count, starg_mesh **out);
 starg_status solid_eight(starg_context *context, size_t vertex_count, starg_mesh **out);
 
-/* Moves a solid without joints into a pose, 0 (as made) to SOLID_BENDS - 1 (bend.c). */
+/* Moves a solid without joints into a pose, 0 (as made) to SOLID_BENDS - 1 (catalogue.c). */
 enum { SOLID_BENDS = 3 };
-void solid_bend(starg_mesh *mesh, int pose);
 
 /* Tubes around closed curves (tube.c). */
 starg_status solid_torus(starg_context *context, size_t vertex_count, starg_mesh **out);

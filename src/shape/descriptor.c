@@ -5,7 +5,7 @@
  * coarser one within a trial budget; its guards with the volumes of their pieces; an edge between
  * pieces in contact, with the centroid of their common faces; from each guard the distance to the
  * boundary in directions that cover the sphere evenly; the spectrum of the finer level
- * (vibrations.c) and its wave kernel signature (wks.c), which do not depend on the positions of
+ * and its wave kernel signature (wks.c), which do not depend on the positions of
  * guards.
  *
  * The paper's graph follows the curve skeleton that contains its guards. Here guards lie anywhere
@@ -16,9 +16,8 @@
  * has each guard strictly inside.
  *
  * Cost: that of the decomposition and of the spectra, and O(log n) per ray. */
-#include "starguard/descriptor.h"
-
 #include <math.h>
+#include <string.h>
 
 #include "core/fields.h"
 #include "core/memory.h"
@@ -27,11 +26,68 @@
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "shape/measures.h"
+#include "shape/spectrum.h"
 #include "star/piece_faces.h"
 #include "starguard/decompose.h"
+#include "starguard/descriptor.h"
 #include "starguard/solid.h"
 
 static const char STAGE[] = "descriptor";
+
+/* Spectrum of a solid's boundary, and where it vibrates.
+ *
+ * Problem: numbers that do not change with a shape's pose, its decomposition or noise on its
+ * surface: Shape-DNA [RWP06].
+ *
+ * Stages: the boundary; the smallest eigenvalues of its Laplacian and their eigenfunctions
+ * (spectrum.c); the wave kernel signature of both (wks.c).
+ *
+ * Invariants: eigenvalues are multiplied by the area, hence independent of scale. Cost: that of
+ * spectrum.c. */
+
+static const char STAGE_VIBRATIONS[] = "vibrations";
+
+enum { EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES };
+
+/* All but the first eigenvalue, clamped to at least 0. */
+static void keep_behind_zero(double *eigenvalues, double *out) {
+    for (size_t i = 0; i <= EIGENVALUES; i++)
+        eigenvalues[i] = fmax(eigenvalues[i], 0);
+    memcpy(out, eigenvalues + 1, EIGENVALUES * sizeof *out);
+}
+
+static starg_status take_surface(starg_context *context, const starg_mesh *surface, double *out,
+                                 double *wks) {
+    starg_status status = STARG_OK;
+    laplacian l = {0};
+    double eigenvalues[EIGENVALUES + 1], *functions = NULL;
+    STARG_TRY(laplacian_create(context, surface, &l));
+    STARG_NEW(context, STAGE_VIBRATIONS, functions, (EIGENVALUES + 1) * l.count);
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, functions));
+    keep_behind_zero(eigenvalues, out);
+    STARG_TRY(wks_measure(context, &l, eigenvalues, functions, wks));
+done:
+    starg_release(context, functions);
+    laplacian_free(context, &l);
+    return status;
+}
+
+/* The smallest nonzero eigenvalues of the surface's Laplacian, ascending, times the area; and where
+ * the surface vibrates (spectrum.h). Fills these fields of the descriptor. `surface` is the
+ * boundary before pieces cut it; NULL: that of `mesh`. Errors: MESH (no area), SOLVER, MEMORY,
+ * CANCELLED. */
+static starg_status vibrations_measure(starg_context *context, const starg_tetmesh *mesh,
+                                       const starg_mesh *surface, starg_descriptor *out) {
+    starg_status status = STARG_OK;
+    starg_mesh *boundary = NULL;
+    if (surface == NULL)
+        STARG_TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
+    STARG_TRY(take_surface(context, surface != NULL ? surface : boundary, out->surface_spectrum,
+                           &out->wave_kernel[0][0]));
+done:
+    starg_mesh_free(boundary);
+    return status;
+}
 
 enum {
     LEAST_DIRECTIONS = 12,

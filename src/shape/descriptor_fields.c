@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Field table of DESCRIPTOR.json (starguard/fields.h): names, ranges and meaning of its keys, in
  * the order of the file. */
-#include "shape/descriptor_fields.h"
+#include "shape/measures.h"
 
 #include <float.h>
 

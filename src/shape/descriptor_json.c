@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/record.h"
-#include "shape/descriptor_fields.h"
+#include "shape/measures.h"
 #include "starguard/descriptor.h"
 
 static const char STAGE[] = "descriptor file";

@@ -4,6 +4,7 @@
 #define STARG_SHAPE_MEASURES_H
 
 #include "core/context.h"
+#include "core/fields.h"
 #include "star/piece_faces.h"
 #include "starguard/descriptor.h"
 #include "starguard/mesh.h"
@@ -47,10 +48,12 @@ starg_status views_measure(starg_context *context, const starg_tetmesh *mesh,
 
 /* Vibration modes of a solid's boundary. */
 
-/* The smallest nonzero eigenvalues of the surface's Laplacian, ascending, times the area; and where
- * the surface vibrates (spectrum.h). Fills these fields of the descriptor. `surface` is the boundary
- * before pieces cut it; NULL: that of `mesh`. Errors: MESH (no area), SOLVER, MEMORY, CANCELLED. */
-starg_status vibrations_measure(starg_context *context, const starg_tetmesh *mesh,
-                                const starg_mesh *surface, starg_descriptor *out);
+/* Field table of DESCRIPTOR.json. */
+
+/* Changes with what the numbers mean, even if the keys stay. */
+enum { DESCRIPTOR_VERSION = 5 };
+
+/* The file as a starg_descriptor. */
+extern const starg_fields descriptor_file_fields;
 
 #endif

@@ -5,7 +5,7 @@
  * faces change become dirty. */
 #include "skeleton/sample_mesh.h"
 
-#include "mesh/wings.h"
+#include "mesh/topology.h"
 
 static const char STAGE[] = "surface samples";
 

@@ -2,17 +2,16 @@
 /* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
 #include <math.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
-#include "star/paper/paper.h"
 #include "star/piece_faces.h"
-#include "star/strict/strict.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
-#include "visibility/parts.h"
+#include "visibility/kernel.h"
 
 static const char STAGE[] = "pieces";
 
@@ -319,6 +318,56 @@ static starg_status decompose_model(const request *r, const starg_decompose_opti
     remember(context, options, d);
 done:
     return status;
+}
+
+/* A lower bound for star decompositions.
+ *
+ * Problem: into how few star-shaped pieces can a solid be cut, wherever its cuts run? A piece is
+ * star-shaped if its guard is strictly on the inner side of all faces of its boundary, which winds
+ * around it once.
+ *
+ * Theorem: let a surface bound the solid that has the outside just before every point of its faces,
+ * as embedded ones do, and others that touch themselves in vertices and edges
+ * (star/decomposition.h). Let f be a face of it and v a corner of f. Some guard g of a piece is
+ * strictly on the inner side of f, and the segment from g to v meets the surface in v only. So
+ * there are at least as many pieces as points are needed that see all such corners, wherever the
+ * points stand.
+ *
+ * Proof: let points x1, x2, ... inside f converge to v. The pieces are closed, finitely many, and
+ * fill the solid: some piece P, with guard g, holds infinitely many of them, and v.
+ * 1. Let x be a point of P. Every point y of the half-open segment [g, x) is an inner point of P,
+ *    for some ball about g is on the inner side of all faces of P, and so P holds all segments from
+ *    x to that ball, which fill a neighbourhood of y. An inner point of P is one of the solid, and
+ *    no inner point of the solid lies on its surface, since outer ones are as near as you like. So
+ *    [g, x) does not meet the surface.
+ * 2. With x = v: the segment from g to v meets the surface in v only.
+ * 3. With x = xi inside f: the segment ends in xi coming from the inside of the solid, which is on
+ *    the inner side of f there, and it does not run along f. So g is strictly on the inner side.
+ *
+ * Stages: the search over every point of the solid with corners as targets (guard/search.c) gives
+ * the bound, its certificate, and points that see all corners, from which guards of pieces can be
+ * tried.
+ *
+ * Cost: that of starg_guard with `prove`. */
+
+/* The bound of the guards holds for star-shaped pieces that make up the solid; 0: the time was over
+ * before there was any. `work` is that of starg_guard_options.prove_work. Errors: those of
+ * starg_guard but TIME, and MESH (the surface intersects itself, or touches otherwise than in
+ * vertices and edges). */
+static starg_status piece_bound_find(starg_context *context, const starg_solid *solid,
+                                     uint64_t work, bool certified, corner_guards *out) {
+    bool bounds;
+    *out = (corner_guards){0};
+    starg_status status = touching_bounds(context, solid, &bounds);
+    if (status == STARG_OK && !bounds)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "how few pieces there can be is proven for surfaces only that do not "
+                          "intersect themselves, and touch themselves in common vertices and edges "
+                          "alone; make one with 'starguard repair --union', or leave out the "
+                          "proof");
+    if (status == STARG_OK)
+        status = corner_guards_find(context, solid, work, certified, out);
+    return status == STARG_ERROR_TIME ? STARG_OK : status;
 }
 
 /* Half of the time that is left is for the proof; did it end that? */

@@ -3,12 +3,14 @@
 #ifndef STARG_STAR_DECOMPOSITION_H
 #define STARG_STAR_DECOMPOSITION_H
 
+#include "core/context.h"
 #include "core/fields.h"
 #include "geometry/bvh.h"
 #include "guard/corners.h"
 #include "mesh/solid.h"
 #include "starguard/decompose.h"
 #include "starguard/mesh.h"
+#include "visibility/kernel.h"
 
 /* The result of a star decomposition, whichever mode has found it. */
 
@@ -56,13 +58,6 @@ starg_status touching_bounds(starg_context *context, const starg_solid *solid, b
 
 /* How few star-shaped pieces a solid can be cut into. */
 
-/* The bound of the guards holds for star-shaped pieces that make up the solid; 0: the time was over
- * before there was any. `work` is that of starg_guard_options.prove_work. Errors: those of
- * starg_guard but TIME, and MESH (the surface intersects itself, or touches otherwise than in
- * vertices and edges). */
-starg_status piece_bound_find(starg_context *context, const starg_solid *solid, uint64_t work,
-                              bool certified, corner_guards *out);
-
 /* How far one surface is from another. */
 
 /* No point of `from` is farther than *out from the triangles of `to`, of which there are some; that
@@ -82,5 +77,27 @@ starg_status united_make(starg_context *context, const starg_solid *solid, starg
  * rest is from the boundary. Errors: MEMORY, CANCELLED. */
 starg_status united_report(starg_context *context, const starg_solid *solid,
                            const starg_solid *united, starg_decomposition *out);
+
+/* Star decomposition by growth from guards [YL11, section 4]. */
+
+/* Labels the tetrahedra of a copy of the mesh, whose inner vertices move a little where pieces
+ * meet. Errors: MEMORY, CANCELLED. */
+starg_status paper_decompose(starg_context *context, const starg_tetmesh *mesh,
+                             const starg_decompose_options *options, starg_decomposition **out);
+
+/* Strict star decomposition: every piece is proven to be star-shaped. */
+
+/* From the surface alone, which faces outward and meets itself in common vertices and edges at
+ * most. *out is NULL when roundings have spoilt all cuts of some piece. Errors: MEMORY, CANCELLED.
+ */
+starg_status strict_decompose_surface(starg_context *context, const kernel_faces *surface,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out);
+
+/* From the boundary of tetrahedra, or from tetrahedra grown into regions where that resists.
+ * Errors: MESH (a tetrahedron too thin to contain a point), MEMORY, CANCELLED. */
+starg_status strict_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out);
 
 #endif

@@ -2,10 +2,15 @@
 /* Reads PIECES.vtk and PIECES.json back as a decomposition. What the tables do not know is checked
  * here: that both files are of one decomposition, and that its counts agree. Whether pieces are
  * star-shaped is not proven anew; that is what verification is for. */
+#include <float.h>
+#include <math.h>
+
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/record.h"
 #include "star/decomposition.h"
+#include "starguard/verify.h"
+#include "tetra/io.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces file";
@@ -140,7 +145,134 @@ done:
     return status;
 }
 
-/* PIECES.vtk and PIECES.json: a decomposition as text (docs/formats.md). */
+/* ---- either file alone, as it stands: verification checks what it says ---- */
+
+starg_status starg_pieces_mesh_read_memory(starg_context *context, const void *bytes, size_t size,
+                                           const char *name, starg_pieces_mesh **out) {
+    starg_status status = STARG_OK;
+    char shown[256];
+    starg_source_shorten(name, shown, sizeof shown);
+    const starg_source source = {context, shown, bytes, size};
+    tet_builder builder = {.points = {.source = &source}};
+    starg_c_locale locale = {0};
+    *out = NULL;
+    starg_progress_begin(context, "read");
+    STARG_TRY(starg_c_locale_enter(context, &locale));
+    if (!tet_vtk_matches(&source))
+        STARG_TRY(starg_source_fail(&source, starg_at_file(), "this is no legacy VTK file"));
+    STARG_TRY(tet_vtk_read(&builder));
+    STARG_TRY(tet_builder_check(&builder));
+    if (!builder.labelled)
+        STARG_TRY(starg_source_fail(&source, starg_at_file(),
+                                    "the cells have no labels: whole numbers \"piece\""));
+    STARG_NEW(context, STAGE, *out, 1);
+    **out = (starg_pieces_mesh){.vertex_count = starg_builder_vertex_count(&builder.points),
+                                .vertices = builder.points.vertices.data,
+                                .count = tet_builder_count(&builder),
+                                .tetrahedra = builder.tetrahedra.data,
+                                .labels = builder.regions.data,
+                                .corners = builder.corners};
+    builder.points.vertices.data = NULL;
+    builder.tetrahedra.data = NULL;
+    builder.regions.data = NULL;
+    builder.corners = NULL;
+done:
+    starg_c_locale_leave(&locale);
+    tet_builder_free(&builder);
+    starg_progress_end(context);
+    return status;
+}
+
+void starg_pieces_mesh_free(starg_context *context, starg_pieces_mesh *mesh) {
+    if (mesh == NULL)
+        return;
+    starg_release(context, mesh->vertices);
+    starg_release(context, mesh->tetrahedra);
+    starg_release(context, mesh->labels);
+    starg_release(context, mesh->corners);
+    starg_release(context, mesh);
+}
+
+/* Keys that the table lets be missing, as files of earlier versions are read, and claims need. */
+static starg_status require_keys(starg_context *context, const char *name, const json_t *root,
+                                 const starg_decomposition *d) {
+    static const char *const keys[] = {"smallest_angle", "median_angle"};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        if (json_object_get(root, keys[i]) == NULL)
+            return reject(context, name, keys[i], "a number");
+    for (size_t p = 0; p < d->piece_count; p++)
+        if (d->pieces[p].margin == -DBL_MAX)
+            return reject(context, name, "margin", "a number");
+    if (d->lower_bound > 0 && json_object_get(root, "optimal") == NULL)
+        return reject(context, name, "optimal", "true or false");
+    return STARG_OK;
+}
+
+/* Takes over the blocks. Of measures that are 0 if they are not told, those that are told are
+ * above. */
+static starg_pieces_report report_of(starg_decomposition *d) {
+    const bool approximated = !d->tetra.surface_kept;
+    const starg_pieces_report report = {
+        .file = d->file,
+        .model_vertices = d->model_vertices,
+        .model_faces = d->model_faces,
+        .model_tetrahedra = d->model_tetrahedra,
+        .mode = d->mode,
+        .tetrahedra = d->tetrahedra,
+        .piece_count = d->piece_count,
+        .pieces = d->pieces,
+        .contact_count = d->contact_count,
+        .contacts = d->contacts,
+        .strictly_star = d->strictly_star,
+        .visible_vertices = d->visible_vertices,
+        .approximated = approximated,
+        .distance = approximated ? d->tetra.distance : 0,
+        .distance_back = approximated ? d->tetra.distance_back : INFINITY,
+        .flattest = fmax(d->flattest, DBL_MIN),
+        .smallest_angle = fmax(d->smallest_angle, DBL_MIN),
+        .median_angle = fmax(d->median_angle, DBL_MIN),
+        .smallest_angle_made =
+            d->smallest_angle_made < 0 ? 0 : fmax(d->smallest_angle_made, DBL_MIN),
+        .lower_bound = d->lower_bound,
+        .optimal = d->optimal,
+        .balls = d->balls != STARG_BALLS_NONE,
+        .ball_worst = d->ball_worst,
+        .ball_mean = d->ball_mean,
+        .ball_above_10 = d->ball_above_10};
+    d->file = NULL;
+    d->pieces = NULL;
+    d->contacts = NULL;
+    return report;
+}
+
+starg_status starg_pieces_report_read_memory(starg_context *context, const void *bytes, size_t size,
+                                             const char *name, starg_pieces_report **out) {
+    starg_status status = STARG_OK;
+    starg_decomposition *d = NULL;
+    json_t *root = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, d, 1);
+    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
+    STARG_TRY(record_read(context, name, root, &decomposition_file_fields, d));
+    STARG_TRY(require_keys(context, name, root, d));
+    STARG_NEW(context, STAGE, *out, 1);
+    **out = report_of(d);
+done:
+    json_decref(root);
+    starg_decomposition_free(context, d);
+    return status;
+}
+
+void starg_pieces_report_free(starg_context *context, starg_pieces_report *report) {
+    if (report == NULL)
+        return;
+    starg_release(context, report->file);
+    starg_release(context, report->pieces);
+    starg_release(context, report->contacts);
+    starg_release(context, report);
+}
+
+/* ---- writing ---- */
 
 starg_status starg_decomposition_write(starg_context *context,
                                        const starg_decomposition *decomposition, const char *path,

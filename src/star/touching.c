@@ -10,8 +10,8 @@
 #include "star/decomposition.h"
 
 #include "core/memory.h"
-#include "mesh/contact.h"
 #include "mesh/examine.h"
+#include "mesh/topology.h"
 
 static const char STAGE[] = "pieces";
 

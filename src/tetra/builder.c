@@ -48,7 +48,7 @@ starg_status tet_builder_refuse(tet_builder *builder, const char *what, starg_pl
         what);
 }
 
-starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out) {
+starg_status tet_builder_check(const tet_builder *builder) {
     const starg_source *source = builder->points.source;
     size_t vertices = starg_builder_vertex_count(&builder->points);
     size_t count = tet_builder_count(builder);
@@ -63,9 +63,16 @@ starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out) {
             "'%s': tetrahedron %zu refers to vertex %u, but there are only %zu (counted from 0)",
             source->name, i / 4, builder->tetrahedra.data[i], vertices);
     }
-    starg_status status =
-        tetmesh_adopt(source->context, builder->points.vertices.data, vertices,
-                      builder->tetrahedra.data, count, builder->regions.data, false, out);
+    return STARG_OK;
+}
+
+starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out) {
+    starg_status status = tet_builder_check(builder);
+    if (status == STARG_OK)
+        status =
+            tetmesh_adopt(builder->points.source->context, builder->points.vertices.data,
+                          starg_builder_vertex_count(&builder->points), builder->tetrahedra.data,
+                          tet_builder_count(builder), builder->regions.data, false, out);
     if (status == STARG_OK) {
         builder->points.vertices.data = NULL;
         builder->tetrahedra.data = NULL;

@@ -12,6 +12,7 @@ typedef struct tet_builder {
     STARG_ARRAY(uint32_t) tetrahedra;
     STARG_ARRAY(int32_t) regions; /* one per tetrahedron */
     double *corners;              /* twelve numbers per tetrahedron, or NULL */
+    bool labelled;                /* the file gives the regions */
 } tet_builder;
 
 /* Reserves space; the caller has checked the numbers against the size of the source. */
@@ -29,7 +30,10 @@ static inline size_t tet_builder_count(const tet_builder *builder) {
     return builder->tetrahedra.count / 4;
 }
 
-/* Checks the indices and returns the mesh. Errors: FORMAT, and those of starg_tetmesh_create. */
+/* Is there a tetrahedron, and are all of their vertices there? Errors: FORMAT. */
+starg_status tet_builder_check(const tet_builder *builder);
+
+/* The same, and returns the mesh. Errors: FORMAT, and those of starg_tetmesh_create. */
 starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out);
 void tet_builder_free(tet_builder *builder);
 

@@ -14,7 +14,6 @@
 #include "core/memory.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
-#include "mesh/contact.h"
 #include "mesh/topology.h"
 #include "tetra/tetmesh.h"
 

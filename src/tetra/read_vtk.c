@@ -387,6 +387,7 @@ static starg_status read_labels(vtk_reader *vtk) {
             vtk->builder->regions.data[t++] = (int32_t)(uint32_t)(uint64_t)label;
         STARG_TRY(tick(vtk));
     }
+    vtk->builder->labelled = true;
     status = read_corners(vtk);
 done:
     return status;

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/locale.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "starguard/verify.h"
 #include "verify/pieces.h"

@@ -12,7 +12,7 @@
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/wings.h"
+#include "mesh/topology.h"
 #include "visibility/box_parts.h"
 
 static const char STAGE[] = "visibility";

@@ -17,7 +17,7 @@
 #include "core/memory.h"
 #include "geometry/intersect.h"
 #include "geometry/vec3.h"
-#include "mesh/contact.h"
+#include "mesh/topology.h"
 #include "visibility/box_parts.h"
 
 static const char STAGE[] = "visibility";

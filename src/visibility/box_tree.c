@@ -11,7 +11,7 @@
  * that runs along a slab gets a tiny inverse slope, which moves it by less than all this.
  *
  * Cost: O(log n) where little is met; about 10 ns a node. */
-#include "visibility/box_tree.h"
+#include "visibility/box_parts.h"
 
 #include <math.h>
 

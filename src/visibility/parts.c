@@ -4,22 +4,19 @@
  * Problem: which faces bound the same connected component of the interior?
  *
  * Method: a shell that lies in an even number of others bounds a part from outside; one in an odd
- * number is a cavity of the part whose outer shell is the innermost around it (mesh/shells.h).
+ * number is a cavity of the part whose outer shell is the innermost around it (mesh/examine.h).
  *
  * Why no point sees faces of two parts: nothing lies between a point and what it sees, so it lies
  * in the same shells as the inner side of the face does. These are, for an outer shell, itself and
  * all around it; for a cavity, all around it. The innermost of them is the outer shell of the part.
  *
  * Cost: O(n log n), and a linear program for each part. */
-#include "visibility/parts.h"
+#include "visibility/kernel.h"
 
 #include "core/memory.h"
 #include "geometry/predicates.h"
-#include "mesh/contact.h"
 #include "mesh/examine.h"
-#include "mesh/pairs.h"
-#include "mesh/shells.h"
-#include "visibility/kernel.h"
+#include "mesh/topology.h"
 
 static const char STAGE[] = "kernel";
 

@@ -5,7 +5,17 @@
 
 #include "core/parallel.h"
 #include "core/private.h"
+#include "mesh/mesh.h"
+#include "starguard/visibility.h"
 #include "visibility/scene.h"
+
+/* The columns of visibility rows. */
+
+static inline size_t target_columns(const starg_mesh *mesh, starg_target target) {
+    return target == STARG_TARGET_VERTICES  ? mesh->vertex_count
+           : target == STARG_TARGET_CORNERS ? 3 * mesh->face_count
+                                            : mesh->face_count;
+}
 
 /* A matrix under construction: row i is what point i sees. */
 typedef struct visibility_job {

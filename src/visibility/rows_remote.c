@@ -9,7 +9,6 @@
  * Cost: per helper about 36 bytes a face, and its search structures; a bit per column of each
  * row. */
 #include "core/bits.h"
-#include "visibility/columns.h"
 #include "visibility/rows.h"
 
 static const char STAGE[] = "visibility";

@@ -7,7 +7,6 @@
 #include "core/fields.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "visibility/columns.h"
 #include "visibility/rows.h"
 
 static const char STAGE[] = "visibility";

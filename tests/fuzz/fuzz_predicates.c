@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every exact decision against rationals, on points of any doubles: those of the engines
- * (geometry/predicates.h, intersect.h, linear_program.h) and those of the verifier (verify/signs.h).
+ * (geometry/predicates.h, intersect.h, linear_program.h) and those of the verifier
+ * (verify/signs.h).
  */
 #include <string.h>
 

@@ -2,7 +2,7 @@
 /* Vertices within matter, against tetrahedra with small whole coordinates, in which integers decide
  * what is inside of what. */
 #include "core/rng.h"
-#include "mesh/buried.h"
+#include "mesh/solid.h"
 #include "starguard/space.h"
 #include "starguard/visibility.h"
 #include "support.h"

@@ -314,7 +314,7 @@ cut_file cut_write_report(const starg_pieces_report *report) {
     fprintf(file, "{\"format\": \"starguard-pieces\", \"version\": 1, \"mode\": \"%s\",\n",
             report->mode == STARG_DECOMPOSE_PAPER ? "paper" : "strict");
     fprintf(file, "\"model\": {\"vertices\": %zu, \"faces\": %zu},\n", report->model_vertices,
-            report->model_faces);
+            report->model_faces > 0 ? report->model_faces : 1);
     fprintf(file, "\"tetrahedra\": %zu, \"pieces\": [", report->tetrahedra);
     for (size_t p = 0; p < report->piece_count; p++) {
         const starg_piece *piece = &report->pieces[p];

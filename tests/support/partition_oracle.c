@@ -8,6 +8,7 @@
 #include "exact_oracle.h"
 #include "geometry/delaunay.h"
 #include "star/strict/start/region_growing.h"
+#include "star/strict/start/start.h"
 #include "support.h"
 #include "tetrahedra.h"
 

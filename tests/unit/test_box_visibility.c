@@ -10,7 +10,6 @@
 #include "models.h"
 #include "visibility/box.h"
 #include "visibility/box_parts.h"
-#include "visibility/box_shaft.h"
 #include "visibility_oracle.h"
 
 typedef struct setting {

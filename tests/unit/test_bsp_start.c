@@ -9,10 +9,9 @@
 
 #include "models.h"
 #include "partition_oracle.h"
-#include "star/strict/partition/separate.h"
-#include "star/strict/partition/slice.h"
+#include "star/strict/partition/partition.h"
 #include "star/strict/search/split_plane.h"
-#include "star/strict/start/bsp_start.h"
+#include "star/strict/start/start.h"
 #include "tetrahedra.h"
 
 enum { EVALUATIONS = 1500 };

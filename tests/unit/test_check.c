@@ -9,8 +9,8 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "mesh/contact.h"
-#include "mesh/pairs.h"
+#include "mesh/examine.h"
+#include "mesh/topology.h"
 #include "shapes.h"
 #include "support.h"
 

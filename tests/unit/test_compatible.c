@@ -13,6 +13,7 @@
 #include "star/compatible/compatible.h"
 #include "star/compatible/twin_pieces.h"
 #include "star/strict/start/region_growing.h"
+#include "star/strict/start/start.h"
 #include "tetra/tetmesh.h"
 #include "tetrahedra.h"
 

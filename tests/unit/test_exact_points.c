@@ -10,7 +10,7 @@
 #include "core/rng.h"
 #include "exact_oracle.h"
 #include "mesh/topology.h"
-#include "mesh/union/triangulation.h"
+#include "mesh/union/arrangement.h"
 #include "support.h"
 
 /* ---- fractions ---- */

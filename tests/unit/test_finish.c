@@ -10,12 +10,9 @@
 
 #include "models.h"
 #include "partition_oracle.h"
-#include "star/strict/finish/flatness.h"
-#include "star/strict/finish/refine_caps.h"
-#include "star/strict/finish/reshape.h"
-#include "star/strict/finish/widen.h"
+#include "star/strict/finish/finish.h"
 #include "star/strict/search/improve.h"
-#include "star/strict/start/bsp_start.h"
+#include "star/strict/start/start.h"
 
 static const uint64_t WORK = 40000000;
 

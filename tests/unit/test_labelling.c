@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "star/strict/start/labelling.h"
+#include "star/strict/start/start.h"
 
 enum { NODES_MOST = 8 };
 

@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 #include "core/context.h"
-#include "core/locale.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/private.h"
 #include "mesh/mesh.h"

@@ -18,7 +18,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/contact.h"
+#include "mesh/topology.h"
 
 /* Cosine of the largest rotation of a normal. */
 static const double LARGEST_TURN = 0.2;

@@ -26,7 +26,6 @@
 #include "core/memory.h"
 #include "mesh/levels/collapse.h"
 #include "mesh/levels/heap.h"
-#include "mesh/levels/quadric.h"
 
 /* Share of the weight for points: small compared with the planes of any real feature. */
 static const double POINT_SHARE = 1e-6;

@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/wings.h"
+#include "mesh/topology.h"
 
 static starg_status fail_edge(starg_context *context, uint32_t a, uint32_t b, const char *what) {
     const uint64_t ends[2] = {a, b};

@@ -6,10 +6,10 @@
  *
  * Loops of more than LIMIT vertices are filled hierarchically: every s-th vertex makes a coarse
  * loop, and the gaps between its edges and the loop are filled one by one. */
-#include "mesh/repair/repair_fill.h"
+#include "mesh/repair/repair.h"
 
 #include "geometry/vec3.h"
-#include "mesh/contact.h"
+#include "mesh/topology.h"
 
 enum { LIMIT = 192, ATTEMPTS = 6 };
 

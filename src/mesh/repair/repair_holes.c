@@ -7,7 +7,6 @@
  * filling both makes one fan. Joining requires that the copies have no common neighbour, which
  * would duplicate an edge. */
 #include "mesh/repair/repair.h"
-#include "mesh/repair/repair_fill.h"
 
 /* Longer loops are not searched for copies of a vertex. */
 enum { MAX_STEPS = 1 << 14 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "mesh/repair/repair_index.h"
+#include "mesh/repair/repair.h"
 
 #include <math.h>
 
-#include "mesh/contact.h"
+#include "mesh/topology.h"
 
 enum { FEW = 256 };
 

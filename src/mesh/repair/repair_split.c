@@ -10,7 +10,7 @@
  *
  * Cost O(n log n). */
 #include "mesh/repair/repair.h"
-#include "mesh/wings.h"
+#include "mesh/topology.h"
 
 enum { MAX_ROUNDS = 16 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "mesh/repair/repair_state.h"
+#include "mesh/repair/repair.h"
 
 #include <math.h>
 

@@ -12,9 +12,8 @@
  * To evaluate a change, its faces are marked REPAIR_GONE and appended to the mesh again: first in
  * their old, then in their new form. */
 #include "geometry/vec3.h"
-#include "mesh/contact.h"
 #include "mesh/repair/repair.h"
-#include "mesh/repair/repair_fill.h"
+#include "mesh/topology.h"
 
 /* Largest displacement of an input vertex, as a fraction of the diagonal. */
 #define LARGEST_MOVE 0.01

@@ -20,7 +20,6 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
-#include "mesh/union/triangulation.h"
 
 typedef struct job {
     starg_context *context;

@@ -5,13 +5,13 @@
  * ends are where the border of one meets the plane of the other within the other: corners in the
  * plane, edges through it. In one plane and without a common area, they are corners. Predicates on
  * vertices decide which; only the places are rational. */
-#include "mesh/union/contacts.h"
+#include "mesh/union/arrangement.h"
 
 #include <math.h>
 
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
-#include "mesh/contact.h"
+#include "mesh/topology.h"
 
 /* ---- pairs ---- */
 

@@ -15,7 +15,7 @@
  * Invariants: triangles turn left in the projection and fill the enclosing one; twins are mutual.
  * Cost: O(n sqrt n) for the walks as a rule; a segment costs the square of the edges it crosses at
  * worst. */
-#include "mesh/union/triangulation.h"
+#include "mesh/union/arrangement.h"
 
 #include "core/rng.h"
 #include "geometry/vec3.h"

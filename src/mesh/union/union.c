@@ -19,7 +19,6 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/union/arrangement.h"
-#include "mesh/union/windings.h"
 
 enum { MOST_ROUNDS = 20 };
 

@@ -9,7 +9,7 @@
  * that each edge spoils two of them at most.
  *
  * Cost: O(n log n), and a query of the tree for each patch. */
-#include "mesh/union/windings.h"
+#include "mesh/union/arrangement.h"
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"

@@ -12,21 +12,17 @@
  * no result (starg_time_is_long_over). Where it fails, which takes roundings that spoil every cut
  * of some piece, others are tried. Given tetrahedra are grown into regions first
  * (region_growing.c), which always succeeds, and the better one of both starts is searched. */
-#include "star/strict/strict.h"
+#include "star/decomposition.h"
 
 #include <math.h>
 
-#include "star/decomposition.h"
-#include "star/strict/finish/refine_caps.h"
-#include "star/strict/finish/reshape.h"
-#include "star/strict/finish/widen.h"
+#include "star/strict/finish/finish.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/partition/cone.h"
-#include "star/strict/partition/merge_coplanar.h"
+#include "star/strict/partition/partition.h"
 #include "star/strict/search/improve.h"
 #include "star/strict/search/renew.h"
-#include "star/strict/start/bsp_start.h"
 #include "star/strict/start/region_growing.h"
+#include "star/strict/start/start.h"
 
 enum {
     STARTS = 6, /* until one succeeds */

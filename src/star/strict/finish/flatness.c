@@ -6,7 +6,7 @@
  * its margin is short of FLATNESS_MARGIN, which weighs as much as a hundred angles, for a piece
  * with a thin kernel has many that are small, and other cuts of its neighbours cannot mend these.
  * Rounded: it says which cut is better, never whether one is valid. Cost: linear in the facets. */
-#include "star/strict/finish/flatness.h"
+#include "star/strict/finish/finish.h"
 
 #include <math.h>
 

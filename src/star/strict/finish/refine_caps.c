@@ -19,15 +19,14 @@
  * Invariants: those of the partition, by a certificate for every piece; edges and vertices that
  * other facets have stay. Cost: some triangulations for each cap that is refined, and for each
  * vertex that is thought of a pass over the cap. */
-#include "star/strict/finish/refine_caps.h"
+#include "star/strict/finish/finish.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "geometry/vec3.h"
-#include "star/strict/finish/flatness.h"
-#include "star/strict/partition/cap.h"
+#include "star/strict/partition/partition.h"
 
 enum { ROUNDS_MOST = 16, FRESH_MOST = 1000 /* new vertices of a cap */ };
 

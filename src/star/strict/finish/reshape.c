@@ -24,14 +24,12 @@
  * Invariants: those of the partition. Cost: a round is a pass over the facets, and for each that is
  * flat and each of its corners, some passes over the facets there times neighbours; `work` in
  * total. */
-#include "star/strict/finish/reshape.h"
+#include "star/strict/finish/finish.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "star/strict/finish/flatness.h"
-#include "star/strict/finish/settle.h"
 
 enum { ROUNDS_MOST = 32, REPEATS = 2, LOOK_WORK = 64 };
 

@@ -13,13 +13,12 @@
  * surface winds around it once as before: on the way between two points of a kernel no facet is
  * met. Cost: for each piece that lacks anything, some hundred passes over facets that are flat, a
  * few over all of them. */
-#include "star/strict/finish/settle.h"
+#include "star/strict/finish/finish.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "star/strict/finish/flatness.h"
 
 enum { HALVINGS = 8, NEIGHBOURS = 27 /* and the place itself */ };
 

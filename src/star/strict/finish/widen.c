@@ -14,16 +14,15 @@
  *
  * Invariants: those of the partition; a change lowers the sum. Cost: up to four searches for each
  * union; `work` in total. */
-#include "star/strict/finish/widen.h"
+#include "star/strict/finish/finish.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/rng.h"
 #include "geometry/vec3.h"
-#include "star/strict/finish/flatness.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/partition/merge_coplanar.h"
+#include "star/strict/partition/partition.h"
 #include "star/strict/search/covering.h"
 
 enum {

@@ -15,8 +15,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "star/strict/partition/extract.h"
-#include "star/strict/partition/slice.h"
+#include "star/strict/partition/partition.h"
 
 enum { PARTS_MOST = FAN_TAKERS_MOST }; /* more than a cut makes */
 

@@ -3,7 +3,7 @@
 #ifndef STARG_STAR_STRICT_PARTITION_APPLY_H
 #define STARG_STAR_STRICT_PARTITION_APPLY_H
 
-#include "star/strict/partition/fan.h"
+#include "star/strict/partition/partition.h"
 #include "star/strict/search/border.h"
 #include "star/strict/search/repartition.h"
 

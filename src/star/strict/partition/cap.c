@@ -13,7 +13,7 @@
  * Invariants: the boundary of the triangles is always the chain of the edges. If vertices are
  * rounded off their plane, edges may cross: then there is no cap. Cost: that of the
  * triangulation. */
-#include "star/strict/partition/cap.h"
+#include "star/strict/partition/partition.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 /* A partition as tetrahedra: every piece is the union of the tetrahedra that its facets span with
  * its guard. They do not overlap, because each ray from the guard leaves the piece once, and they
  * share faces, because all pieces share the same facets. Cost: linear. */
-#include "star/strict/partition/cone.h"
+#include "star/strict/partition/partition.h"
 
 #include <string.h>
 

@@ -11,7 +11,7 @@
  * Invariants: facets, and what they refer to, keep their order. Cost: the extract is linear in its
  * facets and those at its vertices, except for sorting; the return is a pass over the facets of the
  * partition. */
-#include "star/strict/partition/extract.h"
+#include "star/strict/partition/partition.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,7 +7,7 @@
  *
  * Invariants: no facet and no edge is split, so that no other piece is affected; every surface
  * stays closed. Cost: linear in the facets of the partition. */
-#include "star/strict/partition/fan.h"
+#include "star/strict/partition/partition.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -16,12 +16,10 @@
  * Invariants: a vertex is removed from all facets or from none, so that every surface stays closed.
  *
  * Cost: n log n for sorting, plus the triangulations. */
-#include "star/strict/partition/merge_coplanar.h"
+#include "star/strict/partition/partition.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#include "star/strict/partition/cap.h"
 
 enum { ROUNDS = 4 };
 

@@ -19,7 +19,7 @@
  * whose kernel is empty at the highest s only.
  *
  * Cost: linear in the rows for each round of the loop; 5 to 20 rounds as a rule. */
-#include "star/strict/partition/region.h"
+#include "star/strict/partition/partition.h"
 
 #include <math.h>
 #include <string.h>

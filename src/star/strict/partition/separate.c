@@ -7,7 +7,7 @@
  * either sees all around the vertex, and no plane with the vertex on one side separates them.
  *
  * Cost: linear in the points of the partition and the facets of the piece. */
-#include "star/strict/partition/separate.h"
+#include "star/strict/partition/partition.h"
 
 #include <stdlib.h>
 

@@ -17,7 +17,7 @@
  * is no cut.
  *
  * Cost: linear in the facets of the partition, plus the cap. */
-#include "star/strict/partition/slice.h"
+#include "star/strict/partition/partition.h"
 
 #include <float.h>
 #include <math.h>
@@ -27,7 +27,6 @@
 #include "core/rng.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "star/strict/partition/cap.h"
 
 void partition_join(partition *p, const uint32_t *pieces, size_t count) {
     size_t kept = 0;

@@ -27,7 +27,7 @@
 #include <string.h>
 
 #include "geometry/vec3.h"
-#include "star/strict/start/labelling.h"
+#include "star/strict/start/start.h"
 
 enum {
     APEXES = 16,

@@ -4,8 +4,7 @@
 #define STARG_STAR_STRICT_SEARCH_ELIMINATE_H
 
 #include "core/rng.h"
-#include "star/strict/partition/fan.h"
-#include "star/strict/partition/region.h"
+#include "star/strict/partition/partition.h"
 
 typedef struct eliminate_task {
     const uint32_t *pieces; /* connected; at most FAN_PIECES_MOST */

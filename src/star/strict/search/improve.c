@@ -26,7 +26,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/partition/merge_coplanar.h"
+#include "star/strict/partition/partition.h"
 #include "star/strict/search/covering.h"
 #include "star/strict/search/eliminate.h"
 

@@ -3,7 +3,7 @@
 #ifndef STARG_STAR_STRICT_SEARCH_PARTING_H
 #define STARG_STAR_STRICT_SEARCH_PARTING_H
 
-#include "star/strict/partition/region.h"
+#include "star/strict/partition/partition.h"
 
 enum { PARTING_TOUCHED_MOST = 3 };
 

@@ -4,7 +4,7 @@
 #define STARG_STAR_STRICT_SEARCH_REFLEX_PLANE_H
 
 #include "core/rng.h"
-#include "star/strict/partition/region.h"
+#include "star/strict/partition/partition.h"
 
 /* A plane through a reflex edge of a region, such that no side has a reflex edge there; or through
  * an edge in which the region's surface touches itself. *found is false when there is no such edge:

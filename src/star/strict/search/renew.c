@@ -13,9 +13,8 @@
 #include "star/strict/search/renew.h"
 
 #include "core/rng.h"
-#include "star/strict/partition/merge_coplanar.h"
-#include "star/strict/partition/slice.h"
-#include "star/strict/start/bsp_start.h"
+#include "star/strict/partition/partition.h"
+#include "star/strict/start/start.h"
 
 enum {
     PIECES_LEAST = 3,

@@ -4,7 +4,7 @@
 #define STARG_STAR_STRICT_SEARCH_REPARTITION_H
 
 #include "core/rng.h"
-#include "star/strict/partition/region.h"
+#include "star/strict/partition/partition.h"
 
 enum { REPARTITION_PARTS_MOST = 5 };
 

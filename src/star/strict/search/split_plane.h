@@ -4,7 +4,7 @@
 #define STARG_STAR_STRICT_SEARCH_SPLIT_PLANE_H
 
 #include "core/rng.h"
-#include "star/strict/partition/region.h"
+#include "star/strict/partition/partition.h"
 
 /* What will do. */
 typedef enum split_plane_demand {

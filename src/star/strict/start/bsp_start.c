@@ -27,17 +27,14 @@
  * on the finished partition, and where that fails the piece is opened again. The result does not
  * depend on the number of threads. Cost: each round that of split_plane.c for all open pieces;
  * about as many rounds as twice the depth of the tree. */
-#include "star/strict/start/bsp_start.h"
+#include "star/strict/start/start.h"
 
 #include <math.h>
 
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "geometry/vec3.h"
-#include "star/strict/partition/extract.h"
-#include "star/strict/partition/merge_coplanar.h"
-#include "star/strict/partition/separate.h"
-#include "star/strict/partition/slice.h"
+#include "star/strict/partition/partition.h"
 #include "star/strict/search/reflex_plane.h"
 #include "star/strict/search/split_plane.h"
 

@@ -15,7 +15,7 @@
  * leaves no node empty can be completed.
  *
  * Cost: linear in the nodes for each choice that is no consequence of others. */
-#include "star/strict/start/labelling.h"
+#include "star/strict/start/start.h"
 
 #include <string.h>
 
