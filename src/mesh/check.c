@@ -289,14 +289,12 @@ static bool is_sound(const checker *c) {
 
 static void summarise(checker *c) {
     starg_check *check = c->check;
-    double lower[3], upper[3];
-    starg_mesh_bounds(c->mesh, lower, upper);
     check->vertices = c->mesh->vertex_count;
     check->faces = c->mesh->face_count;
     check->edges = c->topology->edge_count;
     check->components = c->topology->component_count;
     check->area = starg_mesh_area(c->mesh);
-    check->diagonal = hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+    check->diagonal = mesh_diagonal(c->mesh);
     check->manifold = count_of(c, STARG_FINDING_NONMANIFOLD_EDGE) == 0 &&
                       count_of(c, STARG_FINDING_NONMANIFOLD_VERTEX) == 0 &&
                       count_of(c, STARG_FINDING_REPEATED_CORNER) == 0;

@@ -135,6 +135,24 @@ starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, c
                       extent, STARG_EXTENT_LEAST);
 }
 
+double mesh_diagonal(const starg_mesh *mesh) {
+    double lower[3], upper[3];
+    starg_mesh_bounds(mesh, lower, upper);
+    return hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+}
+
+double mesh_shortest_edge(const starg_mesh *mesh) {
+    double least = INFINITY;
+    for (size_t h = 0; h < 3 * mesh->face_count; h++) {
+        const double *p = mesh->vertices + 3 * (size_t)mesh->faces[h];
+        const double *q = mesh->vertices + 3 * (size_t)mesh->faces[h % 3 < 2 ? h + 1 : h - 2];
+        double length = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+        if (length > 0)
+            least = fmin(least, length);
+    }
+    return least;
+}
+
 int starg_mesh_exponent(const starg_mesh *mesh) {
     int exponent;
     frexp(extent_of(mesh), &exponent);

@@ -25,6 +25,12 @@ struct starg_mesh {
 /* Errors: RANGE, if the mesh has an extent below STARG_EXTENT_LEAST other than 0. */
 starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage);
 
+/* Diagonal of the bounding box. */
+double mesh_diagonal(const starg_mesh *mesh);
+
+/* Length of the shortest edge that has one; INFINITY if there is none. */
+double mesh_shortest_edge(const starg_mesh *mesh);
+
 /* Exponent of the mesh's extent: differences of coordinates times 2^-exponent are at most 1 in
  * magnitude, so that products of them neither overflow nor underflow as a whole. */
 int starg_mesh_exponent(const starg_mesh *mesh);

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a mesh of any format; the file gets its name once it is complete. */
-#include <float.h>
-#include <math.h>
 #include <string.h>
 
 #include "core/file.h"
 #include "mesh/formats/io.h"
+#include "mesh/single.h"
 
 typedef void write_fn(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
 
@@ -46,19 +45,15 @@ static starg_status choose_format(starg_context *context, const char *path,
                       path);
 }
 
-/* Binary STL uses floats: rejects coordinates that would become infinite. */
+/* Does binary STL, which holds single precision, keep the surface? */
 static starg_status check_single(starg_context *context, const starg_mesh *mesh, const char *path) {
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        if (fabs(mesh->vertices[i]) <= (double)FLT_MAX)
-            continue;
-        uint64_t vertex = i / 3;
-        return starg_fail_at(context, STARG_ERROR_RANGE, STARG_MESH_FILE, STARG_ELEMENT_VERTEX,
-                             &vertex, 1,
-                             "cannot write '%s': coordinate %c of vertex %zu is %g, which exceeds "
-                             "the single precision of binary STL; write another format",
-                             path, "xyz"[i % 3], i / 3, mesh->vertices[i]);
-    }
-    return STARG_OK;
+    static const double origin[3] = {0};
+    const single_place place = {.stage = STARG_MESH_FILE,
+                                .file = path,
+                                .what = "the mesh",
+                                .remedy = "OFF, OBJ, PLY and text STL keep it, and 'starguard "
+                                          "repair --origin auto' puts it near the origin"};
+    return single_check(context, mesh, origin, &place);
 }
 
 starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh, const char *path,
