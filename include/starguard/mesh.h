@@ -63,18 +63,24 @@ STARG_API starg_status starg_mesh_read(starg_context *context, const char *path,
 STARG_API starg_status starg_mesh_read_memory(starg_context *context, const void *bytes,
                                               size_t size, const char *name, starg_mesh **out);
 
+/* A round point near the middle of the bounding box, to be subtracted where coordinates are large
+ * for their differences: that loses nothing of doubles. Zero for models about the origin. */
+STARG_API void starg_mesh_origin(const starg_mesh *mesh, double origin[3]);
+
 /* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY and OFF store them. */
 typedef struct starg_mesh_write_options {
     starg_mesh_format format;
     const uint8_t *face_colors; /* face_count x 3, or NULL */
+    double origin[3];           /* subtracted; PLY, OBJ and STL say so in a comment */
 } starg_mesh_write_options;
 
 STARG_API void starg_mesh_write_options_default(starg_mesh_write_options *options);
 
 /* Writes a mesh; path "-" is standard output and needs a format. The file is written completely or
  * not at all. Reals have 17 significant digits (binary STL: single precision). By name, .ply and
- * .stl are binary. `options` may be NULL. Errors: ARGUMENT (unknown file extension), RANGE (a
- * coordinate exceeds single precision, binary STL only), WRITE, MEMORY, CANCELLED. */
+ * .stl are binary. `options` may be NULL. Errors: ARGUMENT (unknown file extension, origin not
+ * finite), RANGE (binary STL only: in single precision it would be another surface, with the face
+ * or vertex), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh,
                                         const char *path, const starg_mesh_write_options *options);
 

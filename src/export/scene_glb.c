@@ -130,8 +130,7 @@ static starg_status check_part(starg_context *context, const glb_scene *s, view_
                                view_kind faces, const char *name) {
     starg_status status = STARG_OK;
     const view *v = &s->views[points], *f = &s->views[faces];
-    const single_place place = {
-        .stage = STAGE, .what = name, .remedy = "write .vtu, .ply or .obj"};
+    const single_place place = {.stage = STAGE, .what = name, .remedy = "write .vtu, .ply or .obj"};
     double *all = NULL;
     starg_mesh *part = NULL;
     STARG_NEW(context, STAGE, all, 3 * v->count);

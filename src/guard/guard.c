@@ -21,6 +21,7 @@
 #include "guard/corners.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
+#include "mesh/examine.h"
 #include "starguard/kernel.h"
 
 static const char STAGE[] = "guard";
@@ -402,7 +403,8 @@ static starg_status certify_one(const guard_problem *problem, const guard_outcom
 static void warn_of_shells(const guard_problem *problem, const starg_guards *guards) {
     bool on_surface;
     size_t count = 0, first = 0;
-    if (problem->solid->check->components < 2 || problem->solid->scene)
+    if (problem->solid->check->components < 2 || problem->solid->scene ||
+        mesh_is_rounded(problem->solid->check))
         return;
     for (size_t g = guards->count; g-- > 0;)
         if (bvh_winding(problem->solid->tree, guards->positions + 3 * g, &on_surface) > 1) {

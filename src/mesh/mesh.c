@@ -125,14 +125,29 @@ static double extent_of(const starg_mesh *mesh) {
     return fmax(upper[0] - lower[0], fmax(upper[1] - lower[1], upper[2] - lower[2]));
 }
 
-starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage) {
+bool mesh_is_wide(const starg_mesh *mesh) {
     double extent = extent_of(mesh);
-    if (extent == 0 || extent >= STARG_EXTENT_LEAST)
+    return extent == 0 || extent >= STARG_EXTENT_LEAST;
+}
+
+starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage) {
+    if (mesh_is_wide(mesh))
         return STARG_OK;
     return starg_fail(context, STARG_ERROR_RANGE, stage,
                       "the model is only %.3g wide; areas and volumes below a width of %g "
                       "underflow: scale its coordinates, by a power of two to keep them exact",
-                      extent, STARG_EXTENT_LEAST);
+                      extent_of(mesh), STARG_EXTENT_LEAST);
+}
+
+/* Multiples of a power of two at least as large as the extent: differences from them need no more
+ * bits than the coordinates have. */
+void starg_mesh_origin(const starg_mesh *mesh, double origin[3]) {
+    double lower[3], upper[3], step = ldexp(1, starg_mesh_exponent(mesh));
+    starg_mesh_bounds(mesh, lower, upper);
+    for (int k = 0; k < 3; k++) {
+        double middle = 0.5 * lower[k] + 0.5 * upper[k];
+        origin[k] = mesh->vertex_count > 0 ? trunc(middle / step) * step : 0;
+    }
 }
 
 double mesh_diagonal(const starg_mesh *mesh) {

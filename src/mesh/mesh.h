@@ -22,6 +22,9 @@ struct starg_mesh {
 /* Least extent of a solid: squares of areas underflow far below this. */
 #define STARG_EXTENT_LEAST 1e-90
 
+/* Is its extent 0, or at least STARG_EXTENT_LEAST? */
+bool mesh_is_wide(const starg_mesh *mesh);
+
 /* Errors: RANGE, if the mesh has an extent below STARG_EXTENT_LEAST other than 0. */
 starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage);
 

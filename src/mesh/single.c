@@ -25,7 +25,7 @@
 #include "mesh/contact.h"
 #include "mesh/pairs.h"
 
-static const double SHARE = 1e-4;      /* of the shortest edge, which a vertex may move by */
+static const double SHARE = 1e-4;     /* of the shortest edge, which a vertex may move by */
 static const double ALWAYS = 0x1p-20; /* of the diagonal */
 
 typedef struct comparison {
@@ -51,9 +51,10 @@ refuse(const comparison *c, starg_element element, const uint32_t *items, size_t
         indices[i] = items[i];
     const single_place *p = c->place;
     return starg_fail_at(c->context, STARG_ERROR_RANGE, p->stage, element, indices, count,
-                         "cannot write %s%s%s%sin single precision: %s; %s", p->what,
+                         "cannot write %s%s%s%s%s: %s; %s", p->what,
                          p->file != NULL ? " to '" : " ", p->file != NULL ? p->file : "",
-                         p->file != NULL ? "' " : "", reason, p->remedy);
+                         p->file != NULL ? "' " : "",
+                         p->how != NULL ? p->how : "in single precision", reason, p->remedy);
 }
 
 /* ---- moves ---- */
@@ -141,8 +142,8 @@ done:
     return status;
 }
 
-starg_status single_compare(starg_context *context, const starg_mesh *surface,
-                            double *rounded, const single_place *place) {
+starg_status single_compare(starg_context *context, const starg_mesh *surface, double *rounded,
+                            const single_place *place) {
     starg_status status = STARG_OK;
     starg_mesh other = *surface;
     other.vertices = rounded;
@@ -174,7 +175,7 @@ starg_status single_check(starg_context *context, const starg_mesh *surface, con
     STARG_NEW(context, place->stage, shifted.vertices, 3 * surface->vertex_count);
     STARG_NEW(context, place->stage, rounded, 3 * surface->vertex_count);
     for (size_t i = 0; i < 3 * surface->vertex_count; i++) {
-        shifted.vertices[i] = surface->vertices[i] - origin[i % 3];
+        shifted.vertices[i] = surface->vertices[i] - (origin != NULL ? origin[i % 3] : 0);
         rounded[i] = as_single(shifted.vertices[i]);
     }
     status = single_compare(context, &shifted, rounded, place);
