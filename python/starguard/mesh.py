@@ -312,7 +312,7 @@ def as_mesh(model: Any) -> Mesh:
     if hasattr(model, "points") and hasattr(model, "get_cells_type"):  # meshio
         return Mesh(model.points, model.get_cells_type("triangle"))
     if hasattr(model, "points") and hasattr(model, "faces"):  # PyVista: 3 i j k, 3 i j k, ...
-        faces = np.asarray(model.faces)
+        faces = _arrays.given(model.faces, "faces")
         if faces.ndim == 1:
             if faces.size % 4 != 0 or np.any(faces[::4] != 3):
                 raise ArgumentError("the model has faces other than triangles; triangulate it first")
