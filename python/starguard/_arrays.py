@@ -17,7 +17,7 @@ _MOST_INDEX = 2**32 - 1
 
 def given(value: ArrayLike, what: str) -> Array:
     """What was given, as an array. NumPy would drop masks and imaginary parts without a word."""
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
         raise TypeError(f"{what} has hidden entries: give an array without a mask")
     try:
         array = np.asarray(value)

@@ -168,6 +168,13 @@ class Mesh:
         return corners
 
     @property
+    def origin(self) -> Array:
+        """A round point near the middle; subtracting it from large coordinates rounds none. For `write`."""
+        origin = np.empty(3)
+        lib.starg_mesh_origin(self._handle, ffi.from_buffer("double[3]", origin))
+        return origin
+
+    @property
     def area(self) -> float:
         """Sum of the face areas."""
         return float(lib.starg_mesh_area(self._handle))

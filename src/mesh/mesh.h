@@ -4,6 +4,7 @@
 #define STARG_MESH_MESH_H
 
 #include "core/context.h"
+#include "core/private.h"
 #include "starguard/mesh.h"
 
 struct starg_mesh {
@@ -29,7 +30,7 @@ bool mesh_is_wide(const starg_mesh *mesh);
 starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage);
 
 /* Diagonal of the bounding box. */
-double mesh_diagonal(const starg_mesh *mesh);
+double mesh_diagonal(const starg_mesh *mesh) STARG_PRIVATE(mesh_diagonal);
 
 /* Length of the shortest edge that has one; INFINITY if there is none. */
 double mesh_shortest_edge(const starg_mesh *mesh);

@@ -48,11 +48,13 @@ class Into(Case):
         self.assertEqual(plain.vertices.tolist(), rows.tolist())
 
     def test_origin_of_files(self):
-        far = np.array(VERTICES, float) + [512345, 5412345, 100]
+        far = np.array(VERTICES, float) + [512345.3, 5412345.3, 100]
         mesh = starguard.Mesh(far, FACES)
         self.fails(starguard.RangeError, "single precision", mesh.write, "a.stl")
+        mesh.write("b.stl", origin=mesh.origin)
+        self.assertAlmostEqual(starguard.Mesh.read("b.stl").volume, mesh.volume, 6)
         mesh.write("a.stl", origin=[512345, 5412345, 100])
-        self.assertEqual(starguard.Mesh.read("a.stl").volume, mesh.volume)
+        self.assertAlmostEqual(starguard.Mesh.read("a.stl").volume, mesh.volume, 6)
 
     def test_values(self):
         for bad in (np.nan, np.inf, -np.inf, 1e100):

@@ -184,7 +184,10 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                                                 : "");
     }
     return starg_fail(context, STARG_ERROR_MESH, REPAIR_STAGE,
-                      "the mesh could not be made a solid: the remainder encloses no volume");
+                      check->underflows
+                          ? "the area or volume underflows; scale the coordinates, by a power of "
+                            "two to keep them exact"
+                          : "the mesh could not be made a solid: the remainder encloses no volume");
 }
 
 /* Checks the result and returns it if it bounds a solid. */
