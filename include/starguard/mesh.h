@@ -32,6 +32,13 @@ STARG_API const double *starg_mesh_vertices(const starg_mesh *mesh);
 /* face_count x 3, owned by the mesh. */
 STARG_API const uint32_t *starg_mesh_faces(const starg_mesh *mesh);
 
+/* What the file of the mesh has and the mesh has not: bits of starg_mesh_look. */
+typedef enum starg_mesh_look {
+    STARG_MESH_COLORS = 1, /* of vertices, faces or materials */
+    STARG_MESH_TEXTURE = 2 /* texture coordinates */
+} starg_mesh_look;
+STARG_API unsigned starg_mesh_left_out(const starg_mesh *mesh);
+
 /* Lower and upper corner of the bounding box of all vertices; zeros for an empty mesh. */
 STARG_API void starg_mesh_bounds(const starg_mesh *mesh, double lower[3], double upper[3]);
 /* Sum of the face areas. */

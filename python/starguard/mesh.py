@@ -167,6 +167,26 @@ class Mesh:
                               ffi.from_buffer("double[3]", corners[1]))
         return corners
 
+    def apart(self, other: Mesh) -> float:
+        """The largest distance of a vertex of either surface from the other surface.
+
+        >>> import starguard
+        >>> room = starguard.sample("l-room", vertices=500)
+        >>> room.apart(room)
+        0.0
+        """
+        session = Session()
+        largest = ffi.new("double *")
+        session.call(lib.starg_mesh_apart, session.context, self._handle, other._handle, largest)
+        return float(largest[0])
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What the file of the mesh has and the mesh has not: "colors", "texture"."""
+        bits = lib.starg_mesh_left_out(self._handle)
+        return tuple(name for name, bit in (("colors", lib.STARG_MESH_COLORS),
+                                            ("texture", lib.STARG_MESH_TEXTURE)) if bits & bit)
+
     @property
     def origin(self) -> Array:
         """A round point near the middle; subtracting it from large coordinates rounds none. For `write`."""

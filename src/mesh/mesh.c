@@ -99,6 +99,10 @@ size_t starg_mesh_face_count(const starg_mesh *mesh) {
     return mesh->face_count;
 }
 
+unsigned starg_mesh_left_out(const starg_mesh *mesh) {
+    return mesh->left_out;
+}
+
 const double *starg_mesh_vertices(const starg_mesh *mesh) {
     return mesh->vertices;
 }

@@ -10,8 +10,9 @@
 struct starg_mesh {
     starg_context *context;
     size_t vertex_count, face_count;
-    double *vertices; /* vertex_count x 3 */
-    uint32_t *faces;  /* face_count x 3 */
+    double *vertices;  /* vertex_count x 3 */
+    uint32_t *faces;   /* face_count x 3 */
+    unsigned left_out; /* starg_mesh_look: in its file only */
 };
 
 /* Largest number of vertices or faces. */

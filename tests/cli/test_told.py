@@ -2,7 +2,7 @@
 """Nothing is dropped without a word: what an input asks for and does not get is said."""
 import json
 
-from support import OPEN, Case, main
+from support import OPEN, TETRAHEDRON, Case, main
 from test_coordinates import boxes, off
 
 
@@ -44,6 +44,44 @@ class Told(Case):
         told = self.run_json("guard", "pit.off", "--mount", "roof.txt", "--clearance", "0.05", "--count", "20",
                              "-o", "g.json")
         self.assertEqual(told["coverage"]["uncovered_faces"], [])
+
+    def test_few_vertices(self):
+        """What has too few for B gets the faces of the overlay, whatever the method, and says so."""
+        self.write("a.off", TETRAHEDRON)
+        self.write("b.off", off(*boxes(((5, 5, 5), (1, 2, 3), False))))
+        self.sample("sphere", 520, "c.off")
+        for a, b, method, poor in (("a.off", "c.off", "star", True), ("b.off", "c.off", "arap", True),
+                                   ("c.off", "b.off", "linear", False), ("c.off", "c.off", "star", False)):
+            words = ["morph", a, b, "--frames", "3", "-o", "frames", "--method", method]
+            told = self.run_json(*words)
+            out, err = self.run_text(*words)
+            self.assertEqual("the faces of the overlay" in err, poor)
+            self.assertEqual("overlay" in told, poor)
+            self.assertIn(" of the last frame from B", out)
+            if poor:
+                self.assertLess(told["distance"], 1e-9)
+
+    def test_look_of_frames(self):
+        """Colours and texture coordinates of A are not in the frames."""
+        ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" \
+              "{}element face 4\nproperty list uchar int vertex_indices\nend_header\n{}" \
+              "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+        points = ("0 0 0", "1 0 0", "0 1 0", "0 0 1")
+        rgb = "".join(f"property uchar {c}\n" for c in ("red", "green", "blue"))
+        self.write("b.ply", ply.format("", "".join(f"{p}\n" for p in points)))
+        faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+        for name, text, look in (
+                ("a.ply", ply.format(rgb, "".join(f"{p} 9 8 7\n" for p in points)), "colours of A"),
+                ("a.obj", "".join(f"v {p}\nvt 0 1\n" for p in points) + faces, "texture coordinates of A"),
+                ("c.obj", "".join(f"v {p} 1 0 0\nvt 0 1\n" for p in points) + faces,
+                 "colours and texture coordinates of A"),
+                ("d.off", TETRAHEDRON.replace("3 0 2 1", "3 0 2 1 255 0 0"), "colours of A"),
+                ("b.ply", None, None)):
+            if text is not None:
+                self.write(name, text)
+            _, err = self.run_text("morph", name, "b.ply", "--frames", "2", "-o", "frames", "--method", "linear")
+            self.assertEqual(look is not None, "leave out the" in err, (name, err))
+            self.assertIn(look or "", err)
 
     def test_landmarks(self):
         self.sample("sphere", 520, "a.off")

@@ -68,6 +68,7 @@ typedef struct starg_mesh_builder {
     STARG_ARRAY(uint32_t) faces;   /* 3 indices per triangle */
     STARG_ARRAY(uint32_t) corners; /* of the open face */
     starg_face_values *values;     /* NULL: not wanted */
+    unsigned left_out;             /* starg_mesh_look: what the reader passes over */
     size_t ticks;
 } starg_mesh_builder;
 
