@@ -149,7 +149,7 @@ const cli_command cli_command_repair = {
         "# close gaps of up to 0.001 of the diagonal, keep large holes open\n"
         "starguard repair scan.ply -o solid.ply --merge-distance 0.001 --max-hole-edges 50\n"
         "# binary STL of a building at map coordinates\n"
-        "starguard repair house.obj -o house.stl --origin auto",
+        "starguard repair scan.ply -o solid.stl --origin auto",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_repair_options_fields, wanted),
