@@ -64,6 +64,10 @@ static void print_check(cli_session *session, const starg_check *check) {
     if (check->usable)
         cli_say(session, "volume      %.6g\n", check->volume);
     cli_say(session, "diagonal    %.6g\n", check->diagonal);
+    cli_say(session, "shortest    %.6g\n", check->shortest_edge);
+    if (check->coarse)
+        cli_say(session, "steps       %.3g %.3g %.3g\n", check->grid[0], check->grid[1],
+                check->grid[2]);
     bool any = false;
     for (int kind = 0; kind < STARG_FINDING_KINDS; kind++)
         any |= check->findings[kind].count > 0;
@@ -120,6 +124,10 @@ static void report_check(cli_session *session, const starg_check *check) {
         {"area", cli_json_real(check->area)},
         {"volume", check->usable ? cli_json_real(check->volume) : json_null()},
         {"diagonal", cli_json_real(check->diagonal)},
+        {"shortest_edge", cli_json_real(check->shortest_edge)},
+        {"grid", json_pack("[o, o, o]", cli_json_real(check->grid[0]),
+                           cli_json_real(check->grid[1]), cli_json_real(check->grid[2]))},
+        {"coarse", json_boolean(check->coarse)},
     };
     for (size_t i = 0; i < sizeof entries / sizeof *entries; i++)
         cli_put(session, report, entries[i].key, entries[i].value);
@@ -174,7 +182,11 @@ static void judge(cli_session *session, const starg_check *check) {
     const char *name = session->operands[0];
     char list[256] = "";
     size_t used = 0;
-    if (check->usable && check->findings[STARG_FINDING_SELF_INTERSECTION].count > 0)
+    char grid[256];
+    starg_check_describe_grid(check, grid, sizeof grid);
+    if (check->coarse)
+        cli_warn(session, "warning: '%s': %s", name, grid);
+    else if (check->usable && check->findings[STARG_FINDING_SELF_INTERSECTION].count > 0)
         cli_warn(session, "warning: '%s' is closed but intersects itself", name);
     if (check->usable)
         return;
@@ -185,7 +197,10 @@ static void judge(cli_session *session, const starg_check *check) {
                                      used == 0 ? "" : ", ", starg_finding_name(serious[i]), count);
     }
     cli_warn(session, "'%s' is not a usable solid: %s; %s", name,
-             used > 0 ? list : "it encloses no volume", starg_check_advice(check));
+             used > 0            ? list
+             : check->underflows ? "its area or volume underflows"
+                                 : "it encloses no volume",
+             starg_check_advice(check));
     session->outcome = CLI_EXIT_INPUT;
 }
 

@@ -64,6 +64,8 @@ static void tell_added(cli_session *session, const starg_database_report *r) {
     for (size_t i = 0; i < r->count; i++)
         if (r->results[i].outcome == STARG_DATABASE_REFUSED)
             cli_warn(session, "not added: %s", r->results[i].text);
+        else if (r->results[i].outcome == STARG_DATABASE_ADDED && r->results[i].text != NULL)
+            cli_warn(session, "warning: '%s': %s", session->operands[i + 1], r->results[i].text);
     if (r->refused > 0)
         session->outcome = CLI_EXIT_UNFINISHED;
 }

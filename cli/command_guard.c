@@ -136,6 +136,23 @@ static void say_count(cli_session *session, const starg_guards *g) {
     cli_say(session, "\n");
 }
 
+/* Faces that nothing sees are of two kinds: more candidates help with one of them. */
+static void say_uncovered(cli_session *session, const starg_guards *g) {
+    size_t wanted = g->target_count > 0 ? g->target_count : g->face_count;
+    size_t hidden = wanted - g->coverable_faces;
+    size_t unseen = g->unseen_count < hidden ? g->unseen_count : hidden, left = hidden - unseen;
+    cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
+    if (hidden > 0)
+        cli_say(session, " (");
+    if (unseen > 0)
+        cli_say(session, "%zu that no place sees%s", unseen, left > 0 ? ", " : "");
+    if (left > 0)
+        cli_say(session, "%zu that no candidate sees", left);
+    if (left > 0 && g->options.candidates != STARG_CANDIDATES_GIVEN)
+        cli_say(session, ": --count %zu may", 5 * g->options.candidate_count);
+    cli_say(session, "%s\n", hidden > 0 ? ")" : "");
+}
+
 static void say_guards(cli_session *session, const starg_guards *g) {
     say_count(session, g);
     if (g->options.max_guards > 0)
@@ -154,13 +171,8 @@ static void say_guards(cli_session *session, const starg_guards *g) {
     if (g->options.baseline > 0)
         cli_say(session, "baseline      %s seen by two guards %g degrees apart\n",
                 cli_count_of(g->baseline_faces, "face", "faces").text, g->options.baseline);
-    cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
-    size_t wanted = g->target_count > 0 ? g->target_count : g->face_count;
-    size_t hidden = wanted - g->coverable_faces;
-    if (hidden > 0)
-        cli_say(session, " (%s that no candidate sees)",
-                cli_count_of(hidden, "face", "faces").text);
-    cli_say(session, "\ncandidates    %zu\n", g->candidate_count);
+    say_uncovered(session, g);
+    cli_say(session, "candidates    %zu\n", g->candidate_count);
     if (g->time_limited)
         cli_say(session, "time limit    reached; this is the best result found\n");
 }
@@ -173,6 +185,7 @@ static starg_status report_guards(cli_session *session, const starg_guards *g, c
     CLI_TRY(starg_guards_write_memory(session->context, g, session->operands[0], &text, &size));
     cli_report_take(session, text, size);
     cli_put(session, session->report, "output", cli_json_text(output));
+    cli_put(session, session->report, "unseen_faces", json_integer((json_int_t)g->unseen_count));
     cli_put(session, session->report, "sight_lines", json_integer((json_int_t)g->lines_tested));
     if (g->cells > 0) { /* a star-shaped solid needs no search */
         cli_put(session, session->report, "cells", json_integer((json_int_t)g->cells));

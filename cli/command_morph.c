@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard morph: interpolates between two surfaces. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,8 @@ typedef struct values {
     int up;
     bool guards, pieces, overlay, report;
 } values;
+
+static const double POOR = 0.02; /* of B's diagonal: the last frame is no picture of B */
 
 enum { SHEET_COLUMNS = 5, TILE_WIDTH = 480, TILE_HEIGHT = 360 };
 static const double SECONDS = 2; /* of an animation */
@@ -142,6 +145,7 @@ typedef struct subject {
     starg_map *map;
     starg_mesh *refined; /* A with the overlay's faces; NULL without overlay */
     double *images;
+    double distance, diagonal; /* of the last frame from B, and of B */
 } subject;
 
 /* The first frame: A, or A refined. */
@@ -195,16 +199,55 @@ done:
     return status;
 }
 
+/* How far the last frame is from B. */
+static starg_status measure_end(cli_session *session, subject *s) {
+    starg_status status = STARG_OK;
+    const starg_mesh *source = source_of(session, s);
+    starg_mesh *last = NULL;
+    double lower[3], upper[3];
+    starg_mesh_bounds(s->target, lower, upper);
+    s->diagonal = hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+    CLI_TRY(starg_mesh_create(session->context, s->images, starg_mesh_vertex_count(source),
+                              starg_mesh_faces(source), starg_mesh_face_count(source), &last));
+    CLI_TRY(starg_mesh_apart(session->context, last, s->target, &s->distance));
+done:
+    starg_mesh_free(last);
+    return status;
+}
+
+/* A surface of few vertices is no picture of B, whatever their places: then both get the faces of
+ * the overlay. */
+static starg_status refine_if_poor(cli_session *session, subject *s) {
+    starg_status status = STARG_OK;
+    if (s->distance <= POOR * s->diagonal ||
+        starg_mesh_vertex_count(session->mesh) >= starg_mesh_vertex_count(s->target))
+        return STARG_OK;
+    cli_warn(session,
+             "in A's %zu vertices the last frame would be %.3g from B (%.3g %% of its diagonal): "
+             "all frames have the faces of the overlay (--overlay)",
+             starg_mesh_vertex_count(session->mesh), s->distance, 100 * s->distance / s->diagonal);
+    free(s->images);
+    s->images = NULL;
+    CLI_TRY(refine(session, s));
+    CLI_TRY(measure_end(session, s));
+done:
+    return status;
+}
+
 static starg_status read_subject(cli_session *session, const values *v, subject *s) {
     starg_status status = STARG_OK;
     CLI_TRY(starg_mesh_read(session->context, session->operands[1], &s->target));
     CLI_TRY(make_map(session, v, s));
-    if (v->overlay)
-        return refine(session, s);
+    if (v->overlay) {
+        CLI_TRY(refine(session, s));
+        return measure_end(session, s);
+    }
     s->images = malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *s->images);
     if (s->images == NULL)
         return cli_fail_memory(session);
     starg_map_positions(s->map, s->target, s->images);
+    CLI_TRY(measure_end(session, s));
+    CLI_TRY(refine_if_poor(session, s));
 done:
     return status;
 }
@@ -502,6 +545,7 @@ static void report_morph(cli_session *session, json_t *report, const values *v, 
     cli_put(session, report, "method", json_string(method_word(v)));
     if (s->refined != NULL)
         cli_put(session, report, "overlay", overlay_json(s));
+    cli_put(session, report, "distance", cli_json_real(s->distance));
     cli_put(session, report, "guards", guards_json(session, morph, 0));
     cli_put(session, report, "counterparts", guards_json(session, morph, 1));
     cli_put(session, report, "unguarded_faces",
@@ -533,6 +577,16 @@ static starg_status write_report(cli_session *session, const values *v, const su
     return status;
 }
 
+/* Frames have places and faces only. */
+static void warn_of_look(cli_session *session) {
+    unsigned look = starg_mesh_left_out(session->mesh);
+    if (look != 0)
+        cli_warn(session, "the frames leave out the %s of A",
+                 look == STARG_MESH_COLORS    ? "colours"
+                 : look == STARG_MESH_TEXTURE ? "texture coordinates"
+                                              : "colours and texture coordinates");
+}
+
 static void say_morph(cli_session *session, const values *v, const subject *s,
                       const starg_morph *morph, const extras *found, const totals *sum) {
     const separate *alone = &found->alone;
@@ -559,6 +613,8 @@ static void say_morph(cli_session *session, const values *v, const subject *s,
             sum->intersections, sum->most_intersections);
     cli_say(session, "at the ends   %zu pairs in the first frame, %zu in the last\n", sum->ends[0],
             sum->ends[1]);
+    cli_say(session, "distance      %.3g of the last frame from B, %.3g %% of its diagonal\n",
+            s->distance, s->diagonal > 0 ? 100 * s->distance / s->diagonal : 0);
     cli_say(session, "flipped       %zu faces\n", sum->inverted);
     cli_say(session, "volume drift  at most %.3g %%\n", 100 * sum->drift);
 }
@@ -585,6 +641,7 @@ static starg_status run(cli_session *session, void *data) {
         CLI_TRY(write_animation(session, v, &s, morph));
     if (v->picture != NULL)
         CLI_TRY(write_picture(session, v, &s));
+    warn_of_look(session);
     say_morph(session, v, &s, morph, &found, &sum);
     if (session->report != NULL)
         report_morph(session, session->report, v, &s, morph, &found, frames);

@@ -1,18 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard repair: turns a nearly closed mesh into a solid. */
+#include <string.h>
+
 #include "commands.h"
 #include "session.h"
 #include "starguard/repair.h"
 
 typedef struct values {
-    const char *output;
+    const char *output, *origin;
     starg_repair_options wanted;
-    starg_mesh_format format; /* from the name of the output */
+    starg_mesh_write_options writing; /* the format from the name of the output */
 } values;
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl",
                       "Repaired mesh; '-' writes OFF to standard output."),
+    CLI_TEXT_OPTION("origin", origin, "X,Y,Z|auto",
+                    "Subtract this point from all vertices, as binary STL needs it at map "
+                    "coordinates; 'auto' takes a round one near the middle. It is printed, and "
+                    "stands in a comment of .ply, .obj and .stl. Default: nothing is subtracted."),
 };
 
 /* Reports what was done, as text and JSON. */
@@ -52,27 +58,69 @@ static void tell(cli_session *session, const starg_repair_report *r) {
         json_decref(report);
 }
 
+static starg_status fail_in_vain(cli_session *session, const starg_repair_report *r) {
+    return cli_fail(session, STARG_ERROR_MESH, "%s of faces intersect, no fewer than before; %s",
+                    cli_count_of(r->intersections_after, "pair", "pairs").text,
+                    r->grid[0] != '\0' ? r->grid
+                                       : "--union cuts them and keeps what bounds the solid");
+}
+
+static void warn(cli_session *session, const starg_repair_report *r) {
+    if (r->grid[0] != '\0')
+        cli_warn(session, "warning: %s", r->grid);
+    else if (r->intersections_after > 0)
+        cli_warn(session, "warning: %s of faces intersect (%zu before); --union cuts them",
+                 cli_count_of(r->intersections_after, "pair", "pairs").text,
+                 r->intersections_before);
+}
+
+static bool is_auto(const values *v) {
+    return v->origin != NULL && strcmp(v->origin, "auto") == 0;
+}
+
+static void tell_origin(cli_session *session, const double origin[3]) {
+    cli_say(session, "%-22s %.17g,%.17g,%.17g\n", "origin", origin[0], origin[1], origin[2]);
+    if (session->report != NULL)
+        cli_put(session, session->report, "origin",
+                json_pack("[o, o, o]", cli_json_real(origin[0]), cli_json_real(origin[1]),
+                          cli_json_real(origin[2])));
+}
+
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE"));
-    CLI_TRY(cli_mesh_format(session, v->output, &v->format));
+    starg_mesh_write_options_default(&v->writing);
+    CLI_TRY(cli_mesh_format(session, v->output, &v->writing.format));
+    if (v->origin != NULL && !is_auto(v) && !cli_number_list(v->origin, v->writing.origin, 3))
+        status = cli_fail(session, STARG_ERROR_ARGUMENT,
+                          "--origin takes X,Y,Z (three numbers, no spaces) or auto, not '%.100s'",
+                          v->origin);
 done:
     return status;
 }
 
 static starg_status run(cli_session *session, void *data) {
-    const values *v = data;
+    values *v = data;
     const starg_mesh *mesh = session->mesh;
     starg_status status = STARG_OK;
     starg_mesh *mended = NULL;
     starg_repair_report report;
     CLI_TRY(starg_mesh_repair(session->context, mesh, &v->wanted, &mended, &report));
-    CLI_TRY(cli_mesh_write(session, mended, v->format, NULL, v->output));
+    if (report.in_vain) {
+        status = fail_in_vain(session, &report);
+        goto done;
+    }
+    if (is_auto(v))
+        starg_mesh_origin(mended, v->writing.origin);
+    CLI_TRY(cli_mesh_write_with(session, mended, &v->writing, v->output));
     cli_say(session, "%zu vertices, %zu faces in; %zu vertices, %zu faces out\n",
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh),
             starg_mesh_vertex_count(mended), starg_mesh_face_count(mended));
     tell(session, &report);
+    warn(session, &report);
+    if (v->origin != NULL)
+        tell_origin(session, v->writing.origin);
     if (session->report != NULL)
         cli_put(session, session->report, "result",
                 json_pack("{s:o, s:I, s:I}", "file", cli_json_text(v->output), "vertices",
@@ -90,12 +138,16 @@ const cli_command cli_command_repair = {
     .description =
         "Merges and drops vertices, drops degenerate and duplicate faces, flips faces, fills holes "
         "and resolves local self-intersections. Reports all changes and the largest move of a "
-        "vertex. Exit status 2, without output, if the result is not a usable solid.",
-    .examples = "# repair, then list remaining defects\n"
-                "starguard repair scan.stl -o solid.off\n"
-                "starguard check solid.off\n"
-                "# close gaps of up to 0.001 of the diagonal, keep large holes open\n"
-                "starguard repair scan.ply -o solid.ply --merge-distance 0.001 --max-hole-edges 50",
+        "vertex. Exit status 2, without output, if the result is not a usable solid, or if a solid "
+        "intersects itself as often as before (--union cuts what intersects).",
+    .examples =
+        "# repair, then list remaining defects\n"
+        "starguard repair scan.stl -o solid.off\n"
+        "starguard check solid.off\n"
+        "# close gaps of up to 0.001 of the diagonal, keep large holes open\n"
+        "starguard repair scan.ply -o solid.ply --merge-distance 0.001 --max-hole-edges 50\n"
+        "# binary STL of a building at map coordinates\n"
+        "starguard repair scan.ply -o solid.stl --origin auto",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_repair_options_fields, wanted),

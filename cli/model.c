@@ -170,8 +170,13 @@ starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_
     starg_mesh_write_options_default(&options);
     options.format = format;
     options.face_colors = colors;
+    return cli_mesh_write_with(session, mesh, &options, name);
+}
+
+starg_status cli_mesh_write_with(cli_session *session, const starg_mesh *mesh,
+                                 const starg_mesh_write_options *options, const char *name) {
     return starg_mesh_write(session->context, mesh, cli_outputs_place(&session->outputs, name),
-                            &options);
+                            options);
 }
 
 uint8_t *cli_colors_create(const starg_mesh *mesh) {

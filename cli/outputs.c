@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,29 @@ static bool fail_clash(cli_outputs *outputs, const char *name) {
     return fail(outputs, name, "it is also an input; choose another file");
 }
 
+/* What a link to nothing names, however many links lead there: written through, as a link to a file
+ * is. NULL with errno set on failure. */
+static char *follow(const char *name) {
+    enum { LINKS = 40 };
+    char *path = strdup(name);
+    for (int i = 0; path != NULL; i++) {
+        char text[PATH_MAX];
+        ssize_t size = readlink(path, text, sizeof text - 1);
+        if (size < 0)
+            return path; /* no link */
+        text[size] = '\0';
+        size_t folder = text[0] == '/' ? 0 : folder_size(path), room = folder + (size_t)size + 1;
+        char *next = i < LINKS ? malloc(room) : NULL;
+        if (next != NULL)
+            snprintf(next, room, "%.*s%s", (int)folder, path, text);
+        else if (i == LINKS)
+            errno = ELOOP;
+        free(path);
+        path = next;
+    }
+    return NULL;
+}
+
 /* Name of a new file with the links in its folder's name resolved. */
 static char *new_target(const char *name) {
     size_t size = folder_size(name);
@@ -79,12 +103,16 @@ static bool inspect(cli_outputs *outputs, cli_output *output) {
         return fail(outputs, output->name, "it is a directory; choose a file in it");
     if (exists && access(output->name, W_OK) != 0)
         return fail(outputs, output->name, strerror(errno));
+    char *named = exists ? strdup(output->name) : follow(output->name);
+    if (named == NULL)
+        return fail(outputs, output->name, strerror(errno));
     output->device = exists && !S_ISREG(info.st_mode);
     output->id = exists ? id_of(&info) : (cli_file_id){0};
     if (!output->device)
-        output->target = exists ? realpath(output->name, NULL) : new_target(output->name);
+        output->target = exists ? realpath(output->name, NULL) : new_target(named);
     if (output->target == NULL)
-        output->target = strdup(output->name);
+        output->target = strdup(named);
+    free(named);
     if (output->target == NULL)
         return fail(outputs, output->name, "out of memory");
     return true;

@@ -296,6 +296,10 @@ starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
                             const uint8_t *colors, const char *name);
 
+/* The same with options of any kind. */
+starg_status cli_mesh_write_with(cli_session *session, const starg_mesh *mesh,
+                                 const starg_mesh_write_options *options, const char *name);
+
 /* Neutral colours for the faces of a mesh; NULL when out of memory. */
 uint8_t *cli_colors_create(const starg_mesh *mesh);
 

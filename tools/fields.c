@@ -21,6 +21,10 @@
     }
 static const starg_field GUARD_REPORT[] = {
     {.key = "output", .kind = STARG_FIELD_TEXT, .help = "The file that was written."},
+    {.key = "unseen_faces",
+     .kind = STARG_FIELD_COUNT,
+     .most = INT64_MAX,
+     .help = "Uncovered faces that, proven, no place sees where guards may stand."},
     {.key = "sight_lines",
      .kind = STARG_FIELD_COUNT,
      .most = INT64_MAX,

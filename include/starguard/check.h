@@ -48,10 +48,15 @@ typedef struct starg_check {
     bool manifold;          /* every edge at most two faces, every vertex one fan           */
     bool oriented;          /* neighbours agree; inward shells are allowed */
     bool embedded;          /* no degenerate face, intersection or contact                  */
-    bool usable;            /* closed, oriented, with positive volume; manifold but for contacts */
+    bool usable;            /* closed, oriented, with positive volume; manifold but for contacts;
+                               not so small that its area or volume underflows */
     int64_t genus;          /* sum over components; -1 unless closed and manifold           */
     double area, volume;    /* volume after turning inward shells; 0 unless usable          */
     double diagonal;        /* of the bounding box                                          */
+    double shortest_edge;   /* of those with a length; 0 if there are none                  */
+    double grid[3];         /* by axis: the step of which all coordinates are multiples     */
+    bool coarse;            /* edges are hardly longer than these steps, far from the origin */
+    bool underflows;        /* it encloses a volume, but doubles do not hold it or the area */
     size_t one_sided_faces; /* faces of one-sided surfaces such as a Moebius strip */
     starg_finding findings[STARG_FINDING_KINDS];
     uint8_t *face_marks; /* per face: 0, or 1 + the first kind (in enum order) that marks it */
@@ -62,6 +67,10 @@ STARG_API starg_status starg_mesh_check(starg_context *context, const starg_mesh
                                         starg_check **out);
 /* What helps a mesh that is not usable, as the end of a sentence; static. */
 STARG_API const char *starg_check_advice(const starg_check *check);
+
+/* What rounding has done, if the grid is coarse ("coordinates have steps of 0.5, ..."); otherwise
+ * empty. Truncated to `size` bytes. */
+STARG_API void starg_check_describe_grid(const starg_check *check, char *text, size_t size);
 
 STARG_API void starg_check_free(starg_context *context, starg_check *check);
 

@@ -39,7 +39,8 @@ typedef enum starg_database_outcome {
 /* The outcome for one file. */
 typedef struct starg_database_result {
     starg_database_outcome outcome;
-    char *text; /* KNOWN: the name of the stored content; REFUSED: the reason; else NULL */
+    char *text; /* KNOWN: the name of the stored content; REFUSED: the reason; ADDED: a warning
+                about the model, or NULL */
 } starg_database_result;
 
 typedef struct starg_database_report {

@@ -149,6 +149,8 @@ typedef struct starg_guards {
     size_t baseline_faces;  /* with a baseline: that two guards see from places so far apart */
     size_t uncovered_count;
     uint32_t *uncovered; /* faces that no guard sees, ascending                        */
+    size_t unseen_count; /* of them: proven to be seen from nowhere where guards may stand; only of
+                            starg_guard, not of files */
 
     /* only for STARG_TARGET_VERTICES, else 0 */
     double coverage_vertices; /* covered fraction of the vertices used by faces */

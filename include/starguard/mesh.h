@@ -32,6 +32,13 @@ STARG_API const double *starg_mesh_vertices(const starg_mesh *mesh);
 /* face_count x 3, owned by the mesh. */
 STARG_API const uint32_t *starg_mesh_faces(const starg_mesh *mesh);
 
+/* What the file of the mesh has and the mesh has not: bits of starg_mesh_look. */
+typedef enum starg_mesh_look {
+    STARG_MESH_COLORS = 1, /* of vertices, faces or materials */
+    STARG_MESH_TEXTURE = 2 /* texture coordinates */
+} starg_mesh_look;
+STARG_API unsigned starg_mesh_left_out(const starg_mesh *mesh);
+
 /* Lower and upper corner of the bounding box of all vertices; zeros for an empty mesh. */
 STARG_API void starg_mesh_bounds(const starg_mesh *mesh, double lower[3], double upper[3]);
 /* Sum of the face areas. */
@@ -63,18 +70,24 @@ STARG_API starg_status starg_mesh_read(starg_context *context, const char *path,
 STARG_API starg_status starg_mesh_read_memory(starg_context *context, const void *bytes,
                                               size_t size, const char *name, starg_mesh **out);
 
+/* A round point near the middle of the bounding box, to be subtracted where coordinates are large
+ * for their differences: that loses nothing of doubles. Zero for models about the origin. */
+STARG_API void starg_mesh_origin(const starg_mesh *mesh, double origin[3]);
+
 /* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY and OFF store them. */
 typedef struct starg_mesh_write_options {
     starg_mesh_format format;
     const uint8_t *face_colors; /* face_count x 3, or NULL */
+    double origin[3];           /* subtracted; PLY, OBJ and STL say so in a comment */
 } starg_mesh_write_options;
 
 STARG_API void starg_mesh_write_options_default(starg_mesh_write_options *options);
 
 /* Writes a mesh; path "-" is standard output and needs a format. The file is written completely or
  * not at all. Reals have 17 significant digits (binary STL: single precision). By name, .ply and
- * .stl are binary. `options` may be NULL. Errors: ARGUMENT (unknown file extension), RANGE (a
- * coordinate exceeds single precision, binary STL only), WRITE, MEMORY, CANCELLED. */
+ * .stl are binary. `options` may be NULL. Errors: ARGUMENT (unknown file extension, origin not
+ * finite), RANGE (binary STL only: in single precision it would be another surface, with the face
+ * or vertex), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh,
                                         const char *path, const starg_mesh_write_options *options);
 

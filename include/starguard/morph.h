@@ -190,6 +190,11 @@ STARG_API starg_status starg_morph_guards_separate(const starg_morph *morph, int
  * (no TetGen), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_morph_solids(const starg_morph *morph, starg_decomposition *out[2]);
 
+/* The largest distance of a corner of a face of either surface from the other surface; infinity if
+ * one has no faces. Errors: MEMORY, CANCELLED. */
+STARG_API starg_status starg_mesh_apart(starg_context *context, const starg_mesh *a,
+                                        const starg_mesh *b, double *largest);
+
 /* Quality of a frame. */
 typedef struct starg_frame_measures {
     size_t intersections; /* pairs of intersecting faces */

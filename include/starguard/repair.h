@@ -39,6 +39,8 @@ typedef struct starg_repair_report {
      * new vertex lies at most from the exact intersection, in model units. */
     size_t faces_cut, union_rounds;
     double rounding;
+    bool in_vain;   /* it was a solid, and intersects itself as often as before */
+    char grid[256]; /* starg_check_describe_grid of the result: empty unless it is coarse */
 } starg_repair_report;
 
 /* Repairs a mesh; a valid mesh is returned unchanged. Overlapping components are kept, unless

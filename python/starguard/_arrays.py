@@ -15,10 +15,29 @@ from .errors import ArgumentError
 _MOST_INDEX = 2**32 - 1
 
 
+def given(value: ArrayLike, what: str) -> Array:
+    """What was given, as an array. NumPy would drop masks and imaginary parts without a word."""
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
+        raise TypeError(f"{what} has hidden entries: give an array without a mask")
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ArgumentError(f"{what} must be numbers: {error}") from error
+    if array.dtype.kind == "c":
+        raise TypeError(f"{what} must be real, not complex")
+    return array
+
+
+def doubles(value: ArrayLike, what: str) -> Array:
+    """Doubles of any shape, C-contiguous; those are passed without a copy."""
+    return np.ascontiguousarray(given(value, what), dtype=np.float64)
+
+
 def reals(value: ArrayLike, columns: int, what: str) -> Array:
     """Rows of `columns` doubles; C-contiguous float64 is passed without a copy."""
+    array = given(value, what)
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
+        array = np.ascontiguousarray(array, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"{what} must be numbers of shape (n, {columns}): {error}") from error
     if array.size == 0:
@@ -30,14 +49,14 @@ def reals(value: ArrayLike, columns: int, what: str) -> Array:
 
 def points(value: ArrayLike, what: str, columns: int = 3) -> Array:
     """Rows of three doubles (six for boxes); a single point becomes one row."""
-    single = np.ndim(value) == 1 and np.size(value) == columns
-    return reals(np.reshape(value, (1, columns)) if single else value, columns, what)
+    array = given(value, what)
+    return reals(array.reshape(1, columns) if array.shape == (columns,) else array, columns, what)
 
 
 def indices(value: ArrayLike, columns: int, what: str) -> Array:
     """Rows of `columns` uint32. Contiguous uint32 and nonnegative int32 (same bits) are passed
     without a copy; other integers are copied."""
-    array = np.asarray(value)
+    array = given(value, what)
     if array.size == 0:
         return np.empty((0, columns), np.uint32)
     if array.ndim != 2 or array.shape[1] != columns:
@@ -47,7 +66,7 @@ def indices(value: ArrayLike, columns: int, what: str) -> Array:
 
 def whole_numbers(value: ArrayLike, what: str) -> Array:
     """uint32 of any shape, of whole numbers of any integer type."""
-    array = np.asarray(value)
+    array = given(value, what)
     if array.size == 0:
         return np.empty(array.shape, np.uint32)
     if array.dtype.kind not in "iu":
@@ -67,7 +86,7 @@ def colors(value: ArrayLike | None, count: int, what: str) -> Any:
     """A pointer to count x 3 bytes, or NULL; the array lives as long as the pointer."""
     if value is None:
         return ffi.NULL
-    array = np.asarray(value)
+    array = given(value, what)
     if array.shape != (count, 3) or array.dtype.kind not in "iu" or (
             array.size > 0 and not 0 <= int(array.min()) <= int(array.max()) <= 255):
         raise ArgumentError(f"{what} must be whole numbers from 0 to 255 of the shape ({count}, 3)")

@@ -63,7 +63,7 @@ def cover(matrix: Bits | ArrayLike, *, method: str | None = None, weights: Array
     lib.starg_cover_problem_default(problem)
     problem.rows = bits._handle
     if weights is not None:
-        whole = np.asarray(weights)
+        whole = _arrays.given(weights, "weights")
         if whole.shape != (bits.shape[1],) or whole.dtype.kind not in "iu" or np.any(whole < 0):
             raise ArgumentError(f"weights must be {bits.shape[1]} whole numbers, none negative")
         weights_pointer = _arrays.pointer("uint64_t[]", np.ascontiguousarray(whole, np.uint64))

@@ -200,7 +200,7 @@ class Signature:
         >>> starguard.match(a, b)
         0.0
         """
-        array = np.ascontiguousarray(numbers, dtype=np.float64).ravel()
+        array = _arrays.doubles(numbers, "numbers").ravel()
         session = Session()
         return cls._of(session.make(
             "starg_signature", lib.starg_signature_free, lib.starg_signature_restore, session.context,
@@ -360,7 +360,7 @@ def retrieval(distances: ArrayLike, classes: Sequence[Any]) -> tuple[Retrieval, 
     >>> overall.first_tier, sorted(by_class)
     (1.0, ['cat', 'dog'])
     """
-    matrix = np.ascontiguousarray(distances, dtype=np.float64)
+    matrix = _arrays.doubles(distances, "distances")
     if matrix.ndim != 2 or matrix.shape != (len(classes), len(classes)):
         raise ArgumentError(f"distances of {len(classes)} models must have the shape ({len(classes)}, "
                             f"{len(classes)}), not {matrix.shape}")

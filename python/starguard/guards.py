@@ -95,6 +95,8 @@ class Guards:
     redundant_faces: Array
     #: Faces that no guard sees, ascending.
     uncovered: Array
+    #: Of them: proven to be seen from nowhere where guards may stand; 0 in results that were read.
+    unseen_count: int
     #: The same for vertices, only with target "vertices".
     coverage_vertices: float
     coverable_vertices: int

@@ -118,9 +118,11 @@ class Mesh:
             ffi.from_buffer(data) if data else ffi.NULL, len(data), _arrays.path(name)))
 
     def write(self, path: PathLike, *, format: str = "auto",
-              face_colors: ArrayLike | None = None) -> None:
+              face_colors: ArrayLike | None = None, origin: ArrayLike | None = None) -> None:
         """Writes OFF, OBJ, PLY or STL, by the file extension or by `format`: "off", "obj", "ply",
         "ply-ascii", "stl" or "stl-ascii". `face_colors` is (m, 3), 0 to 255; PLY and OFF store it.
+        `origin` is subtracted from all vertices, and stands in a comment of PLY, OBJ and STL; binary STL
+        refuses what single precision would change.
 
         >>> import starguard
         >>> mesh = starguard.sample("l-room", vertices=500)
@@ -132,6 +134,8 @@ class Mesh:
         options.format = choose("format", format, _FORMATS)
         colors = _arrays.colors(face_colors, len(self.faces), "face_colors")
         options.face_colors = colors
+        if origin is not None:
+            options.origin = _arrays.points(origin, "origin").reshape(-1).tolist()
         session.call(lib.starg_mesh_write, session.context, self._handle, _arrays.path(path), options)
 
     # ---- other packages; `as_mesh` is the way back ----
@@ -162,6 +166,33 @@ class Mesh:
         lib.starg_mesh_bounds(self._handle, ffi.from_buffer("double[3]", corners[0]),
                               ffi.from_buffer("double[3]", corners[1]))
         return corners
+
+    def apart(self, other: Mesh) -> float:
+        """The largest distance of a vertex of either surface from the other surface.
+
+        >>> import starguard
+        >>> room = starguard.sample("l-room", vertices=500)
+        >>> room.apart(room)
+        0.0
+        """
+        session = Session()
+        largest = ffi.new("double *")
+        session.call(lib.starg_mesh_apart, session.context, self._handle, other._handle, largest)
+        return float(largest[0])
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What the file of the mesh has and the mesh has not: "colors", "texture"."""
+        bits = lib.starg_mesh_left_out(self._handle)
+        return tuple(name for name, bit in (("colors", lib.STARG_MESH_COLORS),
+                                            ("texture", lib.STARG_MESH_TEXTURE)) if bits & bit)
+
+    @property
+    def origin(self) -> Array:
+        """A round point near the middle; subtracting it from large coordinates rounds none. For `write`."""
+        origin = np.empty(3)
+        lib.starg_mesh_origin(self._handle, ffi.from_buffer("double[3]", origin))
+        return origin
 
     @property
     def area(self) -> float:
@@ -308,7 +339,7 @@ def as_mesh(model: Any) -> Mesh:
     if hasattr(model, "points") and hasattr(model, "get_cells_type"):  # meshio
         return Mesh(model.points, model.get_cells_type("triangle"))
     if hasattr(model, "points") and hasattr(model, "faces"):  # PyVista: 3 i j k, 3 i j k, ...
-        faces = np.asarray(model.faces)
+        faces = _arrays.given(model.faces, "faces")
         if faces.ndim == 1:
             if faces.size % 4 != 0 or np.any(faces[::4] != 3):
                 raise ArgumentError("the model has faces other than triangles; triangulate it first")
@@ -364,6 +395,11 @@ class Check:
     area: float
     volume: float
     diagonal: float
+    shortest_edge: float
+    #: The steps of which all coordinates are multiples, for x, y and z.
+    grid: tuple[float, float, float]
+    #: Edges are hardly longer than these steps, far from the origin: finer parts were lost.
+    coarse: bool
     #: By name, only nonempty kinds.
     findings: dict[str, Finding]
     #: Per face: 0, or 1 + the first kind of finding that marks it. No copy.
@@ -381,7 +417,7 @@ class Check:
                 first = first.reshape(-1, 2)
             findings[text(lib.starg_finding_name(kind))] = Finding(
                 finding.count, _ELEMENTS[finding.element], first)
-        return fill(cls, check, findings=findings,
+        return fill(cls, check, findings=findings, grid=tuple(check.grid),
                     face_marks=_arrays.view(owner, check.face_marks, (face_count,), np.uint8))
 
 
@@ -407,3 +443,5 @@ class RepairReport:
     largest_move: float
     #: With ``union``: largest distance of a new vertex from the exact intersection.
     rounding: float
+    #: It was a solid, and intersects itself as often as before.
+    in_vain: bool

@@ -126,7 +126,7 @@ def write_matrix_picture(path: PathLike, values: ArrayLike, *,
     >>> import starguard
     >>> starguard.write_matrix_picture("matrix.png", [[0, 1], [1, 0]], names=["ball", "box"])
     """
-    matrix = np.ascontiguousarray(values, dtype=np.float64)
+    matrix = _arrays.doubles(values, "values")
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ArgumentError(f"the matrix must be square, not {matrix.shape}")
     if names is not None and len(names) != len(matrix):
@@ -149,7 +149,7 @@ def write_chart(path: PathLike, curves: Mapping[str, tuple[ArrayLike, ArrayLike]
     drawn = ffi.new("starg_curve[]", len(curves))
     keep: list[Any] = []
     for curve, (name, (x, y)) in zip(drawn, curves.items()):
-        columns = [np.ascontiguousarray(values, dtype=np.float64).ravel() for values in (x, y)]
+        columns = [_arrays.doubles(values, f"the curve '{name}'").ravel() for values in (x, y)]
         if len(columns[0]) != len(columns[1]):
             raise ArgumentError(f"the curve '{name}' has {len(columns[0])} x and {len(columns[1])} y")
         keep += [ffi.new("char[]", name.encode()), *(_arrays.pointer("double[]", c) for c in columns)]

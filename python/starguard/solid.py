@@ -124,7 +124,7 @@ class Scene(Solid):
         lists = []  # alive until the call is over
         for name, bound, distance in ("over", over, "height"), ("mount", mount, "mount_distance"):
             if bound is not None:
-                faces = np.unique(np.asarray(bound[0])).astype(np.uint32)
+                faces = np.unique(_arrays.given(bound[0], name)).astype(np.uint32)
                 lists.append(faces)
                 setattr(options, name, _arrays.pointer("uint32_t[]", faces))
                 setattr(options, name + "_count", len(faces))
@@ -145,7 +145,7 @@ class Scene(Solid):
 
     def _weigh(self, session: Session, weights: ArrayLike) -> None:
         faces = len(self.model.faces)
-        numbers = np.ascontiguousarray(weights, np.float64)
+        numbers = _arrays.doubles(weights, "weights")
         if numbers.shape != (faces,):
             raise ArgumentError(f"weights must have the shape ({faces},), not {numbers.shape}")
         session.call(lib.starg_space_weigh, self._handle, _arrays.pointer("double[]", numbers))

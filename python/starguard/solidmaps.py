@@ -93,7 +93,7 @@ class SolidMap:
         samples = ffi.new("starg_samples *")
         pointer = _arrays.pointer("double[]", rows)
         samples.count, samples.points = len(rows), pointer
-        given = np.empty((len(rows), 0)) if values is None else np.asarray(values, dtype=np.float64)
+        given = np.empty((len(rows), 0)) if values is None else _arrays.doubles(values, "values")
         table = np.ascontiguousarray(given.reshape(len(rows), -1) if len(rows) else given)
         if len(given) != len(rows) or table.shape[1] not in (0, 1, 3):
             raise ArgumentError(f"{len(rows)} points need as many values, numbers or vectors")

@@ -68,7 +68,7 @@ class TetMesh:
         corners = _arrays.indices(tetrahedra, 4, "tetrahedra")
         labels = None
         if regions is not None:
-            labels = np.ascontiguousarray(regions, dtype=np.int32)
+            labels = np.ascontiguousarray(_arrays.given(regions, "regions"), dtype=np.int32)
             if labels.shape != (len(corners),):
                 raise ArgumentError(f"regions must have the shape ({len(corners)},), not {labels.shape}")
         session = Session()
@@ -144,7 +144,7 @@ class TetMesh:
         options.binary = binary
         options.name = word
         if labels is not None:
-            numbers = np.ascontiguousarray(labels, dtype=np.int32)
+            numbers = np.ascontiguousarray(_arrays.given(labels, "labels"), dtype=np.int32)
             if numbers.shape != (len(self.tetrahedra),):
                 raise ArgumentError(f"labels must have the shape ({len(self.tetrahedra)},), not "
                                     f"{numbers.shape}")

@@ -138,7 +138,7 @@ def write_page(path: PathLike, model: Any = None, *, title: str | None = None,
 
 def _fill_shapes(page: Any, shapes: Mapping[str, bytes], distances: ArrayLike | None) -> list[Any]:
     """Fills the shape table; the returned objects must live as long."""
-    matrix = np.ascontiguousarray(np.empty((0, 0)) if distances is None else distances, np.float64)
+    matrix = _arrays.doubles(np.empty((0, 0)) if distances is None else distances, "distances")
     if matrix.shape != (len(shapes), len(shapes)):
         raise ArgumentError(f"distances of {len(shapes)} shapes must have the shape ({len(shapes)}, "
                             f"{len(shapes)}), not {matrix.shape}")

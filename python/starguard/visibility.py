@@ -44,7 +44,7 @@ class Bits:
     @classmethod
     def of(cls, matrix: ArrayLike) -> Bits:
         """Packs a matrix of bools."""
-        given = np.asarray(matrix, bool)
+        given = _arrays.given(matrix, "a bit matrix").astype(bool, copy=False)
         if given.ndim != 2:
             raise ArgumentError(f"a bit matrix has two dimensions, not {given.ndim}")
         session = Session()

@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "export/glb.h"
 #include "export/little.h"
+#include "mesh/single.h"
 
 static const char STAGE[] = "animation";
 
@@ -49,6 +50,33 @@ static starg_status check(starg_context *context, animation *a) {
 
 static float first_position(const animation *a, size_t i) {
     return (float)(a->frames[0][i] - a->center[i % 3]);
+}
+
+static float displacement(const animation *a, size_t frame, size_t i) {
+    return (float)(a->frames[frame][i] - a->frames[0][i]);
+}
+
+/* Frames are drawn as the first one and a displacement, both rounded. Their faces may have no area
+ * between the ends, so that only the first one is compared as a surface. */
+static starg_status check_frame(starg_context *context, const animation *a, size_t frame) {
+    starg_status status = STARG_OK;
+    double *drawn = NULL;
+    starg_mesh *surface = NULL;
+    char name[32];
+    const single_place place = {.stage = STAGE, .what = name, .remedy = "frames as OFF keep it"};
+    snprintf(name, sizeof name, "frame %zu", frame);
+    STARG_NEW(context, STAGE, drawn, 3 * a->vertices);
+    STARG_TRY(starg_mesh_create(context, a->frames[frame], a->vertices, starg_mesh_faces(a->mesh),
+                                frame == 0 ? a->indices / 3 : 0, &surface));
+    for (size_t i = 0; i < 3 * a->vertices; i++) {
+        surface->vertices[i] -= a->center[i % 3];
+        drawn[i] = (double)first_position(a, i) + (double)displacement(a, frame, i);
+    }
+    status = single_compare(context, surface, drawn, &place);
+done:
+    starg_mesh_free(surface);
+    starg_release(context, drawn);
+    return status;
 }
 
 static void find_box(animation *a) {
@@ -155,7 +183,7 @@ static void put_numbers(FILE *stream, const void *user) {
         little_put_float(stream, first_position(a, i));
     for (size_t f = 1; f < a->count; f++)
         for (size_t i = 0; i < 3 * a->vertices; i++)
-            little_put_float(stream, (float)(a->frames[f][i] - a->frames[0][i]));
+            little_put_float(stream, displacement(a, f, i));
     for (size_t f = 0; f < a->count; f++)
         little_put_float(stream, (float)(a->seconds * (double)f / (double)(a->count - 1)));
     for (size_t f = 0; f < a->count; f++)
@@ -175,6 +203,8 @@ starg_status starg_animation_write(starg_context *context, const starg_mesh *mes
                    .indices = 3 * starg_mesh_face_count(mesh),
                    .seconds = seconds};
     STARG_TRY(check(context, &a));
+    for (size_t f = 0; f < a.count; f++)
+        STARG_TRY(check_frame(context, &a, f));
     find_box(&a);
     json = describe(&a);
     STARG_TRY(glb_write(context, STAGE, path, json, binary_bytes(&a), put_numbers, &a));

@@ -14,6 +14,7 @@
 #include "export/glb.h"
 #include "export/little.h"
 #include "export/scene.h"
+#include "mesh/single.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "scene";
@@ -34,7 +35,8 @@ typedef enum view_kind {
     VIEW_NODE_POINTS,
     VIEW_NODE_RADII,
     VIEW_NODE_EDGES,
-    VIEW_KINDS
+    VIEW_KINDS,
+    VIEW_NONE = VIEW_KINDS /* empty */
 } view_kind;
 
 /* Where the numbers of a view are; `reals` or `words`. */
@@ -49,7 +51,7 @@ typedef struct view {
 typedef struct glb_scene {
     const scene_job *job;
     scene_ball ball;
-    view views[VIEW_KINDS];
+    view views[VIEW_KINDS + 1];
     size_t bytes;
     bool failed; /* memory was out while JSON was made */
     json_t *root, *nodes, *meshes, *materials, *accessors, *buffer_views, *cameras;
@@ -121,6 +123,36 @@ static starg_status check_range(starg_context *context, const glb_scene *s) {
         context, STARG_ERROR_RANGE, STAGE,
         "an extent of %g exceeds the single precision of this format; write .vtu, .ply or .obj",
         s->job->size);
+}
+
+/* Does single precision keep a part? `faces` may be of no view: points alone. */
+static starg_status check_part(starg_context *context, const glb_scene *s, view_kind points,
+                               view_kind faces, const char *name) {
+    starg_status status = STARG_OK;
+    const view *v = &s->views[points], *f = &s->views[faces];
+    const single_place place = {.stage = STAGE, .what = name, .remedy = "write .vtu, .ply or .obj"};
+    double *all = NULL;
+    starg_mesh *part = NULL;
+    STARG_NEW(context, STAGE, all, 3 * v->count);
+    for (size_t i = 0; i < v->count; i++)
+        memcpy(all + 3 * i, v->reals + 3 * (v->through != NULL ? v->through[i] : i),
+               3 * sizeof *all);
+    STARG_TRY(starg_mesh_create(context, all, v->count, f->words, f->count / 3, &part));
+    status = single_check(context, part, s->job->center, &place);
+done:
+    starg_mesh_free(part);
+    starg_release(context, all);
+    return status;
+}
+
+static starg_status check_parts(starg_context *context, const glb_scene *s) {
+    starg_status status = STARG_OK;
+    STARG_TRY(check_part(context, s, VIEW_MODEL_POINTS, VIEW_MODEL_FACES, "the model"));
+    STARG_TRY(check_part(context, s, VIEW_OBSTACLE_POINTS, VIEW_OBSTACLE_FACES, "obstacles"));
+    STARG_TRY(check_part(context, s, VIEW_PIECE_POINTS, VIEW_PIECE_FACES, "pieces"));
+    STARG_TRY(check_part(context, s, VIEW_NODE_POINTS, VIEW_NONE, "the skeleton"));
+done:
+    return status;
 }
 
 /* ---- JSON ---- */
@@ -402,9 +434,10 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
     starg_status status = STARG_OK;
     json_t *json = NULL;
     glb_scene s = {.job = job};
-    STARG_TRY(check_range(context, &s));
     scene_ball_make(&s.ball);
     list_views(&s);
+    STARG_TRY(check_range(context, &s));
+    STARG_TRY(check_parts(context, &s));
     json = describe(&s);
     STARG_TRY(glb_write(context, STAGE, path, json, s.bytes, put_numbers, &s));
 done:

@@ -21,9 +21,13 @@
 #include "guard/corners.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
+#include "guard/unseen.h"
+#include "mesh/examine.h"
 #include "starguard/kernel.h"
 
 static const char STAGE[] = "guard";
+
+enum { EVERYWHERE = 1000000 }; /* work for faces that no candidate sees: about a second */
 
 /* Does the caller ask for the fewest of the given candidates and a bound for guards anywhere? Then
  * the choice is exact, whatever the method. */
@@ -182,11 +186,57 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
                       used > 0 ? advice : ": the solid is too thin for the candidates");
 }
 
+typedef STARG_ARRAY(uint32_t) face_list;
+
+static starg_status list_missing(const guard_problem *problem, const guard_pool *pool,
+                                 face_list *out) {
+    starg_status status = STARG_OK;
+    out->count = 0;
+    for (uint32_t f = 0; f < starg_space_model_faces(problem->solid); f++)
+        if (solid_is_target(problem->solid, false, f) && !starg_bit_test(pool->coverable, f))
+            STARG_PUSH(problem->context, STAGE, out, f);
+done:
+    return status;
+}
+
+/* What remains is looked for in the whole free space: places nearest to the faces
+ * that guards are bound to, then boxes. Faces that no place sees are told, and places that see
+ * others become candidates. */
+static starg_status look_everywhere(const guard_problem *problem, guard_pool *pool) {
+    starg_status status = STARG_OK;
+    const starg_guard_options *options = problem->options;
+    face_list missing = {0};
+    candidate_points places = {0};
+    if (options->visibility.target != STARG_TARGET_FACES || pool->curtailed || pool->time_limited ||
+        options->candidates == STARG_CANDIDATES_GIVEN)
+        return STARG_OK;
+    STARG_TRY(list_missing(problem, pool, &missing));
+    const candidate_shape shape = {problem->solid, problem->solid, options->clearance};
+    STARG_TRY(
+        near_candidates_before(problem->context, &shape, missing.data, missing.count, &places));
+    if (candidates_count(&places) > 0) {
+        STARG_TRY(pool_add(pool, &places));
+        STARG_TRY(list_missing(problem, pool, &missing));
+    }
+    places.data.count = 0;
+    if (missing.count == 0)
+        goto done;
+    STARG_TRY(unseen_prove(problem->context, problem->solid, options, missing.data, missing.count,
+                           EVERYWHERE, &pool->unseen, &places));
+    if (candidates_count(&places) > 0)
+        STARG_TRY(pool_add(pool, &places));
+done:
+    STARG_ARRAY_FREE(problem->context, &missing);
+    candidates_free(problem->context, &places);
+    return status;
+}
+
 static starg_status find_pool(const guard_problem *problem, const guard_detail *detail,
                               guard_pool *out) {
     starg_status status = STARG_OK;
     STARG_TRY(find_candidates(problem, detail, out));
     STARG_TRY(pool_augment(out, &problem->weights));
+    STARG_TRY(look_everywhere(problem, out));
     out->time_limited = out->time_limited || (detail->time_limited && pool_count(out) == 0);
     if (starg_bit_count(out->coverable, starg_bit_words(out->columns)) == 0)
         status = fail_unseen(problem, out);
@@ -395,7 +445,8 @@ static starg_status certify_one(const guard_problem *problem, const guard_outcom
 static void warn_of_shells(const guard_problem *problem, const starg_guards *guards) {
     bool on_surface;
     size_t count = 0, first = 0;
-    if (problem->solid->check->components < 2 || problem->solid->scene)
+    if (problem->solid->check->components < 2 || problem->solid->scene ||
+        mesh_is_rounded(problem->solid->check))
         return;
     for (size_t g = guards->count; g-- > 0;)
         if (bvh_winding(problem->solid->tree, guards->positions + 3 * g, &on_surface) > 1) {

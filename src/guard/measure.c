@@ -246,6 +246,7 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->options.points = result->options.directions = result->options.ups = NULL;
     result->options.visibility.directions = result->options.visibility.ups = NULL;
     result->candidate_count = pool_count(&outcome->pool);
+    result->unseen_count = outcome->pool.unseen;
     result->lines_tested = outcome->search.improve_work;
     result->time_limited = selection->time_limited;
     result->area_bound = 1;

@@ -94,6 +94,28 @@ done:
     return status;
 }
 
+starg_status near_candidates_before(starg_context *context, const candidate_shape *shape,
+                                    const uint32_t *faces, size_t count, candidate_points *points) {
+    starg_status status = STARG_OK;
+    const starg_solid *solid = shape->solid;
+    const near_faces *bound = solid->mount.count > 0 ? &solid->mount : &solid->over;
+    for (size_t i = 0; i < count && bound->count > 0; i++) {
+        const double *t[3], *v = solid->mesh->vertices;
+        double middle[3] = {0}, at[3];
+        for (size_t k = 0; k < 3; k++)
+            vec3_along(middle, 1.0 / 3, v + 3 * (size_t)solid->mesh->faces[3 * faces[i] + k],
+                       middle);
+        uint32_t nearest = bvh_nearest_triangle(bound->tree, middle);
+        bvh_nearest(bound->tree, middle, at);
+        for (size_t k = 0; k < 3; k++)
+            t[k] = bound->tree->vertices + 3 * (size_t)bound->corners[3 * nearest + k];
+        STARG_TRY(solid->mount.count > 0 ? hang(context, shape, t, at, points)
+                                         : stand(context, shape, i, at, points));
+    }
+done:
+    return status;
+}
+
 starg_status near_candidates(starg_context *context, const candidate_shape *shape, size_t wanted,
                              candidate_points *points) {
     starg_status status = STARG_OK;

@@ -17,6 +17,7 @@ typedef struct guard_pool {
     size_t columns;     /* of the rows */
     uint64_t
         *coverable;    /* bits of the columns that some row holds, or that a point not kept sees */
+    size_t unseen;     /* faces proven to be seen from nowhere where guards may stand */
     bool curtailed;    /* augmentation stopped before all faces were tried: enough can be seen */
     bool time_limited; /* candidates were left out because time ran out */
 } guard_pool;

@@ -22,6 +22,7 @@
 #include "core/parallel.h"
 #include "guard/pool.h"
 #include "guard/proxy.h"
+#include "guard/unseen.h"
 #include "mesh/solid.h"
 #include "visibility/box.h"
 #include "visibility/scene.h"
@@ -49,10 +50,11 @@ typedef struct unseen_search {
     STARG_ARRAY(uint32_t) buried; /* those within matter, which are not in the list */
     uint64_t *open;               /* bits of the list: not seen yet */
     STARG_ARRAY(unseen_box) leaves;
-    unseen_box *parts; /* of a batch: two for each leaf that is cut */
-    uint32_t *cut;     /* the leaves being cut */
-    uint64_t *looks;   /* of each part: what its centre sees */
-    uint64_t *work;    /* of each part */
+    unseen_box *parts;        /* of a batch: two for each leaf that is cut */
+    uint32_t *cut;            /* the leaves being cut */
+    uint64_t *looks;          /* of each part: what its centre sees */
+    uint64_t *work;           /* of each part */
+    candidate_points *places; /* receives centres that see what nothing saw before; or NULL */
     uint64_t spent;
 } unseen_search;
 
@@ -134,10 +136,14 @@ done:
     return status;
 }
 
+static void middle_of(const bvh_box *box, double p[3]) {
+    for (int k = 0; k < 3; k++)
+        p[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
+}
+
 static void look_from_middle(const unseen_search *s, const unseen_box *part, uint64_t *seen) {
     double p[3];
-    for (int k = 0; k < 3; k++)
-        p[k] = 0.5 * part->box.lower[k] + 0.5 * part->box.upper[k];
+    middle_of(&part->box, p);
     if (!candidates_allowed(s->solid, p, s->clearance))
         return;
     for (size_t w = 0; w < words_of(s); w++)
@@ -269,9 +275,16 @@ static starg_status take_parts(unseen_search *s, size_t count) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < 2 * count; i++) {
         const uint64_t *seen = s->looks + i * words_of(s);
+        bool is_new = false;
+        double p[3];
         s->spent += s->work[i];
-        for (size_t w = 0; w < words_of(s); w++)
+        for (size_t w = 0; w < words_of(s); w++) {
+            is_new |= (s->open[w] & seen[w]) != 0;
             s->open[w] &= ~seen[w];
+        }
+        middle_of(&s->parts[i].box, p);
+        if (is_new && s->places != NULL)
+            STARG_TRY(candidates_push(s->context, s->places, p, NULL));
     }
     for (size_t i = 0; i < 2 * count; i++) {
         unseen_box *leaf = &s->leaves.data[s->cut[i / 2]];
@@ -371,6 +384,14 @@ static void end(unseen_search *s) {
     starg_release(context, s->looks);
 }
 
+/* Is it unknown whether some place sees a face of the list that none was found for? */
+static bool is_left_open(const unseen_search *s, size_t index) {
+    bool open = false;
+    for (size_t k = 0; k < s->leaves.count && !open; k++)
+        open = starg_bit_test(s->leaves.data[k].open, index);
+    return open;
+}
+
 /* Reports the faces that some leaf leaves open. */
 static starg_status report(const unseen_search *s, uint8_t **out) {
     starg_status status = STARG_OK;
@@ -380,13 +401,9 @@ static starg_status report(const unseen_search *s, uint8_t **out) {
         (*out)[f] = solid_is_target(s->solid, false, f) ? STARG_FACE_SEEN : STARG_FACE_IGNORED;
     for (size_t i = 0; i < s->buried.count; i++)
         (*out)[s->buried.data[i]] = STARG_FACE_UNSEEN;
-    for (size_t i = 0; i < s->list.count; i++) {
-        bool open = false;
-        for (size_t k = 0; k < s->leaves.count && !open; k++)
-            open = starg_bit_test(s->leaves.data[k].open, i);
+    for (size_t i = 0; i < s->list.count; i++)
         if (starg_bit_test(s->open, i))
-            (*out)[s->list.data[i]] = open ? STARG_FACE_UNDECIDED : STARG_FACE_UNSEEN;
-    }
+            (*out)[s->list.data[i]] = is_left_open(s, i) ? STARG_FACE_UNDECIDED : STARG_FACE_UNSEEN;
 done:
     return status;
 }
@@ -417,6 +434,37 @@ starg_status starg_unseen(starg_context *context, const starg_solid *scene,
     if (s.list.count > 0)
         STARG_TRY(cut_boxes(&s, work));
     status = report(&s, out);
+done:
+    context->work += s.spent;
+    end(&s);
+    return status;
+}
+
+starg_status unseen_prove(starg_context *context, const starg_solid *solid,
+                          const starg_guard_options *options, const uint32_t *faces, size_t count,
+                          uint64_t work, size_t *proven, candidate_points *places) {
+    starg_status status = STARG_OK;
+    starg_visibility_options around;
+    unseen_search s = {.context = context,
+                       .solid = solid,
+                       .view = options->visibility,
+                       .clearance = options->clearance,
+                       .places = places};
+    starg_visibility_options_default(&around);
+    s.view.cone = around.cone;
+    memcpy(s.view.fov, around.fov, sizeof s.view.fov);
+    *proven = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (solid_hides(solid, faces[i]))
+            ++*proven;
+        else
+            STARG_PUSH(context, STAGE, &s.list, faces[i]);
+    }
+    STARG_TRY(begin(&s));
+    if (s.list.count > 0)
+        STARG_TRY(cut_boxes(&s, work));
+    for (size_t i = 0; i < s.list.count; i++)
+        *proven += starg_bit_test(s.open, i) && !is_left_open(&s, i);
 done:
     context->work += s.spent;
     end(&s);

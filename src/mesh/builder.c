@@ -147,6 +147,7 @@ starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out)
                                            builder->vertices.count / 3, builder->faces.data,
                                            builder->faces.count / 3, out);
     if (status == STARG_OK) {
+        (*out)->left_out = builder->left_out;
         builder->vertices.data = NULL;
         builder->faces.data = NULL;
     }

@@ -9,7 +9,9 @@
  * Cost: O(n log n) plus the number of box pairs. */
 #include "starguard/check.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +19,7 @@
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "mesh/examine.h"
+#include "mesh/grid.h"
 #include "mesh/mesh.h"
 #include "mesh/topology.h"
 
@@ -250,6 +253,11 @@ static size_t count_of(const checker *c, starg_finding_kind kind) {
     return c->check->findings[kind].count;
 }
 
+/* Then areas or volumes underflow, and commands refuse it. */
+static bool is_too_small(const checker *c) {
+    return !mesh_is_wide(c->mesh) || c->check->area < DBL_MIN || c->check->volume < DBL_MIN;
+}
+
 static starg_status check_shells(checker *c) {
     starg_check *check = c->check;
     starg_status status =
@@ -265,8 +273,25 @@ static starg_status check_shells(checker *c) {
             find_one(c, STARG_FINDING_INWARD_COMPONENT, STARG_ELEMENT_FACE, own->first_face);
     }
     check->volume = ldexp(volume, 3 * starg_mesh_exponent(c->mesh));
-    check->usable = volume > 0;
+    check->underflows = volume > 0 && is_too_small(c);
+    check->usable = volume > 0 && !check->underflows;
     return STARG_OK;
+}
+
+bool mesh_is_rounded(const starg_check *check) {
+    return check->coarse && !check->embedded;
+}
+
+void starg_check_describe_grid(const starg_check *check, char *text, size_t size) {
+    const double *g = check->grid;
+    text[0] = '\0';
+    if (check->coarse)
+        snprintf(
+            text, size,
+            "coordinates have steps of %.3g, %.3g and %.3g (x, y, z), and the shortest edge is "
+            "%.3g: the file has lost finer parts; take one in double precision, or about an "
+            "origin near the model",
+            g[0], g[1], g[2], check->shortest_edge);
 }
 
 bool mesh_only_touches(const starg_check *check) {
@@ -287,14 +312,16 @@ static bool is_sound(const checker *c) {
 
 static void summarise(checker *c) {
     starg_check *check = c->check;
-    double lower[3], upper[3];
-    starg_mesh_bounds(c->mesh, lower, upper);
     check->vertices = c->mesh->vertex_count;
     check->faces = c->mesh->face_count;
     check->edges = c->topology->edge_count;
     check->components = c->topology->component_count;
     check->area = starg_mesh_area(c->mesh);
-    check->diagonal = hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+    check->diagonal = mesh_diagonal(c->mesh);
+    double edge = mesh_shortest_edge(c->mesh);
+    check->shortest_edge = edge < INFINITY ? edge : 0;
+    mesh_find_grid(c->mesh, check->grid);
+    check->coarse = mesh_grid_is_coarse(c->mesh, check->grid, edge);
     check->manifold = count_of(c, STARG_FINDING_NONMANIFOLD_EDGE) == 0 &&
                       count_of(c, STARG_FINDING_NONMANIFOLD_VERTEX) == 0 &&
                       count_of(c, STARG_FINDING_REPEATED_CORNER) == 0;

@@ -56,6 +56,8 @@ starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh
                                   size_t *count);
 /* Does no face lack area, or intersect another? Parts may then share vertices and edges. */
 bool mesh_only_touches(const starg_check *check);
+/* Has rounding far from the origin broken it? Then nothing else is worth saying. */
+bool mesh_is_rounded(const starg_check *check);
 void mesh_examination_free(starg_context *context, mesh_examination *examination);
 
 #endif

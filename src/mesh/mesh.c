@@ -99,6 +99,10 @@ size_t starg_mesh_face_count(const starg_mesh *mesh) {
     return mesh->face_count;
 }
 
+unsigned starg_mesh_left_out(const starg_mesh *mesh) {
+    return mesh->left_out;
+}
+
 const double *starg_mesh_vertices(const starg_mesh *mesh) {
     return mesh->vertices;
 }
@@ -125,14 +129,47 @@ static double extent_of(const starg_mesh *mesh) {
     return fmax(upper[0] - lower[0], fmax(upper[1] - lower[1], upper[2] - lower[2]));
 }
 
-starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage) {
+bool mesh_is_wide(const starg_mesh *mesh) {
     double extent = extent_of(mesh);
-    if (extent == 0 || extent >= STARG_EXTENT_LEAST)
+    return extent == 0 || extent >= STARG_EXTENT_LEAST;
+}
+
+starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage) {
+    if (mesh_is_wide(mesh))
         return STARG_OK;
     return starg_fail(context, STARG_ERROR_RANGE, stage,
                       "the model is only %.3g wide; areas and volumes below a width of %g "
                       "underflow: scale its coordinates, by a power of two to keep them exact",
-                      extent, STARG_EXTENT_LEAST);
+                      extent_of(mesh), STARG_EXTENT_LEAST);
+}
+
+/* Multiples of a power of two at least as large as the extent: differences from them need no more
+ * bits than the coordinates have. */
+void starg_mesh_origin(const starg_mesh *mesh, double origin[3]) {
+    double lower[3], upper[3], step = ldexp(1, starg_mesh_exponent(mesh));
+    starg_mesh_bounds(mesh, lower, upper);
+    for (int k = 0; k < 3; k++) {
+        double middle = 0.5 * lower[k] + 0.5 * upper[k];
+        origin[k] = mesh->vertex_count > 0 ? trunc(middle / step) * step : 0;
+    }
+}
+
+double mesh_diagonal(const starg_mesh *mesh) {
+    double lower[3], upper[3];
+    starg_mesh_bounds(mesh, lower, upper);
+    return hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+}
+
+double mesh_shortest_edge(const starg_mesh *mesh) {
+    double least = INFINITY;
+    for (size_t h = 0; h < 3 * mesh->face_count; h++) {
+        const double *p = mesh->vertices + 3 * (size_t)mesh->faces[h];
+        const double *q = mesh->vertices + 3 * (size_t)mesh->faces[h % 3 < 2 ? h + 1 : h - 2];
+        double length = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+        if (length > 0)
+            least = fmin(least, length);
+    }
+    return least;
 }
 
 int starg_mesh_exponent(const starg_mesh *mesh) {

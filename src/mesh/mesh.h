@@ -4,13 +4,15 @@
 #define STARG_MESH_MESH_H
 
 #include "core/context.h"
+#include "core/private.h"
 #include "starguard/mesh.h"
 
 struct starg_mesh {
     starg_context *context;
     size_t vertex_count, face_count;
-    double *vertices; /* vertex_count x 3 */
-    uint32_t *faces;  /* face_count x 3 */
+    double *vertices;  /* vertex_count x 3 */
+    uint32_t *faces;   /* face_count x 3 */
+    unsigned left_out; /* starg_mesh_look: in its file only */
 };
 
 /* Largest number of vertices or faces. */
@@ -22,8 +24,17 @@ struct starg_mesh {
 /* Least extent of a solid: squares of areas underflow far below this. */
 #define STARG_EXTENT_LEAST 1e-90
 
+/* Is its extent 0, or at least STARG_EXTENT_LEAST? */
+bool mesh_is_wide(const starg_mesh *mesh);
+
 /* Errors: RANGE, if the mesh has an extent below STARG_EXTENT_LEAST other than 0. */
 starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage);
+
+/* Diagonal of the bounding box. */
+double mesh_diagonal(const starg_mesh *mesh) STARG_PRIVATE(mesh_diagonal);
+
+/* Length of the shortest edge that has one; INFINITY if there is none. */
+double mesh_shortest_edge(const starg_mesh *mesh);
 
 /* Exponent of the mesh's extent: differences of coordinates times 2^-exponent are at most 1 in
  * magnitude, so that products of them neither overflow nor underflow as a whole. */

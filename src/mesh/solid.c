@@ -21,6 +21,8 @@ const char *starg_check_advice(const starg_check *check) {
     if (check->one_sided_faces > 0 && check->one_sided_faces == check->faces)
         return "its surfaces are one-sided, which cannot be repaired; 'starguard guard "
                "--soup' takes them as triangles";
+    if (check->underflows)
+        return "scale its coordinates, by a power of two to keep them exact";
     if (fatal == 0 && check->faces > 0)
         return "'starguard guard --soup' takes it as triangles";
     if (check->findings[STARG_FINDING_OPEN_EDGE].count > check->faces)
@@ -50,10 +52,10 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
             starg_check_advice(check));
     if (check->faces == 0)
         return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh has no faces");
-    return starg_fail(
-        context, STARG_ERROR_MESH, "solid",
-        "the mesh is closed but encloses no volume: its shells are flat or doubled; %s",
-        starg_check_advice(check));
+    return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh is closed but %s; %s",
+                      check->underflows ? "so small that its area or volume underflows"
+                                        : "encloses no volume: its shells are flat or doubled",
+                      starg_check_advice(check));
 }
 
 /* ---- vertices at one position ---- */
@@ -146,6 +148,12 @@ static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const m
 }
 
 void solid_tell(starg_context *context, const char *whose, const starg_check *check) {
+    char grid[256];
+    starg_check_describe_grid(check, grid, sizeof grid);
+    if (check->coarse)
+        starg_log(context, STARG_LOG_WARNING, "%s%s", whose, grid);
+    if (mesh_is_rounded(check))
+        return;
     size_t turned = check->findings[STARG_FINDING_INWARD_COMPONENT].count;
     size_t crossing = check->findings[STARG_FINDING_SELF_INTERSECTION].count;
     size_t flat = check->findings[STARG_FINDING_DEGENERATE_FACE].count;

@@ -73,8 +73,8 @@ static starg_status make_side(starg_context *context, const starg_mesh *mesh,
     memcpy(side->faces, mesh->faces, size * sizeof *side->faces);
     if (face_sign(side, 0) < 0)
         reverse_faces(side);
-    const starg_mesh oriented = {context, mesh->vertex_count, mesh->face_count, mesh->vertices,
-                                 side->faces};
+    starg_mesh oriented = *mesh;
+    oriented.faces = side->faces;
     STARG_TRY(topology_create(context, &oriented, &side->topology));
     STARG_TRY(check_side(context, side, index));
 done:

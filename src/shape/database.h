@@ -97,6 +97,7 @@ typedef struct database_digest {
 /* A file's data before it is stored. */
 typedef struct database_file {
     char *message; /* why the file is rejected */
+    char *warning; /* about a file that is not, or NULL */
     database_digest hash;
     bool known; /* stored, with all signatures */
     size_t vertices, faces;

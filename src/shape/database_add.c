@@ -165,7 +165,7 @@ static starg_status store_item(adding *a, size_t item) {
     if (!d->known)
         STARG_TRY(store_model(a, item, &is_new, &id));
     if (is_new)
-        STARG_TRY(note(a, item, STARG_DATABASE_ADDED, NULL));
+        STARG_TRY(note(a, item, STARG_DATABASE_ADDED, d->warning));
     else
         STARG_TRY(note_known(a, item, &id));
     if (!d->known)

@@ -8,6 +8,7 @@
  * Cost: that of the signatures. */
 #include "shape/database.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "core/file.h"
@@ -19,6 +20,7 @@ int database_by_digest(const void *a, const void *b) {
 
 void database_file_clear(starg_context *context, database_file *file) {
     starg_release(context, file->message);
+    starg_release(context, file->warning);
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
         starg_release(context, file->numbers[kind]);
     *file = (database_file){0};
@@ -30,24 +32,47 @@ static bool go_on(void *user, const char *stage, double fraction) {
     return !atomic_load(&parent->cancelled) && !starg_time_is_over(parent);
 }
 
+/* A context of its own, and the first warning about the file at hand. */
+typedef struct describer {
+    starg_context *worker;
+    char warning[512];
+} describer;
+
+static void keep_warning(void *user, starg_log_level level, const char *message) {
+    describer *own = user;
+    if (level == STARG_LOG_WARNING && own->warning[0] == '\0')
+        snprintf(own->warning, sizeof own->warning, "%s", message);
+}
+
 starg_status database_files_scratch(starg_context *context, void *shared, void **scratch) {
-    starg_context *worker = NULL;
+    starg_status status = STARG_OK;
+    describer *own = NULL;
     starg_context_options options;
     (void)shared;
+    *scratch = NULL;
+    STARG_NEW_ZERO(context, DATABASE_STAGE, own, 1);
     starg_context_options_default(&options);
     options.allocator = context->allocator;
     options.threads = 1;
     options.seed = context->seed;
     options.progress = go_on;
     options.progress_user = context;
-    starg_status status = starg_context_create(&options, &worker);
-    *scratch = worker;
+    options.log = keep_warning;
+    options.log_user = own;
+    STARG_TRY(starg_context_create(&options, &own->worker));
+    *scratch = own;
+    own = NULL;
+done:
+    starg_release(context, own);
     return status;
 }
 
 void database_files_free_scratch(starg_context *context, void *scratch) {
-    (void)context;
-    starg_context_free(scratch);
+    describer *own = scratch;
+    if (own == NULL)
+        return;
+    starg_context_free(own->worker);
+    starg_release(context, own);
 }
 
 /* Little-endian on any machine. */
@@ -107,12 +132,18 @@ starg_status database_files_describe(starg_context *context, void *shared, void 
                                      size_t item) {
     const database_files *all = shared;
     database_file *d = &all->files[item];
-    starg_status status = describe_file(context, all, scratch, all->names[item], d);
+    describer *own = scratch;
+    own->warning[0] = '\0';
+    starg_status status = describe_file(context, all, own->worker, all->names[item], d);
+    if (status == STARG_OK && own->warning[0] != '\0') {
+        d->warning = database_copy(context, own->warning);
+        return d->warning != NULL ? STARG_OK : STARG_ERROR_MEMORY;
+    }
     if (status == STARG_ERROR_CANCELLED && !atomic_load(&context->cancelled))
         return STARG_ERROR_TIME;
     if (status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED)
         return status;
-    const char *message = starg_context_error(scratch)->message;
+    const char *message = starg_context_error(own->worker)->message;
     d->message = database_copy(context, message);
     return d->message != NULL ? STARG_OK : STARG_ERROR_MEMORY;
 }

@@ -15,7 +15,7 @@ typedef struct job_head {
 
 typedef struct file_head {
     database_digest hash;
-    uint64_t known, vertices, faces, message_bytes, sizes[STARG_SIGNATURE_KINDS];
+    uint64_t known, vertices, faces, message_bytes, warning_bytes, sizes[STARG_SIGNATURE_KINDS];
 } file_head;
 
 /* ---- rank 0 ---- */
@@ -48,6 +48,10 @@ static starg_status take_file(starg_context *context, starg_bytes_reader *reply,
     if (head.message_bytes > 0) {
         STARG_TRY(starg_bytes_take_block(context, reply, head.message_bytes, 1, &block));
         file->message = block;
+    }
+    if (head.warning_bytes > 0) {
+        STARG_TRY(starg_bytes_take_block(context, reply, head.warning_bytes, 1, &block));
+        file->warning = block;
     }
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
         STARG_TRY(starg_bytes_take_block(context, reply, head.sizes[kind], 1, &block));
@@ -118,11 +122,13 @@ static starg_status put_file(starg_context *context, const database_file *file,
                       .known = file->known,
                       .vertices = file->vertices,
                       .faces = file->faces,
-                      .message_bytes = file->message != NULL ? strlen(file->message) + 1 : 0};
+                      .message_bytes = file->message != NULL ? strlen(file->message) + 1 : 0,
+                      .warning_bytes = file->warning != NULL ? strlen(file->warning) + 1 : 0};
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
         head.sizes[kind] = file->sizes[kind];
     STARG_TRY(starg_bytes_put(context, reply, &head, 1, sizeof head));
     STARG_TRY(starg_bytes_put(context, reply, file->message, head.message_bytes, 1));
+    STARG_TRY(starg_bytes_put(context, reply, file->warning, head.warning_bytes, 1));
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
         STARG_TRY(starg_bytes_put(context, reply, file->numbers[kind], file->sizes[kind], 1));
 done:

@@ -24,8 +24,11 @@ done:
 starg_status sample_mesh_take(starg_context *context, surface_samples *samples, sample_mesh *m) {
     starg_status status = STARG_OK;
     mesh_topology *topology = NULL;
-    const starg_mesh mesh = {context, samples->point_count, samples->face_count, samples->points,
-                             samples->faces};
+    const starg_mesh mesh = {.context = context,
+                             .vertex_count = samples->point_count,
+                             .face_count = samples->face_count,
+                             .vertices = samples->points,
+                             .faces = samples->faces};
     uint32_t *faces = samples->faces;
     *m = (sample_mesh){.context = context};
     m->points.data = samples->points;

@@ -24,6 +24,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
+#include "mesh/examine.h"
 #include "mesh/topology.h"
 #include "skeleton/edge_table.h"
 #include "starguard/skeleton.h"
@@ -222,6 +223,8 @@ done:
 
 static void tell(starg_context *context, const starg_solid *solid, const starg_skeleton *skeleton) {
     const starg_check *check = solid->check;
+    if (mesh_is_rounded(check))
+        return;
     if (skeleton->mends > 0)
         starg_log(context, STARG_LOG_WARNING,
                   "removed %zu components and loops from the skeleton that the solid does not "

@@ -141,6 +141,22 @@ class Outputs(support.Case):
         with open(file, encoding="ascii") as old:
             self.assertEqual(old.read(), "old")
 
+    def test_link_to_nothing(self):
+        """Is written through, as a link to a file is."""
+        os.mkdir(self.path("real"))
+        os.symlink("real/second", self.path("first"))
+        os.symlink("third.off", self.path("real/second"))
+        self.run_text("repair", "m.off", "-o", "first", status=1)  # no extension
+        os.symlink("first", self.path("link.off"))
+        self.run_text("repair", "m.off", "-o", "link.off")
+        self.assertTrue(os.path.islink(self.path("link.off")) and os.path.islink(self.path("real/second")))
+        self.assertEqual(self.read("real/third.off"), self.read("link.off"))
+        self.assertEqual(sorted(os.listdir(self.path("real"))), ["second", "third.off"])
+        os.symlink("nowhere/x.off", self.path("lost.off"))
+        self.refuse("repair", "m.off", "-o", "lost.off", says="No such file")
+        os.symlink("round.off", self.path("round.off"))
+        self.refuse("repair", "m.off", "-o", "round.off", says="symbolic links")
+
     def test_symbolic_link(self):
         os.mkdir(self.path("real"))
         self.write("real/g.json", "old")

@@ -209,6 +209,7 @@ static starg_status map_overlay(starg_context *context) {
     FAILING_MAKES(NAME, VARIANT, starg_verdict, starg_verdict_free(context, out), __VA_ARGS__)
 
 static starg_status maps(starg_context *context) {
+    double apart;
     static const uint32_t pairs[] = {0, 0, 2, 2, 4, 4};
     const starg_map_options landmarks = {pairs, 3};
     MAP(starg_map_create, "same faces", in.cube, in.box, NULL);
@@ -222,6 +223,7 @@ static starg_status maps(starg_context *context) {
                   map_text.data, map_text.size, "m");
     VERDICT(starg_verify_map, "", in.blob, in.other_blob, map_file);
     FAILING_BY(starg_landmarks_read, "", landmarks_read(context));
+    FAILING(starg_mesh_apart, "", in.blob, in.cube, &apart);
     return STARG_OK;
 }
 

@@ -29,6 +29,33 @@ class Into(Case):
         self.fails(starguard.ArgumentError, "faces must be integers", starguard.Mesh, VERTICES,
                    np.asarray(FACES, bool))
 
+    def test_nothing_is_dropped(self):
+        """Masks and imaginary parts; an array without hidden entries may have a mask."""
+        rows = np.array(VERTICES, float)
+        hidden = np.ma.MaskedArray(rows, mask=rows > 0)
+        for vertices in (hidden, rows + 1j, [[1j, 0, 0]]):
+            with self.assertRaises(TypeError):
+                starguard.Mesh(vertices, FACES)
+        with self.assertRaises(TypeError):
+            starguard.Mesh(VERTICES, np.ma.MaskedArray(FACES, mask=np.array(FACES) == 0))
+        with self.assertRaises(TypeError):
+            starguard.Solid(starguard.Mesh(VERTICES, FACES)).contains(hidden[1])
+        with self.assertRaises(TypeError):
+            starguard.Mesh(VERTICES, FACES).write("a.ply", face_colors=np.ma.masked_less(FACES, 1))
+        with self.assertRaises(TypeError):
+            starguard.cover([[True, True]], weights=np.ma.masked_less([0, 1], 1))
+        plain = starguard.Mesh(np.ma.MaskedArray(rows), FACES)
+        self.assertEqual(plain.vertices.tolist(), rows.tolist())
+
+    def test_origin_of_files(self):
+        far = np.array(VERTICES, float) + [512345.3, 5412345.3, 100]
+        mesh = starguard.Mesh(far, FACES)
+        self.fails(starguard.RangeError, "single precision", mesh.write, "a.stl")
+        mesh.write("b.stl", origin=mesh.origin)
+        self.assertAlmostEqual(starguard.Mesh.read("b.stl").volume, mesh.volume, 6)
+        mesh.write("a.stl", origin=[512345, 5412345, 100])
+        self.assertAlmostEqual(starguard.Mesh.read("a.stl").volume, mesh.volume, 6)
+
     def test_values(self):
         for bad in (np.nan, np.inf, -np.inf, 1e100):
             rows = np.array(VERTICES, float)

@@ -331,7 +331,8 @@ static void test_overlapping_components(void **state) {
     checked_free(&c);
 }
 
-/* Shells whose products of sizes overflow or underflow are still solids. */
+/* Shells whose products of sizes overflow are still solids, and those whose volumes underflow are
+ * told. */
 static void test_scales(void **state) {
     (void)state;
     static const double scales[] = {1e-320, 1e-300, 1e-120, 1e-60, 1e60, 1e90, 4e99};
@@ -340,7 +341,8 @@ static void test_scales(void **state) {
         shape_place(&s, scales[i] / 4, 0);
         checked c = check_shape(&s);
         expect_only(&c, 0);
-        assert_true(c.check->usable);
+        assert_int_equal(c.check->usable, scales[i] > 1e-100);
+        assert_int_equal(c.check->underflows, scales[i] < 1e-100);
         assert_int_equal(c.check->cavities, 1);
         checked_free(&c);
     }

@@ -176,16 +176,18 @@ static void the_text_is_as_documented(void **state) {
     starg_context *context = test_context(1);
     starg_mesh *mesh = triangle(context, 1);
     static const uint8_t red[] = {255, 0, 7};
-    expect_text(mesh, &(starg_mesh_write_options){STARG_MESH_OFF, NULL},
+    expect_text(mesh, &(starg_mesh_write_options){.format = STARG_MESH_OFF, .face_colors = NULL},
                 "OFF\n3 1 0\n0 0 0\n1 0 0\n0 0.25 0\n3 0 1 2\n");
-    expect_text(mesh, &(starg_mesh_write_options){STARG_MESH_OFF, red},
+    expect_text(mesh, &(starg_mesh_write_options){.format = STARG_MESH_OFF, .face_colors = red},
                 "OFF\n3 1 0\n0 0 0\n1 0 0\n0 0.25 0\n3 0 1 2 255 0 7\n");
-    expect_text(mesh, &(starg_mesh_write_options){STARG_MESH_OBJ, red},
+    expect_text(mesh, &(starg_mesh_write_options){.format = STARG_MESH_OBJ, .face_colors = red},
                 "v 0 0 0\nv 1 0 0\nv 0 0.25 0\nf 1 2 3\n");
-    expect_text(mesh, &(starg_mesh_write_options){STARG_MESH_STL_ASCII, NULL},
+    expect_text(mesh,
+                &(starg_mesh_write_options){.format = STARG_MESH_STL_ASCII, .face_colors = NULL},
                 "solid starguard\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
                 "vertex 0 0.25 0\nendloop\nendfacet\nendsolid starguard\n");
-    expect_text(mesh, &(starg_mesh_write_options){STARG_MESH_PLY_ASCII, red},
+    expect_text(mesh,
+                &(starg_mesh_write_options){.format = STARG_MESH_PLY_ASCII, .face_colors = red},
                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
                 "property double z\nelement face 1\nproperty list uchar int vertex_indices\n"
                 "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"

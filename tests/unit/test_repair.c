@@ -570,7 +570,7 @@ static shape damaged(uint64_t round) {
                 (double)starg_rng_below(&rng, 3) - 1;
         }
     }
-    shape_place(&s, (const double[]){1, 1e-300, 1e90}[round % 3], 0);
+    shape_place(&s, (const double[]){1, 1e-70, 1e90}[round % 3], 0);
     return s;
 }
 

@@ -68,6 +68,7 @@ typedef struct starg_mesh_builder {
     STARG_ARRAY(uint32_t) faces;   /* 3 indices per triangle */
     STARG_ARRAY(uint32_t) corners; /* of the open face */
     starg_face_values *values;     /* NULL: not wanted */
+    unsigned left_out;             /* starg_mesh_look: what the reader passes over */
     size_t ticks;
 } starg_mesh_builder;
 
@@ -128,13 +129,17 @@ starg_status starg_obj_read(starg_mesh_builder *builder);
 starg_status starg_ply_read(starg_mesh_builder *builder);
 starg_status starg_stl_read(starg_mesh_builder *builder);
 
-/* Writers. The caller checks for stream errors; `colors` is NULL or face_count x 3. */
-void starg_off_write(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
-void starg_obj_write(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
-void starg_ply_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
-void starg_ply_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
-void starg_stl_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
-void starg_stl_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
+/* What a file holds beside the mesh, as far as its format can. */
+typedef struct starg_mesh_extras {
+    const uint8_t *colors; /* face_count x 3, or NULL */
+    char note[96];         /* a comment, or empty */
+} starg_mesh_extras;
+
+/* Writers. The caller checks for stream errors. */
+typedef void starg_mesh_writer(FILE *stream, const starg_mesh *mesh,
+                               const starg_mesh_extras *extras);
+starg_mesh_writer starg_off_write, starg_obj_write, starg_ply_write_ascii, starg_ply_write_binary,
+    starg_stl_write_ascii, starg_stl_write_binary;
 
 /* Writes vertices and faces as lines of text, as in OFF and PLY. */
 void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);

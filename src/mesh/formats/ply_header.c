@@ -104,6 +104,19 @@ static ply_role find_role(ply_kind kind, bool list, starg_word name) {
     return PLY_OTHER;
 }
 
+/* A name that programs use for a part of a colour, or for texture coordinates. */
+static unsigned look_of(starg_word name) {
+    static const char *const colors[] = {"red", "diffuse_red", "r"};
+    static const char *const texture[] = {"s", "u", "texture_u", "texcoord", "texcoords"};
+    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
+        if (starg_word_is(name, colors[i]))
+            return STARG_MESH_COLORS;
+    for (size_t i = 0; i < sizeof texture / sizeof *texture; i++)
+        if (starg_word_is(name, texture[i]))
+            return STARG_MESH_TEXTURE;
+    return 0;
+}
+
 static starg_status read_property(ply_reader *ply) {
     starg_status status = STARG_OK;
     starg_word word;
@@ -122,6 +135,8 @@ static starg_status read_property(ply_reader *ply) {
     STARG_TRY(read_type(ply, &property.type));
     STARG_TRY(header_word(ply, "the name of the property", &word));
     property.role = find_role(element->kind, property.list, word);
+    if (element->kind == PLY_VERTICES || element->kind == PLY_FACES)
+        ply->builder->left_out |= look_of(word);
     starg_face_values *values = element->kind == PLY_FACES ? ply->builder->values : NULL;
     if (values != NULL && !property.list) {
         starg_values_note(values, word.text, word.length);

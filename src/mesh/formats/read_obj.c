@@ -39,6 +39,10 @@ static starg_status read_vertex(starg_scan *scan, starg_mesh_builder *builder) {
         STARG_TRY(starg_word_real(scan, word, "a coordinate of a vertex", &point[k]));
     }
     STARG_TRY(starg_builder_vertex(builder, point, place));
+    starg_scan ahead = *scan;
+    starg_word more[2];
+    if (starg_scan_word_here(&ahead, &more[0]) && starg_scan_word_here(&ahead, &more[1]))
+        builder->left_out |= STARG_MESH_COLORS; /* one number is a weight */
     STARG_TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "a weight or a colour"));
 done:
     return status;
@@ -110,6 +114,10 @@ static starg_status read_vertices(starg_mesh_builder *builder) {
     while (starg_scan_word(&scan, &word)) {
         if (starg_word_is(word, "v"))
             STARG_TRY(read_vertex(&scan, builder));
+        else if (starg_word_is(word, "vt"))
+            builder->left_out |= STARG_MESH_TEXTURE;
+        else if (starg_word_is(word, "usemtl"))
+            builder->left_out |= STARG_MESH_COLORS;
         starg_scan_next_line(&scan);
         STARG_TRY(starg_builder_tick(builder, (size_t)(scan.at - scan.source->bytes) / 2));
     }

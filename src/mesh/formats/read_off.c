@@ -7,6 +7,7 @@
 #include "mesh/formats/scan.h"
 
 typedef struct off_header {
+    bool texture, color;
     bool vertex_extras; /* normals, colours or texture coordinates follow each position */
     bool homogeneous;   /* 4OFF: four coordinates */
     bool dimension;     /* nOFF: states its number of coordinates */
@@ -24,10 +25,10 @@ static bool take(const char **at, const char *end, const char *prefix) {
 /* [ST][C][N][4][n]OFF, followed by nothing or by a digit of the first count. */
 static bool parse_keyword(starg_word word, off_header *header) {
     const char *at = word.text, *end = word.text + word.length;
-    bool texture = take(&at, end, "ST");
-    bool color = take(&at, end, "C");
+    header->texture = take(&at, end, "ST");
+    header->color = take(&at, end, "C");
     bool normal = take(&at, end, "N");
-    header->vertex_extras = texture || color || normal;
+    header->vertex_extras = header->texture || header->color || normal;
     header->homogeneous = take(&at, end, "4");
     header->dimension = take(&at, end, "n");
     if (!take(&at, end, "OFF"))
@@ -135,6 +136,10 @@ static starg_status read_faces(starg_scan *scan, size_t count, starg_mesh_builde
             STARG_TRY(starg_builder_corner(builder, vertex, starg_at_line(scan->line)));
         }
         STARG_TRY(starg_builder_face(builder, place));
+        starg_scan ahead = *scan;
+        starg_word word;
+        if (starg_scan_word_here(&ahead, &word))
+            builder->left_out |= STARG_MESH_COLORS;
         STARG_TRY(starg_scan_extra_numbers(scan, MOST_COLORS, "the colour of a face"));
         STARG_TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
     }
@@ -148,6 +153,8 @@ starg_status starg_off_read(starg_mesh_builder *builder) {
     off_header header;
     size_t vertices = 0, faces = 0;
     STARG_TRY(read_keyword(&scan, &header));
+    builder->left_out =
+        (header.color ? STARG_MESH_COLORS : 0) | (header.texture ? STARG_MESH_TEXTURE : 0);
     STARG_TRY(read_counts(&scan, &vertices, &faces));
     STARG_TRY(starg_builder_reserve(builder, vertices, faces));
     STARG_TRY(read_vertices(&scan, &header, vertices, builder));

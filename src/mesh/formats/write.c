@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a mesh of any format; the file gets its name once it is complete. */
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/file.h"
+#include "core/memory.h"
 #include "mesh/formats/io.h"
+#include "mesh/single.h"
 
-typedef void write_fn(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
-
-static write_fn *const writers[] = {
+static starg_mesh_writer *const writers[] = {
     [STARG_MESH_OFF] = starg_off_write,
     [STARG_MESH_OBJ] = starg_obj_write,
     [STARG_MESH_PLY_ASCII] = starg_ply_write_ascii,
@@ -46,19 +45,50 @@ static starg_status choose_format(starg_context *context, const char *path,
                       path);
 }
 
-/* Binary STL uses floats: rejects coordinates that would become infinite. */
+/* Does binary STL, which holds single precision, keep the surface? */
 static starg_status check_single(starg_context *context, const starg_mesh *mesh, const char *path) {
+    double origin[3];
+    starg_mesh_origin(mesh, origin);
+    bool far = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
+    const single_place place = {
+        .stage = STARG_MESH_FILE,
+        .file = path,
+        .what = "the mesh",
+        .remedy = far ? "OFF, OBJ, PLY and text STL keep it, or put it near the origin "
+                        "('starguard repair --origin auto')"
+                      : "OFF, OBJ, PLY and text STL keep it"};
+    return single_check(context, mesh, NULL, &place);
+}
+
+/* Subtracts the origin, and says so in `extras`. *moved is NULL where it is zero. */
+static starg_status move_to_origin(starg_context *context, const starg_mesh *mesh,
+                                   const double origin[3], starg_mesh_extras *extras,
+                                   starg_mesh **moved) {
+    starg_status status = STARG_OK;
+    double *back = NULL;
+    const single_place place = {.stage = STARG_MESH_FILE,
+                                .what = "the mesh",
+                                .how = "about this origin",
+                                .remedy = "give one near the mesh"};
+    if (origin[0] == 0 && origin[1] == 0 && origin[2] == 0)
+        return STARG_OK;
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(origin[k]) < STARG_COORDINATE_LIMIT))
+            return starg_fail(context, STARG_ERROR_ARGUMENT, STARG_MESH_FILE,
+                              "the origin must be finite and below 1e100");
+    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
+                                mesh->face_count, moved));
+    STARG_NEW(context, STARG_MESH_FILE, back, 3 * mesh->vertex_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        if (fabs(mesh->vertices[i]) <= (double)FLT_MAX)
-            continue;
-        uint64_t vertex = i / 3;
-        return starg_fail_at(context, STARG_ERROR_RANGE, STARG_MESH_FILE, STARG_ELEMENT_VERTEX,
-                             &vertex, 1,
-                             "cannot write '%s': coordinate %c of vertex %zu is %g, which exceeds "
-                             "the single precision of binary STL; write another format",
-                             path, "xyz"[i % 3], i / 3, mesh->vertices[i]);
+        (*moved)->vertices[i] -= origin[i % 3];
+        back[i] = (*moved)->vertices[i] + origin[i % 3];
     }
-    return STARG_OK;
+    STARG_TRY(single_compare(context, mesh, back, &place));
+    snprintf(extras->note, sizeof extras->note, "origin %.17g %.17g %.17g", origin[0], origin[1],
+             origin[2]);
+done:
+    starg_release(context, back);
+    return status;
 }
 
 starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh, const char *path,
@@ -71,16 +101,21 @@ starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh, co
     starg_mesh_format format = options->format;
     starg_output output = {0};
     starg_c_locale locale = {0};
+    starg_mesh *moved = NULL;
+    starg_mesh_extras extras = {.colors = options->face_colors};
     STARG_TRY(choose_format(context, path, &format));
+    STARG_TRY(starg_c_locale_enter(context, &locale));
+    STARG_TRY(move_to_origin(context, mesh, options->origin, &extras, &moved));
+    mesh = moved != NULL ? moved : mesh;
     if (format == STARG_MESH_STL_BINARY)
         STARG_TRY(check_single(context, mesh, path));
-    STARG_TRY(starg_c_locale_enter(context, &locale));
     STARG_TRY(starg_output_open(context, STARG_MESH_FILE, path, &output));
-    writers[format](output.stream, mesh, options->face_colors);
+    writers[format](output.stream, mesh, &extras);
     STARG_TRY(starg_check_cancel(context, STARG_MESH_FILE));
     STARG_TRY(starg_output_commit(&output));
 done:
     starg_output_discard(&output);
+    starg_mesh_free(moved);
     starg_c_locale_leave(&locale);
     return status;
 }

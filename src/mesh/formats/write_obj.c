@@ -4,8 +4,9 @@
 
 #include "mesh/formats/io.h"
 
-void starg_obj_write(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
-    (void)colors;
+void starg_obj_write(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
+    if (extras->note[0] != '\0')
+        fprintf(stream, "# %s\n", extras->note);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         const double *p = mesh->vertices + 3 * i;
         fprintf(stream, "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);

@@ -18,7 +18,7 @@ void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colo
     }
 }
 
-void starg_off_write(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
+void starg_off_write(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
     fprintf(stream, "OFF\n%zu %zu 0\n", mesh->vertex_count, mesh->face_count);
-    starg_write_lines(stream, mesh, colors);
+    starg_write_lines(stream, mesh, extras->colors);
 }

@@ -3,25 +3,29 @@
 #include "mesh/formats/io.h"
 #include "mesh/formats/pack.h"
 
-static void write_header(FILE *stream, const char *encoding, const starg_mesh *mesh, bool colors) {
+static void write_header(FILE *stream, const char *encoding, const starg_mesh *mesh,
+                         const starg_mesh_extras *extras) {
+    bool noted = extras->note[0] != '\0';
     fprintf(stream,
-            "ply\nformat %s 1.0\n"
+            "ply\nformat %s 1.0\n%s%s%s"
             "element vertex %zu\nproperty double x\nproperty double y\nproperty double z\n"
             "element face %zu\nproperty list uchar int vertex_indices\n",
-            encoding, mesh->vertex_count, mesh->face_count);
-    if (colors)
+            encoding, noted ? "comment " : "", extras->note, noted ? "\n" : "", mesh->vertex_count,
+            mesh->face_count);
+    if (extras->colors != NULL)
         fputs("property uchar red\nproperty uchar green\nproperty uchar blue\n", stream);
     fputs("end_header\n", stream);
 }
 
-void starg_ply_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
-    write_header(stream, "ascii", mesh, colors != NULL);
-    starg_write_lines(stream, mesh, colors);
+void starg_ply_write_ascii(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
+    write_header(stream, "ascii", mesh, extras);
+    starg_write_lines(stream, mesh, extras->colors);
 }
 
-void starg_ply_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
+void starg_ply_write_binary(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
     enum { VERTEX = 24, FACE = 13, COLOR = 3 };
-    write_header(stream, "binary_little_endian", mesh, colors != NULL);
+    const uint8_t *colors = extras->colors;
+    write_header(stream, "binary_little_endian", mesh, extras);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         unsigned char record[VERTEX];
         for (size_t k = 0; k < 3; k++)

@@ -24,9 +24,9 @@ static void look_up(const starg_mesh *mesh, size_t face, double points[3][3], do
         normal[k] = length > 0 ? normal[k] / length : 0;
 }
 
-void starg_stl_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
-    (void)colors;
-    fputs("solid starguard\n", stream);
+void starg_stl_write_ascii(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
+    bool noted = extras->note[0] != '\0';
+    fprintf(stream, "solid starguard%s%s\n", noted ? " " : "", extras->note);
     for (size_t i = 0; i < mesh->face_count; i++) {
         double points[3][3], n[3];
         look_up(mesh, i, points, n);
@@ -39,10 +39,10 @@ void starg_stl_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *
     fputs("endsolid starguard\n", stream);
 }
 
-void starg_stl_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
+void starg_stl_write_binary(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
     enum { HEADER = 80, RECORD = 50 };
-    (void)colors;
     unsigned char header[HEADER + 4] = {0};
+    memcpy(header, extras->note, strnlen(extras->note, HEADER));
     pack_u32(header + HEADER, (uint32_t)mesh->face_count);
     fwrite(header, 1, sizeof header, stream);
     for (size_t i = 0; i < mesh->face_count; i++) {

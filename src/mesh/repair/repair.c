@@ -242,11 +242,14 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                                                 : "");
     }
     return starg_fail(context, STARG_ERROR_MESH, REPAIR_STAGE,
-                      "the mesh could not be made a solid: the remainder encloses no volume");
+                      check->underflows
+                          ? "the area or volume underflows; scale the coordinates, by a power of "
+                            "two to keep them exact"
+                          : "the mesh could not be made a solid: the remainder encloses no volume");
 }
 
 /* Checks the result and returns it if it bounds a solid. */
-static starg_status finish(repair_state *state, starg_mesh **out) {
+static starg_status finish(repair_state *state, const starg_check *before, starg_mesh **out) {
     starg_status status = STARG_OK;
     starg_check *check = NULL;
     starg_mesh *mesh = NULL;
@@ -261,8 +264,11 @@ static starg_status finish(repair_state *state, starg_mesh **out) {
         STARG_TRY(fail_unusable(state->context, check));
     if (state->options.unite && state->report.intersections_after > 0)
         STARG_TRY(fail_crossed(state->context, &check->findings[STARG_FINDING_SELF_INTERSECTION]));
+    state->report.in_vain = before->usable && state->report.intersections_after > 0 &&
+                            state->report.intersections_after >= state->report.intersections_before;
     STARG_TRY(describe_vertices(state));
     describe_faces(state);
+    starg_check_describe_grid(check, state->report.grid, sizeof state->report.grid);
     *out = mesh;
     mesh = NULL;
 done:
@@ -292,7 +298,7 @@ starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
         STARG_TRY(mend_surface(&state, before));
         STARG_TRY(close_surface(&state));
     }
-    STARG_TRY(finish(&state, out));
+    STARG_TRY(finish(&state, before, out));
     *report = state.report;
 done:
     starg_time_end(context, former);
