@@ -39,8 +39,7 @@ bool cli_number_real(const char *word, double *value) {
     return read_real(word, strlen(word), value);
 }
 
-/* `count` reals separated by commas. */
-static bool cli_number_list(const char *word, double *values, int count) {
+bool cli_number_list(const char *word, double *values, int count) {
     for (int i = 0; i < count; i++) {
         size_t size = strcspn(word, ",");
         if (!read_real(word, size, &values[i]) || (word[size] == ',') != (i < count - 1))

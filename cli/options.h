@@ -21,6 +21,9 @@
 /* A finite decimal number; no spaces, hexadecimal, "inf" or "nan". */
 bool cli_number_real(const char *word, double *value);
 
+/* `count` of them separated by commas. */
+bool cli_number_list(const char *word, double *values, int count);
+
 /* A fraction in percent with two digits, rounded down, so that only 1 becomes 100; exact hundredths
  * of a percent (within a double) keep their value. */
 double cli_percent(double fraction);
