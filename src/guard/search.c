@@ -34,7 +34,9 @@ enum {
     MOST_BATCH = 2048,
     FEW_NODES = 10,
     MANY_NODES = 300,
-    CLOSINGS = 4,
+    CLOSINGS = 4, /* before the last, after equal parts of the budget */
+    SHORT_CLOSINGS = 8,
+    QUICK_CLOSINGS = 2,
     FIRST_CLOSING = 5000000,
     CLOSING_FACTOR = 3,
     MANY_GUARDS = 20
@@ -46,9 +48,6 @@ static const double FIRST_FINEST = 1.0 / 16;
 
 /* Most work of cells for better guards, and the number of columns above which it is less. */
 static const double MOST_CELL_WORK = 5e6, EASY_COLUMNS = 1e4;
-
-/* Of the budget for better guards, what is used before each closing. */
-static const double SHARES[CLOSINGS] = {0.2, 0.4, 0.6, 0.8};
 
 /* ---- points ---- */
 
@@ -212,14 +211,21 @@ done:
     return status;
 }
 
-/* Rounds of local search. With many guards, integer programs find in the points of a few rounds
- * what local search would need many for, so it begins anew from their guards. */
+static int count_closings(const search *s) {
+    const starg_guard_options *o = s->problem->options;
+    return !guard_is_brief(o) ? CLOSINGS : o->effort == STARG_EFFORT_QUICK ? QUICK_CLOSINGS
+                                                                          : SHORT_CLOSINGS;
+}
+
+/* Rounds of local search. With many guards, cover problems find in the points of a few rounds what
+ * local search would need many for, so it begins anew from their guards. */
 static starg_status run_improvement(search *s, uint64_t work) {
     starg_status status = STARG_OK;
     uint64_t begun = s->scene.work;
     bool more = true;
-    for (int k = 0; k < CLOSINGS && s->count >= MANY_GUARDS && more; k++) {
-        STARG_TRY(run_rounds(s, search_improve, begun, work, SHARES[k]));
+    int closings = count_closings(s);
+    for (int k = 0; k < closings && s->count >= MANY_GUARDS && more; k++) {
+        STARG_TRY(run_rounds(s, search_improve, begun, work, (k + 1.0) / (closings + 1)));
         STARG_TRY(close_and_resume(s));
         s->budget = begun + work;
         more = goes_on(s);

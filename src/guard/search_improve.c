@@ -32,7 +32,7 @@ enum {
 static const char STAGE[] = "search";
 
 /* Of the work of the best effort. */
-static const double QUICK = 0.05, NORMAL = 0.3;
+static const double QUICK = 0.05, NORMAL = 0.45;
 
 /* Programs grow with the guards, and their rows with the faces. */
 static double best_work(const search *s) {

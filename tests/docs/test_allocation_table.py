@@ -21,7 +21,7 @@ WITHOUT = {
     "starg_bits_set": "sets a bit of a matrix that is there",
     "starg_space_model_faces": NUMBER, "starg_space_model_vertices": NUMBER,
     "starg_space_admits": NUMBER, "starg_space_leak": NUMBER, "starg_field_count": NUMBER, "starg_field_set_count": "stores a number",
-    "starg_field_set_real": "stores a number", "starg_fields_word": TEXT, "starg_check_advice": TEXT,
+    "starg_field_set_real": "stores a number", "starg_field_set_word": "stores a number", "starg_field_word": TEXT, "starg_fields_word": TEXT, "starg_check_advice": TEXT,
     "starg_check_describe_grid": "writes into the text of the caller",
     "starg_mesh_left_out": NUMBER, "starg_mesh_origin": ARITHMETIC,
     "starg_field_expectation": TEXT,
