@@ -478,8 +478,10 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     STARG_TRY(baseline_guards(&problem, &outcome.pool, &outcome.selection));
     STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
-    if (options != NULL) /* as asked for: the file names it only then */
+    if (options != NULL) { /* as asked for: files name them only then */
         (*out)->options.max_nodes = options->max_nodes;
+        (*out)->options.candidate_count = options->candidate_count;
+    }
     warn_of_shells(&problem, *out);
 done:
     outcome_free(context, &outcome);

@@ -48,7 +48,6 @@ typedef struct area_search {
 } area_search;
 
 static void look(const area_search *a, box_worker *worker, const uint64_t *among, area_cell *cell) {
-    uint64_t before = box_worker_work(worker);
     const box_question question = {.box = cell->box,
                                    .target = a->scene->view->target,
                                    .count = a->pool->columns,
@@ -60,7 +59,7 @@ static void look(const area_search *a, box_worker *worker, const uint64_t *among
     for (size_t w = 0; w < starg_bit_words(a->pool->columns); w++)
         STARG_FOR_BITS (bit, cell->open[w])
             cell->weight += a->problem->weights.weights[64 * w + bit];
-    cell->work = box_worker_work(worker) - before + a->pool->columns / 100 + 1;
+    cell->work = box_worker_take_work(worker) + a->pool->columns / 100 + 1;
 }
 
 static starg_status look_from_part(starg_context *context, void *shared, void *scratch,

@@ -162,10 +162,9 @@ static uint64_t look_from_box(const unseen_search *s, box_worker *worker, const 
                                    .count = s->list.count,
                                    .range = s->view.range,
                                    .among = among};
-    uint64_t before = box_worker_work(worker);
     if (!solid_bars(s->solid, &part->box))
         box_look(worker, &question, part->open, NULL);
-    return box_worker_work(worker) - before + 1;
+    return box_worker_take_work(worker) + 1;
 }
 
 static starg_status make_worker(starg_context *context, void *shared, void **scratch) {

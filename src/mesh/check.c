@@ -318,10 +318,7 @@ static void summarise(checker *c) {
     check->components = c->topology->component_count;
     check->area = starg_mesh_area(c->mesh);
     check->diagonal = mesh_diagonal(c->mesh);
-    double edge = mesh_shortest_edge(c->mesh);
-    check->shortest_edge = edge < INFINITY ? edge : 0;
-    mesh_find_grid(c->mesh, check->grid);
-    check->coarse = mesh_grid_is_coarse(c->mesh, check->grid, edge);
+    check_steps(c->mesh, check);
     check->manifold = count_of(c, STARG_FINDING_NONMANIFOLD_EDGE) == 0 &&
                       count_of(c, STARG_FINDING_NONMANIFOLD_VERTEX) == 0 &&
                       count_of(c, STARG_FINDING_REPEATED_CORNER) == 0;

@@ -53,7 +53,7 @@ static double step_on_axis(const starg_mesh *mesh, size_t axis) {
     return fmax(bit, power >= 0 ? TEN_TO[power] : power > -POWERS ? 1 / TEN_TO[-power] : 0);
 }
 
-void mesh_find_grid(const starg_mesh *mesh, double step[3]) {
+static void find_grid(const starg_mesh *mesh, double step[3]) {
     for (size_t axis = 0; axis < 3; axis++)
         step[axis] = step_on_axis(mesh, axis);
 }
@@ -65,7 +65,7 @@ static bool is_of_few_digits(const double step[3], const double most[3]) {
     return most[far] <= SINGLE * step[far];
 }
 
-bool mesh_grid_is_coarse(const starg_mesh *mesh, const double step[3], double edge) {
+static bool is_coarse(const starg_mesh *mesh, const double step[3], double edge) {
     double lower[3], upper[3], most[3];
     double large = fmin(edge / SHORT, mesh_diagonal(mesh) / FEW);
     bool coarse = false;
@@ -76,4 +76,11 @@ bool mesh_grid_is_coarse(const starg_mesh *mesh, const double step[3], double ed
                   most[k] >= FAR * (upper[k] - lower[k]);
     }
     return coarse && is_of_few_digits(step, most);
+}
+
+void check_steps(const starg_mesh *mesh, starg_check *check) {
+    double edge = mesh_shortest_edge(mesh);
+    check->shortest_edge = edge < INFINITY ? edge : 0;
+    find_grid(mesh, check->grid);
+    check->coarse = is_coarse(mesh, check->grid, edge);
 }

@@ -4,12 +4,11 @@
 #define STARG_MESH_GRID_H
 
 #include "mesh/mesh.h"
+#include "starguard/check.h"
 
-/* On each axis the largest power of two or of ten of which all coordinates are multiples; 0 if all
- * are 0. */
-void mesh_find_grid(const starg_mesh *mesh, double step[3]);
-
-/* Is it coarse for edges as short as `edge`, as rounding far from the origin leaves it? */
-bool mesh_grid_is_coarse(const starg_mesh *mesh, const double step[3], double edge);
+/* Sets the grid, by axis the largest power of two or of ten of which all coordinates are multiples (0
+ * if all are 0), the shortest edge, and whether the grid is coarse for edges as short, as rounding
+ * far from the origin leaves it. */
+void check_steps(const starg_mesh *mesh, starg_check *check);
 
 #endif

@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
+#include "mesh/grid.h"
 #include "mesh/topology.h"
 
 /* Findings that rule out a solid, in the order in which they are reported. */
@@ -272,6 +273,7 @@ starg_status solid_of_level(starg_context *context, const starg_solid *fine,
     check.diagonal = vec3_distance(lower, upper);
     check.area = starg_mesh_area(level);
     check.volume = starg_mesh_volume(level);
+    check_steps(level, &check);
     check.vertices = level->vertex_count;
     check.faces = level->face_count;
     check.edges = level->face_count / 2 * 3;

@@ -264,8 +264,10 @@ uint64_t box_worker_tests(const box_worker *worker) {
     return worker->tests;
 }
 
-uint64_t box_worker_work(const box_worker *worker) {
-    return worker->tests + worker->steps / STEPS;
+uint64_t box_worker_take_work(box_worker *worker) {
+    uint64_t work = worker->tests + worker->steps / STEPS;
+    worker->tests = worker->steps = 0;
+    return work;
 }
 
 static bool add_crossing(void *user, uint32_t face) {

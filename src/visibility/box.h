@@ -100,7 +100,8 @@ int box_trim(box_worker *worker, bvh_box *box, box_cut cuts[BOX_CUTS]);
  * each of its vertices that was looked at). */
 uint64_t box_worker_tests(const box_worker *worker);
 
-/* The same with the triangles that were looked at, in units of about a microsecond. */
-uint64_t box_worker_work(const box_worker *worker);
+/* The same with the triangles that were looked at, in units of about a microsecond, since the last
+ * call. Rounded alone, so that sums do not depend on who does what. */
+uint64_t box_worker_take_work(box_worker *worker);
 
 #endif
