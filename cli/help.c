@@ -176,8 +176,7 @@ static json_t *option_json(const cli_option *o) {
     json_t *option = json_pack("{s:s, s:s*, s:s, s:s*, s:s}", "name", o->option, "letter",
                                o->letter != 0 ? letter : NULL, "kind", kind_name(o->kind), "value",
                                o->value, "help", help);
-    if (o->words == NULL ||
-        json_object_set_new(option, "choices", words_json(o->words)) == 0)
+    if (o->words == NULL || json_object_set_new(option, "choices", words_json(o->words)) == 0)
         return option;
     json_decref(option);
     return NULL;

@@ -41,8 +41,8 @@ STARG_API void starg_cover_problem_default(starg_cover_problem *problem);
 typedef enum starg_cover_method {
     STARG_COVER_GREEDY = 0, /* largest gain first, with the bound of LP */
     STARG_COVER_ILP = 1,    /* reductions, Lagrangian bound, then branch and bound        */
-    STARG_COVER_LP = 2,   /* reductions, bound and prices of the LP relaxation, and an improved greedy
-                             cover; same as ILP for partial targets */
+    STARG_COVER_LP = 2, /* reductions, bound and prices of the LP relaxation, and an improved greedy
+                           cover; same as ILP for partial targets */
     STARG_COVER_LOCAL = 3 /* reductions and a short local search, without a bound beyond what these
                              show; same as ILP for partial targets */
 } starg_cover_method;

@@ -42,9 +42,9 @@ typedef struct starg_decompose_options {
     const double *guards; /* guard_count x 3, or NULL. PAPER: seeds of the pieces; NULL: those of
                              starg_guard. STRICT: tried as guards, too */
     size_t guard_count;
-    /* STRICT: STARG_EFFORT_QUICK, _NORMAL or _BEST (starguard/fields.h), a fixed amount of work each,
-     * the same on every machine and for any number of threads, but unlimited if the context has a
-     * time limit; or the number of trials of the search. 0: normal */
+    /* STRICT: STARG_EFFORT_QUICK, _NORMAL or _BEST (starguard/fields.h), a fixed amount of work
+     * each, the same on every machine and for any number of threads, but unlimited if the context
+     * has a time limit; or the number of trials of the search. 0: normal */
     uint64_t effort;
     /* starg_decompose_open_mesh: fill the surface even if the filled volume is far from it */
     bool fill;

@@ -115,9 +115,9 @@ struct starg_fields {
 /* How long searches go on: words of options that are otherwise numbers. Quick: what is there at
  * once, and a short search; normal: at most some three times as long; best: until more is unlikely
  * to help. */
-#define STARG_EFFORT_QUICK ((uint64_t)INT64_MAX + 1)
+#define STARG_EFFORT_QUICK  ((uint64_t)INT64_MAX + 1)
 #define STARG_EFFORT_NORMAL ((uint64_t)INT64_MAX + 2)
-#define STARG_EFFORT_BEST ((uint64_t)INT64_MAX + 3)
+#define STARG_EFFORT_BEST   ((uint64_t)INT64_MAX + 3)
 
 /* Sets every member of a table to its default; other members are not changed. */
 STARG_API void starg_fields_default(const starg_fields *fields, void *record);

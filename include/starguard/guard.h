@@ -51,9 +51,9 @@ typedef enum starg_candidates {
 typedef struct starg_guard_options {
     starg_guard_method method;
     starg_candidates candidates;
-    size_t candidate_count; /* approximate number, at least 1, or STARG_DEFAULT_COUNT; more are
-                               added for faces that none of them sees */
-    const double *points;   /* STARG_CANDIDATES_GIVEN: point_count x 3                     */
+    size_t candidate_count;   /* approximate number, at least 1, or STARG_DEFAULT_COUNT; more are
+                                 added for faces that none of them sees */
+    const double *points;     /* STARG_CANDIDATES_GIVEN: point_count x 3                     */
     const double *directions; /* of these, with a cone or a field of view: point_count x 3; NULL:
                                  they may look anywhere */
     const double *ups;        /* of these directions: what is up, as in starg_visibility_options */
@@ -79,8 +79,8 @@ typedef struct starg_guard_options {
     /* STARG_GUARD_PILP with full coverage and generated candidates: search fewer guards beside the
      * candidates */
     bool refine;
-    uint64_t effort; /* of that search: STARG_EFFORT_QUICK, _NORMAL or _BEST (starguard/fields.h), or
-                        as many units of work as refine_lines, as with the best effort */
+    uint64_t effort; /* of that search: STARG_EFFORT_QUICK, _NORMAL or _BEST (starguard/fields.h),
+                        or as many units of work as refine_lines, as with the best effort */
     uint64_t refine_lines; /* budget in sight lines (about a microsecond each) and what takes as
                               long, or STARG_DEFAULT_LINES */
 
@@ -93,8 +93,8 @@ typedef struct starg_guard_options {
 } starg_guard_options;
 
 /* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (STARG_EFFORT_NORMAL), skeletal candidates,
- * as many as STARG_DEFAULT_COUNT, the fastest engine, faces by vertices, full coverage once, no clearance,
- * STARG_DEFAULT_NODES. */
+ * as many as STARG_DEFAULT_COUNT, the fastest engine, faces by vertices, full coverage once, no
+ * clearance, STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
 
 /* What STARG_DEFAULT_STEP stands for with so many vertices of the scene. */

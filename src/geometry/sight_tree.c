@@ -26,7 +26,8 @@ enum { WIDTH = 8, LEAF = 4, MOST_STACK = 8 * 64 };
 static const float SLACK = 0x1p-19f, STEEPEST = 0x1p60f;
 
 typedef struct wide_node {
-    float bound[6][WIDTH]; /* lower x, y, z, then upper; an empty box has them the wrong way round */
+    float bound[6]
+               [WIDTH]; /* lower x, y, z, then upper; an empty box has them the wrong way round */
     uint32_t first[WIDTH]; /* of triangles, or the node */
     uint32_t count[WIDTH]; /* 0: a node */
 } wide_node;
@@ -141,7 +142,8 @@ static ray ray_make(const sight_tree *tree, const double p[3], const double q[3]
 }
 
 /* Where the ray enters each of the boxes; 2: it misses. */
-static inline __attribute__((always_inline)) void enter_boxes(const wide_node *node, const ray *r, float at[WIDTH]) {
+static inline __attribute__((always_inline)) void enter_boxes(const wide_node *node, const ray *r,
+                                                              float at[WIDTH]) {
     const float *nx = node->bound[r->near[0]], *ny = node->bound[r->near[1]];
     const float *nz = node->bound[r->near[2]], *fx = node->bound[r->far[0]];
     const float *fy = node->bound[r->far[1]], *fz = node->bound[r->far[2]];

@@ -166,9 +166,10 @@ static const starg_field OPTIONS[] = {
      .initial = STARG_EFFORT_NORMAL,
      .words = effort_words,
      .value = "quick|normal|best|N",
-     .help = "How long it searches for fewer guards: at most three times as long with normal as with "
-             "quick; best until more is unlikely to help, with a bound for guards anywhere; or so "
-             "many units of work, about a microsecond each."},
+     .help =
+         "How long it searches for fewer guards: at most three times as long with normal as with "
+         "quick; best until more is unlikely to help, with a bound for guards anywhere; or so "
+         "many units of work, about a microsecond each."},
     {.key = "refine_lines",
      .option = "refine-lines",
      .kind = STARG_FIELD_COUNT,

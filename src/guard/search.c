@@ -213,8 +213,9 @@ done:
 
 static int count_closings(const search *s) {
     const starg_guard_options *o = s->problem->options;
-    return !guard_is_brief(o) ? CLOSINGS : o->effort == STARG_EFFORT_QUICK ? QUICK_CLOSINGS
-                                                                          : SHORT_CLOSINGS;
+    return !guard_is_brief(o)                ? CLOSINGS
+           : o->effort == STARG_EFFORT_QUICK ? QUICK_CLOSINGS
+                                             : SHORT_CLOSINGS;
 }
 
 /* Rounds of local search. With many guards, cover problems find in the points of a few rounds what
@@ -255,9 +256,10 @@ done:
     return status;
 }
 
-/* Looks for better guards. Where local search gives up early and the effort is to be the best, cells
- * show where else guards may stand: a proof begins, with what is left of the budget. Tests of boxes take longer in larger
- * models, so that there are fewer; where guards are few, one fewer is worth more. */
+/* Looks for better guards. Where local search gives up early and the effort is to be the best,
+ * cells show where else guards may stand: a proof begins, with what is left of the budget. Tests of
+ * boxes take longer in larger models, so that there are fewer; where guards are few, one fewer is
+ * worth more. */
 static starg_status improve(search *s) {
     starg_status status = STARG_OK;
     uint64_t begun = s->scene.work, work = search_improve_work(s);

@@ -43,9 +43,7 @@ static double best_work(const search *s) {
 uint64_t search_improve_work(const search *s) {
     const starg_guard_options *o = s->problem->options;
     uint64_t asked = o->refine_lines != STARG_DEFAULT_LINES ? o->refine_lines : o->effort;
-    double share = asked == STARG_EFFORT_QUICK    ? QUICK
-                   : asked == STARG_EFFORT_NORMAL ? NORMAL
-                                                  : 1;
+    double share = asked == STARG_EFFORT_QUICK ? QUICK : asked == STARG_EFFORT_NORMAL ? NORMAL : 1;
     bool counted = asked <= INT64_MAX;
     return (uint64_t)(counted ? (double)asked / search_scene_unit(&s->scene)
                               : share * best_work(s));

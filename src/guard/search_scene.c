@@ -140,8 +140,7 @@ bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j
     if (scene->view->target == STARG_TARGET_CORNERS)
         return is_before(scene, column, p);
     return scene->view->target == STARG_TARGET_VERTICES ||
-           scene_back(points, place) != SCENE_NONE ||
-           scene_side(points, place, p) > 0;
+           scene_back(points, place) != SCENE_NONE || scene_side(points, place, p) > 0;
 }
 
 uint64_t search_scene_look(const search_scene *scene, search_point *point,

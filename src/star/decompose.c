@@ -54,8 +54,9 @@ static const starg_field OPTIONS[] = {
      .initial = STARG_EFFORT_NORMAL,
      .words = effort_words,
      .value = "quick|normal|best|N",
-     .help = "strict: how long it searches for fewer pieces, about 2, 5 or 20 seconds of work where "
-             "there is so much to try; or the number of trials.",
+     .help =
+         "strict: how long it searches for fewer pieces, about 2, 5 or 20 seconds of work where "
+         "there is so much to try; or the number of trials.",
      .default_text = "normal; with --time-limit all of that time"},
     {.key = "fill",
      .option = "fill",

@@ -47,8 +47,7 @@ static bool is_free(sight_query *query) {
     const visibility_scene *scene = query->scene;
     return scene->sights != NULL && scene_holds(scene, query->p)
                ? sight_tree_query(scene->sights, query->p, query->q, passes_alone, query)
-               : bvh_query_segment(scene->solid->tree, query->p, query->q, passes_exactly,
-                                   query);
+               : bvh_query_segment(scene->solid->tree, query->p, query->q, passes_exactly, query);
 }
 
 static bool sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
