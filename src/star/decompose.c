@@ -158,10 +158,11 @@ static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
     return status;
 }
 
-/* What made a result. The search has noted its effort. */
+/* What made a result. A strict search has noted its effort. */
 static void remember(const starg_context *context, const starg_decompose_options *options,
                      starg_decomposition *d) {
-    uint64_t effort = d->options.effort;
+    bool strict = options->mode == STARG_DECOMPOSE_STRICT;
+    uint64_t effort = strict ? d->options.effort : options->effort;
     d->options_known = true;
     d->options = *options;
     d->options.effort = effort;
