@@ -25,6 +25,7 @@ enum {
     PATIENCE = 9,
     HOPELESS = 3,
     MOST_HELD = 250,
+    SHORT_HELD = 60, /* where there are more closings, and each is short */
     ASKED = 4,
     MOST_ASKED_OF = 300
 };
@@ -115,8 +116,9 @@ static starg_status hold_best(search *s) {
             scored[count++] = (scored_leaf){value, (uint32_t)i};
     }
     qsort(scored, count, sizeof *scored, search_by_score);
-    if (count > MOST_HELD)
-        count = MOST_HELD;
+    size_t most = guard_is_brief(s->problem->options) ? SHORT_HELD : MOST_HELD;
+    if (count > most)
+        count = most;
     for (size_t i = 0; i < count; i++)
         best[i] = scored[i].cell;
     STARG_TRY(search_hold(s, best, count));
