@@ -32,22 +32,23 @@ enum {
 
 static const char STAGE[] = "search";
 
-/* Of the work of the best effort. */
-static const double QUICK = 0.05, NORMAL = 0.45;
+/* Shares of the work of the best effort: of what any model gets, and of what each guard adds. */
+static const double QUICK[2] = {0.05, 0.05}, NORMAL[2] = {0.25, 0.45}, BEST[2] = {1, 1};
 
 /* Programs grow with the guards, and their rows with the faces. */
-static double best_work(const search *s) {
+static double work_of(const search *s, const double share[2]) {
     double rows = 10 * (double)s->pool->columns;
-    return LEAST_WORK + (double)s->count * fmax(rows, WORK_PER_GUARD);
+    return share[0] * LEAST_WORK + share[1] * (double)s->count * fmax(rows, WORK_PER_GUARD);
 }
 
 uint64_t search_improve_work(const search *s) {
     const starg_guard_options *o = s->problem->options;
     uint64_t asked = o->refine_lines != STARG_DEFAULT_LINES ? o->refine_lines : o->effort;
-    double share = asked == STARG_EFFORT_QUICK ? QUICK : asked == STARG_EFFORT_NORMAL ? NORMAL : 1;
-    bool counted = asked <= INT64_MAX;
-    return (uint64_t)(counted ? (double)asked / search_scene_unit(&s->scene)
-                              : share * best_work(s));
+    if (asked <= INT64_MAX)
+        return (uint64_t)((double)asked / search_scene_unit(&s->scene));
+    return (uint64_t)work_of(s, asked == STARG_EFFORT_QUICK    ? QUICK
+                                : asked == STARG_EFFORT_NORMAL ? NORMAL
+                                                               : BEST);
 }
 
 starg_status search_improve(search *s, row_list *list) {
