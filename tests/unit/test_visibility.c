@@ -209,9 +209,12 @@ typedef struct isa_case {
     uint8_t *plain, *wide;
 } isa_case;
 
-static void make_isa_case(const char *name, isa_case *c) {
+/* The sample scaled by axis and moved. */
+static void make_scaled_case(const char *name, const double scale[4], isa_case *c) {
     *c = (isa_case){.context = test_context(1)};
     c->mesh = test_sample_mesh(c->context, name, 3000);
+    for (size_t i = 0; i < 3 * c->mesh->vertex_count; i++)
+        c->mesh->vertices[i] = c->mesh->vertices[i] * scale[i % 3] + scale[3];
     test_ok(c->context, starg_solid_create(c->context, c->mesh, &c->solid));
     test_ok(c->context, scene_create(c->context, c->solid, &c->scene));
     test_ok(c->context, scene_add_adjacency(c->scene));
@@ -224,6 +227,10 @@ static void make_isa_case(const char *name, isa_case *c) {
     assert_true(c->side && c->plain && c->wide);
 }
 
+static void make_isa_case(const char *name, isa_case *c) {
+    make_scaled_case(name, (const double[4]){1, 1, 1, 0}, c);
+}
+
 static void free_isa_case(isa_case *c) {
     free(c->side);
     free(c->plain);
@@ -232,6 +239,36 @@ static void free_isa_case(isa_case *c) {
     starg_solid_free(c->solid);
     starg_mesh_free(c->mesh);
     test_context_free(c->context);
+}
+
+/* Single sight lines, down a tree in single precision and past planes, against the engine that asks
+ * every face that a segment may meet; also of a model that is flat, tiny and far from the origin.
+ */
+static void test_single_sights(void **state) {
+    static const double SCALES[][4] = {{1, 1, 1, 0}, {1, 1e-5, 1, 0}, {1e-6, 1e-6, 1e-6, 1e-3}};
+    (void)state;
+    for (size_t k = 0; k < sizeof SCALES / sizeof *SCALES; k++) {
+        isa_case c;
+        size_t seen = 0, hidden = 0;
+        starg_visibility_options all;
+        starg_visibility_options_default(&all);
+        all.target = STARG_TARGET_VERTICES;
+        make_scaled_case("octopus", SCALES[k], &c);
+        test_ok(c.context, scene_add_sights(c.scene));
+        for (size_t i = 0; i < c.count; i++) {
+            const double *p = c.points + 3 * i;
+            scene_sides(c.scene, p, c.side);
+            visibility_tree.find(c.scene, NULL, p, c.side, c.plain);
+            for (uint32_t slot = 0; slot < c.scene->vertex_count; slot++) {
+                bool sees = scene_sees_vertex(c.scene, p, slot, &all);
+                assert_int_equal(sees, c.plain[slot]);
+                seen += sees;
+                hidden += !sees;
+            }
+        }
+        assert_true(seen > 1000 && hidden > 1000);
+        free_isa_case(&c);
+    }
 }
 
 /* The stages for each instruction set of the processor: the same bits. */
@@ -356,8 +393,8 @@ static void test_arguments(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_samples),       cmocka_unit_test(test_shared),
-        cmocka_unit_test(test_lattice_boxes), cmocka_unit_test(test_grid_isa),
-        cmocka_unit_test(test_contours_isa),  cmocka_unit_test(test_fastest),
-        cmocka_unit_test(test_arguments)};
+        cmocka_unit_test(test_single_sights), cmocka_unit_test(test_lattice_boxes),
+        cmocka_unit_test(test_grid_isa),      cmocka_unit_test(test_contours_isa),
+        cmocka_unit_test(test_fastest),       cmocka_unit_test(test_arguments)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
