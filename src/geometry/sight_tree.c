@@ -26,8 +26,8 @@ enum { WIDTH = 8, LEAF = 4, MOST_STACK = 8 * 64 };
 static const float SLACK = 0x1p-19f, STEEPEST = 0x1p60f;
 
 typedef struct wide_node {
-    float bound[6]
-               [WIDTH]; /* lower x, y, z, then upper; an empty box has them the wrong way round */
+    /* lower x, y, z, then upper; of an empty box they are the wrong way round */
+    float bound[6][WIDTH];
     uint32_t first[WIDTH]; /* of triangles, or the node */
     uint32_t count[WIDTH]; /* 0: a node */
 } wide_node;
