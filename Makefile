@@ -10,7 +10,7 @@ CTEST   := ctest --output-on-failure -j $(shell expr $(JOBS) + 1)
 
 LONG_PARTS := analysis slow exact memory threads mpi matrix aarch64
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
-	coverage mpi web lint fuzz bench install package wheel release deps deps-check clean
+	coverage mpi web site lint fuzz bench install package wheel release deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
 
 build: deps
@@ -100,6 +100,12 @@ web: build
 	@scripts/install-deps.sh web
 	@scripts/web.sh $(BUILD) $(BUILD)-web $(JOBS)
 
+# All pages as a site that can be searched, without a network: build-site/index.html. With the page of `make web`
+# where that stands.
+site: build
+	@scripts/install-deps.sh site
+	@/usr/bin/python3 -B scripts/site.py $(BUILD) $(BUILD)-site
+
 lint: deps-check
 	@scripts/lint.sh
 
@@ -131,7 +137,7 @@ wheel: deps
 # All that is published, in dist/ (docs/versions.md); with the web page, where that can be built.
 release:
 	@scripts/release.sh check
-	@$(MAKE) --no-print-directory wheel package web
+	@$(MAKE) --no-print-directory wheel package web site
 	@scripts/release.sh collect $(BUILD) dist
 
 deps:
@@ -141,4 +147,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-web $(BUILD)-aarch64 demo dist
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-web $(BUILD)-site $(BUILD)-aarch64 demo dist

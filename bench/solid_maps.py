@@ -7,8 +7,7 @@ usage: solid_maps.py STARGUARD [--shared FOLDER] [--samples-only] [--vertices N]
 
 Pairs: the first pose of each sample to each of its others, and poses/ of the shared data. Columns:
 tetrahedra; pieces, and pieces of A and of B alone; mean and worst ratio of singular values; whether
-`verify` accepts the map; processor seconds. A map that `verify` refuses, as faces of the poses differ, is made again with
---overlay. A pair that is refused has the reason instead.
+`verify` accepts the map; processor seconds. A pair that is refused has the reason instead.
 
 With --animals: different animals, without landmarks. B is then met in A's faces: `verify` is asked with
 A's faces at the images of its vertices, and two columns tell how many of these are off B in A's faces, and
@@ -32,19 +31,16 @@ def pieces_alone(program, folder, model):
 
 def measure(program, folder, files):
     out = os.path.join(folder, "map.vtu")
-    for overlay in [], ["--overlay"]:
-        try:
-            report, seconds = morph.seconds(program, "map", "--solid", *files, "-o", out, *overlay)
-        except SystemExit as error:
-            return [str(error).split(": ", 1)[1]]
-        verified = subprocess.run([program, "verify", *files, out, "--quiet"], check=False,
-                                  capture_output=True).returncode == 0
-        if verified:
-            break
+    try:
+        report, seconds = morph.seconds(program, "map", "--solid", *files, "-o", out)
+    except SystemExit as error:
+        return [str(error).split(": ", 1)[1]]
+    verified = subprocess.run([program, "verify", *files, out, "--quiet"], check=False,
+                              capture_output=True).returncode == 0
     distortion = report["distortion"]
     return [report["tetrahedra"], report["pieces"],
             *(pieces_alone(program, folder, file) for file in files), f"{distortion['mean']:.2f}",
-            f"{distortion['worst']:.1f}", " ".join(["yes", *overlay]) if verified else "no", f"{seconds:.1f}"]
+            f"{distortion['worst']:.1f}", "yes" if verified else "no", f"{seconds:.1f}"]
 
 
 def image_of(model, map_file, out):
@@ -63,7 +59,7 @@ def image_of(model, map_file, out):
 def measure_animals(program, folder, files):
     out, image = (os.path.join(folder, name) for name in ("map.vtu", "image.off"))
     try:
-        report, seconds = morph.seconds(program, "map", "--solid", *files, "-o", out)
+        report, seconds = morph.seconds(program, "map", "--solid", *files, "--connectivity", "a", "-o", out)
     except SystemExit as error:
         return [str(error).split(": ", 1)[1]]
     image_of(files[0], out, image)

@@ -3,8 +3,6 @@
 #include <stdlib.h>
 
 #include "commands.h"
-#include "session.h"
-#include "starguard/check.h"
 #include "starguard/picture.h"
 
 typedef struct values {

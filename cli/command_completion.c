@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "commands.h"
-#include "session.h"
 
 static const char *const shells[] = {"bash", "zsh", "fish"};
 static const char *const scripts[] = {"bash-completion/completions/starguard",

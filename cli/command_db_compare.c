@@ -5,7 +5,6 @@
 
 #include "commands.h"
 #include "database.h"
-#include "session.h"
 #include "starguard/picture.h"
 
 typedef struct values {
@@ -32,22 +31,17 @@ static const cli_option matrix_options[] = {
 
 static starg_status prepare_matrix(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
     if (v->output == NULL && v->picture == NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "no output; add -o FILE.csv, --picture FILE.png, or both");
-    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-done:
-    return status;
+    TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
+    return cli_announce_with_extension(session, "--picture", v->picture, ".png");
 }
 
 static starg_status write_matrix(cli_session *session, const char *name, const cli_table *t) {
     size_t count = t->models->count;
     cli_csv csv;
-    starg_status status = cli_csv_open(session, name, &csv);
-    if (status != STARG_OK)
-        return status;
+    TRY(cli_csv_open(session, name, &csv));
     cli_csv_text(&csv, "model");
     for (size_t i = 0; i < count; i++)
         cli_csv_text(&csv, t->models->items[i].name);
@@ -136,11 +130,8 @@ static const cli_option evaluate_options[] = {
 
 static starg_status prepare_evaluate(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".svg"));
-done:
-    return status;
+    TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
+    return cli_announce_with_extension(session, "--picture", v->picture, ".svg");
 }
 
 typedef struct evaluation {
@@ -207,9 +198,7 @@ static void report_evaluation(cli_session *session, const values *v, const evalu
 
 static starg_status write_precision(cli_session *session, const char *name, const evaluation *e) {
     cli_csv csv;
-    starg_status status = cli_csv_open(session, name, &csv);
-    if (status != STARG_OK)
-        return status;
+    TRY(cli_csv_open(session, name, &csv));
     cli_csv_text(&csv, "recall");
     cli_csv_text(&csv, "all");
     for (size_t c = 0; c < e->classes->count; c++)
@@ -249,7 +238,6 @@ static starg_status make_classes(cli_session *session, const values *v, const cl
 }
 
 static starg_status deliver(cli_session *session, const values *v, evaluation *e) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < STARG_RECALL_LEVELS; i++)
         e->recall[i] = (double)(i + 1) / STARG_RECALL_LEVELS;
     tell_evaluation(session, e);
@@ -258,11 +246,10 @@ static starg_status deliver(cli_session *session, const values *v, evaluation *e
     if (session->report != NULL)
         report_evaluation(session, v, e);
     if (v->picture != NULL)
-        CLI_TRY(draw_precision(session, v->picture, e));
+        TRY(draw_precision(session, v->picture, e));
     if (v->output != NULL)
-        CLI_TRY(write_precision(session, v->output, e));
-done:
-    return status;
+        TRY(write_precision(session, v->output, e));
+    return STARG_OK;
 }
 
 static starg_status run_evaluate(cli_session *session, void *data) {

@@ -2,7 +2,6 @@
 /* starguard db query: finds the stored models most similar to a given one. */
 #include "commands.h"
 #include "database.h"
-#include "session.h"
 
 typedef struct values {
     uint64_t count;

@@ -2,7 +2,6 @@
 /* starguard db create, add, remove, list: manage the stored models. */
 #include "commands.h"
 #include "database.h"
-#include "session.h"
 
 static void report_file(cli_session *session, const char *format) {
     cli_report_head(session, format, NULL, NULL);
@@ -14,9 +13,7 @@ static void report_file(cli_session *session, const char *format) {
 
 static starg_status create(cli_session *session, void *data) {
     (void)data;
-    starg_status status = starg_database_create(session->context, session->operands[0]);
-    if (status != STARG_OK)
-        return status;
+    TRY(starg_database_create(session->context, session->operands[0]));
     cli_say(session, "%s: an empty database\n", session->operands[0]);
     report_file(session, "starguard-db-create");
     return STARG_OK;

@@ -5,10 +5,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "options.h"
-#include "session.h"
 #include "starguard/decompose.h"
-#include "starguard/guard.h"
 #include "starguard/picture.h"
 
 static const double APART = 0.18; /* pictures: displacement of the pieces from the common centre */
@@ -20,30 +17,39 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("PIECES.vtk", "Tetrahedra, labelled by piece, as a VTK unstructured grid "
-                                    "(for ParaView); '-' writes to standard output."),
+    CLI_OUTPUT_OPTION("PIECES.vtk",
+                      "Tetrahedra, labelled by piece, as a VTK unstructured grid "
+                      "(for ParaView); '-' writes to standard output.",
+                      .group = "output", .brief = "the pieces, as tetrahedra"),
     CLI_TEXT_OPTION("report", report, "PIECES.json",
                     "Guard, size and proof of each piece, and the contact areas between pieces "
-                    "(docs/formats.md)."),
+                    "(docs/formats.md).",
+                    .group = "output", .brief = "guards, volumes and proofs of the pieces"),
     CLI_INPUT_OPTION(
         "guards", guards, "GUARDS.json",
         "Initial guards: a result of 'starguard guard', a skeleton, or text with three numbers per "
-        "line. Default for --mode paper: the guards of 'starguard guard'."),
+        "line. Default for --mode paper: the guards of 'starguard guard'.",
+        .group = "input", .brief = "begin with these guards"),
     CLI_INPUT_OPTION("tets", tets, "FILE",
                      "Read tetrahedra from this file instead of MODEL: MEDIT .mesh, .vtk, Gmsh "
-                     ".msh, or TetGen .node with its .ele beside it."),
+                     ".msh, or TetGen .node with its .ele beside it.",
+                     .group = "input", .brief = "a tetrahedral mesh in place of a surface"),
     CLI_TEXT_OPTION(
         "surfaces", surfaces, "DIR",
         "Write the closed surface of each piece into this folder (created if missing): "
-        "piece_0000.ply, piece_0001.ply, ..., in colour, and all of them as groups of pieces.obj."),
+        "piece_0000.ply, piece_0001.ply, ..., in colour, and all of them as groups of pieces.obj.",
+        .group = "output", .brief = "the surface of each piece as a file"),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
-                    "Coloured, slightly exploded view of the pieces."),
+                    "Coloured, slightly exploded view of the pieces.", .group = "output",
+                    .brief = "a picture of the pieces"),
     CLI_TEXT_OPTION("certificate", certificate, "FILE",
                     "With --prove: writes why no fewer pieces are possible than lower_bound says, "
-                    "for 'starguard verify' (docs/formats.md)."),
+                    "for 'starguard verify' (docs/formats.md).",
+                    .group = "output"),
     CLI_FLAG_OPTION(
         "binary", binary,
-        "Write PIECES.vtk in binary: smaller and faster to read, with the same numbers."),
+        "Write PIECES.vtk in binary: smaller and faster to read, with the same numbers.",
+        .group = "output"),
 };
 
 /* ---- the model ---- */
@@ -168,24 +174,22 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
             "in %g %% of the volume\n",
             d->piece_count, d->ball_mean, cli_percent(d->ball_above_10));
     if (d->time_limited)
-        cli_say(session, "time limit    reached; this is the best result found\n");
+        cli_say_limited(session);
 }
 
 /* Reports the file's contents and data about the run. */
 static starg_status report_pieces(cli_session *session, const starg_decomposition *d,
                                   const char *file, const values *v) {
-    starg_status status = STARG_OK;
     json_t *report = session->report;
     char *text;
     size_t size;
-    CLI_TRY(starg_decomposition_write_report_memory(session->context, d, file, &text, &size));
+    TRY(starg_decomposition_write_report_memory(session->context, d, file, &text, &size));
     cli_report_take(session, text, size);
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "volume", cli_json_real(starg_tetmesh_volume(d->mesh)));
     cli_put(session, report, "single_tetrahedra", json_integer((json_int_t)count_single(d)));
     cli_put(session, report, "contacts", json_integer((json_int_t)d->contact_count));
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- surfaces ---- */
@@ -237,35 +241,27 @@ static starg_status write_coloured(cli_session *session, const starg_mesh *mesh,
 
 static starg_status write_piece(cli_session *session, const shells *s, size_t piece,
                                 uint32_t *next_vertex, const char *name) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    CLI_TRY(extract(session, s, piece, next_vertex, &mesh));
-    CLI_TRY(cli_announce(session, name));
-    CLI_TRY(write_coloured(session, mesh, piece, name));
-done:
-    starg_mesh_free(mesh);
-    return status;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    TRY(extract(session, s, piece, next_vertex, &mesh));
+    TRY(cli_announce(session, name));
+    return write_coloured(session, mesh, piece, name);
 }
 
 static starg_status write_surfaces(cli_session *session, const starg_decomposition *d,
                                    const shells *s, const char *folder) {
-    starg_status status = STARG_OK;
     uint32_t next_vertex = 0;
     size_t size = strlen(folder) + 64;
-    char *name = malloc(size);
+    SCOPED char *name = malloc(size);
     if (name == NULL)
         return cli_fail_memory(session);
     for (size_t p = 0; p < d->piece_count; p++) {
         snprintf(name, size, "%s/piece_%04zu.ply", folder, p);
-        CLI_TRY(write_piece(session, s, p, &next_vertex, name));
+        TRY(write_piece(session, s, p, &next_vertex, name));
     }
     snprintf(name, size, "%s/pieces.obj", folder);
-    CLI_TRY(cli_announce(session, name));
-    CLI_TRY(starg_decomposition_write_groups(session->context, d,
-                                             cli_outputs_place(&session->outputs, name)));
-done:
-    free(name);
-    return status;
+    TRY(cli_announce(session, name));
+    return starg_decomposition_write_groups(session->context, d,
+                                            cli_outputs_place(&session->outputs, name));
 }
 
 /* ---- picture ---- */
@@ -303,65 +299,52 @@ static void spread(const shells *s, size_t piece_count, double *vertices, uint8_
 
 static starg_status write_picture(cli_session *session, const shells *s, size_t piece_count,
                                   const char *name) {
-    starg_status status = STARG_OK;
-    starg_mesh *apart = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *apart = NULL;
     starg_picture_options picture;
     starg_picture_options_default(&picture);
     size_t vertex_count = starg_mesh_vertex_count(s->mesh);
     size_t face_count = starg_mesh_face_count(s->mesh);
-    double *vertices = malloc((3 * vertex_count + 1) * sizeof *vertices);
-    uint8_t *colors = malloc(3 * face_count + 1);
-    if (vertices == NULL || colors == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    SCOPED double *vertices = malloc((3 * vertex_count + 1) * sizeof *vertices);
+    SCOPED uint8_t *colors = malloc(3 * face_count + 1);
+    if (vertices == NULL || colors == NULL)
+        return cli_fail_memory(session);
     memcpy(vertices, starg_mesh_vertices(s->mesh), 3 * vertex_count * sizeof *vertices);
     spread(s, piece_count, vertices, colors);
-    CLI_TRY(starg_mesh_create(session->context, vertices, vertex_count, starg_mesh_faces(s->mesh),
-                              face_count, &apart));
+    TRY(starg_mesh_create(session->context, vertices, vertex_count, starg_mesh_faces(s->mesh),
+                          face_count, &apart));
     picture.face_colors = colors;
     picture.opacity = 1;
-    CLI_TRY(starg_picture_write(session->context, apart, &picture,
-                                cli_outputs_place(&session->outputs, name)));
-done:
-    starg_mesh_free(apart);
-    free(vertices);
-    free(colors);
-    return status;
+    return starg_picture_write(session->context, apart, &picture,
+                               cli_outputs_place(&session->outputs, name));
 }
 
 /* ---- files ---- */
 
 static starg_status announce_files(cli_session *session, const values *v) {
-    starg_status status = STARG_OK;
     if (v->output == NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT, "no output; add -o PIECES.vtk");
-    CLI_TRY(cli_announce(session, v->output));
-    CLI_TRY(cli_announce(session, v->report));
-    CLI_TRY(cli_announce(session, v->certificate));
+    TRY(cli_announce(session, v->output));
+    TRY(cli_announce(session, v->report));
+    TRY(cli_announce(session, v->certificate));
     if (v->certificate != NULL && !v->wanted.prove)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate says why the bound of --prove holds; add --prove");
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-    CLI_TRY(cli_announce_folder(session, v->surfaces));
-done:
-    return status;
+    TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    return cli_announce_folder(session, v->surfaces);
 }
 
 /* Standard output comes last: output to it cannot be undone. */
 static starg_status write_results(cli_session *session, const values *v, const char *file,
                                   const starg_decomposition *d) {
-    starg_status status = STARG_OK;
     bool first_report = v->report != NULL && strcmp(v->report, "-") != 0;
     if (first_report)
-        CLI_TRY(starg_decomposition_write_report(session->context, d, file,
-                                                 cli_outputs_place(&session->outputs, v->report)));
-    CLI_TRY(starg_decomposition_write(session->context, d,
-                                      cli_outputs_place(&session->outputs, v->output), v->binary));
+        TRY(starg_decomposition_write_report(session->context, d, file,
+                                             cli_outputs_place(&session->outputs, v->report)));
+    TRY(starg_decomposition_write(session->context, d,
+                                  cli_outputs_place(&session->outputs, v->output), v->binary));
     if (v->report != NULL && !first_report)
-        CLI_TRY(starg_decomposition_write_report(session->context, d, file, v->report));
-done:
-    return status;
+        TRY(starg_decomposition_write_report(session->context, d, file, v->report));
+    return STARG_OK;
 }
 
 static starg_status write_files(cli_session *session, const values *v, const char *file,
@@ -387,17 +370,15 @@ done:
 
 static starg_status make_options(cli_session *session, const values *v, double **points,
                                  starg_decompose_options *wanted) {
-    starg_status status = STARG_OK;
     starg_tetra_options usual;
     starg_tetra_options_default(&usual);
     *wanted = v->wanted;
     /* leaves half of the time for the pieces */
     wanted->tetra.tetgen_limit = fmax(usual.tetgen_limit, session->common.time_limit / 2);
     if (v->guards != NULL)
-        CLI_TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));
+        TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));
     wanted->guards = *points;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status run(cli_session *session, void *data) {

@@ -6,8 +6,6 @@
 #include <string.h>
 
 #include "commands.h"
-#include "session.h"
-#include "starguard/descriptor.h"
 #include "starguard/picture.h"
 
 typedef struct values {
@@ -27,13 +25,10 @@ static const cli_option options[] = {
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "FILE.json"));
-    CLI_TRY(cli_announce_with_extension(session, "--reconstruct", v->reconstruct, ".ply"));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-    CLI_TRY(cli_announce_with_extension(session, "--histograms", v->histograms, ".svg"));
-done:
-    return status;
+    TRY(cli_announce_needed(session, v->output, "FILE.json"));
+    TRY(cli_announce_with_extension(session, "--reconstruct", v->reconstruct, ".ply"));
+    TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    return cli_announce_with_extension(session, "--histograms", v->histograms, ".svg");
 }
 
 /* ---- report ---- */
@@ -54,18 +49,16 @@ static void tell(cli_session *session, const starg_descriptor *d, const starg_re
 /* Reports the file's contents and data about the run. */
 static starg_status report(cli_session *session, const starg_descriptor *d,
                            const starg_reconstruction *r, const values *v) {
-    starg_status status = STARG_OK;
     char *text;
     size_t size;
-    CLI_TRY(starg_descriptor_write_memory(session->context, d, session->operands[0], &text, &size));
+    TRY(starg_descriptor_write_memory(session->context, d, session->operands[0], &text, &size));
     cli_report_take(session, text, size);
     cli_put(session, session->report, "output", cli_json_text(v->output));
     cli_put(session, session->report, "reconstruction",
             json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "points", (json_int_t)r->points, "samples",
                       (json_int_t)r->samples, "to_mean", r->to_mean, "to_largest", r->to_largest,
                       "from_mean", r->from_mean, "from_largest", r->from_largest));
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- points and guards ---- */
@@ -167,17 +160,14 @@ static starg_status draw_histograms(cli_session *session, const starg_descriptor
 /* ---- files ---- */
 
 static starg_status write_files(cli_session *session, const starg_descriptor *d, const values *v) {
-    starg_status status = STARG_OK;
     if (v->reconstruct != NULL)
-        CLI_TRY(write_points(session, d, v->reconstruct));
+        TRY(write_points(session, d, v->reconstruct));
     if (v->picture != NULL)
-        CLI_TRY(draw(session, d, v->picture));
+        TRY(draw(session, d, v->picture));
     if (v->histograms != NULL)
-        CLI_TRY(draw_histograms(session, d, v->histograms));
-    CLI_TRY(starg_descriptor_write(session->context, d, session->operands[0],
-                                   cli_outputs_place(&session->outputs, v->output)));
-done:
-    return status;
+        TRY(draw_histograms(session, d, v->histograms));
+    return starg_descriptor_write(session->context, d, session->operands[0],
+                                  cli_outputs_place(&session->outputs, v->output));
 }
 
 static starg_status run(cli_session *session, void *data) {

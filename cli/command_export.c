@@ -2,7 +2,6 @@
 /* starguard export: writes a model with its results to one file for other programs. */
 
 #include "commands.h"
-#include "session.h"
 #include "show.h"
 #include "starguard/scene.h"
 
@@ -35,11 +34,8 @@ static starg_status choose_format(cli_session *session, const char *name,
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply or .obj"));
-    CLI_TRY(choose_format(session, v->output, &v->format));
-done:
-    return status;
+    TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply or .obj"));
+    return choose_format(session, v->output, &v->format);
 }
 
 static starg_status check_kinds(cli_session *session, const starg_page *page) {

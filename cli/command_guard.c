@@ -11,6 +11,7 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "starguard/skeleton.h"
+#include "tables.h"
 
 static const struct {
     const char *word;
@@ -25,32 +26,64 @@ typedef struct values {
     const char *output, *marks, *picture, *certificate, *candidates, *poses_file, *leak;
     starg_guard_options wanted;
     cli_scene scene;
+    cli_tables tables;
     starg_poses poses; /* --candidates FILE */
+    const char *curve, *matrix;
+    const char *keep_file;
+    starg_poses keep; /* --keep FILE */
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("GUARDS.json", "Guards (docs/formats.md); '-' writes to standard output."),
+    CLI_OUTPUT_OPTION("GUARDS.json", "Guards (docs/formats.md); '-' writes to standard output.",
+                      .group = "output", .brief = "the guards (docs/formats.md)"),
     CLI_INPUT_OPTION(
         "candidates", candidates, "skeleton|medial|interior|FILE",
         "Candidate positions: on the curve skeleton (default), on the medial axis, on "
         "an interior lattice, or from a file: text with three numbers per line, or "
         "six with the direction in which a camera looks (--cone, --fov), or nine with what is up "
-        "for it, a skeleton of 'starguard skeleton', or another GUARDS.json."),
+        "for it, a skeleton of 'starguard skeleton', or another GUARDS.json.",
+        .group = "places", .brief = "where guards may stand, or a file of positions"),
+    CLI_INPUT_OPTION(
+        "keep", keep_file, "FILE",
+        "Cameras that stay: poses as with --candidates, or CSV or JSON as --poses "
+        "writes it, or the cameras of a GLB. They come first, and guards are added for "
+        "what they leave: --max-guards, bounds and proofs are of those.",
+        .group = "number", .brief = "cameras that stay; others are added"),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of the translucent model with its guards, and with --cone or --fov "
-                    "where they look; uncovered faces are dark red."),
+                    "where they look; uncovered faces are dark red.",
+                    .group = "output", .brief = "a picture of the guards"),
     CLI_TEXT_OPTION("certificate", certificate, "FILE",
                     "With --prove: writes why the bound for guards anywhere holds, for 'starguard "
-                    "verify' (docs/formats.md)."),
+                    "verify' (docs/formats.md).",
+                    .group = "output"),
     CLI_TEXT_OPTION("marks", marks, "FILE.ply",
                     "Model with each face in the colour of the first guard that sees it; uncovered "
-                    "faces are dark red."),
+                    "faces are dark red.",
+                    .group = "output"),
     CLI_TEXT_OPTION("poses", poses_file, "FILE.csv|.json",
                     "Poses for other programs: positions, and with --cone or --fov rotations "
-                    "(quaternions) and points to look at."),
+                    "(quaternions) and points to look at.",
+                    .group = "output", .brief = "positions and directions for other programs"),
     CLI_TEXT_OPTION("leak", leak, "FILE.obj|.vtk",
                     "--soup --from: the way by which the space that is reached leaks to the "
-                    "outside, or through a gap hardly wider than a cube, as a line."),
+                    "outside, or through a gap hardly wider than a cube, as a line.",
+                    .group = "places"),
+    CLI_TABLE_OPTIONS,
+    CLI_TEXT_OPTION("curve", curve, "FILE.csv|.svg",
+                    "For 1, 2, ... guards up to those found: the share of the area that so many of "
+                    "the candidates were found to see, and an upper bound of it.",
+                    .group = "output"),
+    CLI_TEXT_OPTION("matrix", matrix, "FILE",
+                    "What the candidates see, as a set cover in text: the numbers of elements and "
+                    "sets, and for each element its number, that of its sets, and these.",
+                    .group = "output"),
+    CLI_INPUTS_OPTION(
+        "require", scene.require, "FACES=K[,DENSITY]",
+        "Faces that K guards must see, in place of --redundancy, and with that density "
+        "of pixels in place of --density (a number or a name); faces as with --see. "
+        "Repeatable: the last that names a face counts.",
+        .group = "targets"),
     CLI_SCENE_OPTIONS,
     CLI_PLACE_OPTIONS,
 };
@@ -93,15 +126,34 @@ static starg_status take_candidates(cli_session *session, const char *word,
     return status;
 }
 
+static starg_status take_keep(cli_session *session, values *v) {
+    if (v->keep_file == NULL)
+        return STARG_OK;
+    if (strcmp(v->keep_file, "-") == 0 && strcmp(session->operands[0], "-") == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "the model and the cameras to keep cannot both come from standard input");
+    TRY(starg_poses_read(session->context, v->keep_file, &v->keep));
+    v->wanted.keep = v->keep.points;
+    v->wanted.keep_directions = v->keep.directions;
+    v->wanted.keep_ups = v->keep.ups;
+    v->wanted.keep_count = v->keep.count;
+    return STARG_OK;
+}
+
 /* ---- report ---- */
 
+static size_t count_kept(const starg_guards *g) {
+    return g->options.keep_count;
+}
+
 static void say_bound(cli_session *session, const starg_guards *g) {
-    size_t gap = g->count - g->lower_bound;
+    size_t gap = g->count - count_kept(g) - g->lower_bound;
     cli_say(session, "lower bound   %zu of these candidates", g->lower_bound);
     if (g->optimal)
         cli_say(session, " (no fewer of them do)\n");
     else
-        cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
+        cli_say(session, " (gap %zu, %.1f %%)\n", gap,
+                100.0 * (double)gap / (double)(g->count - count_kept(g)));
 }
 
 /* With a given number of guards, the result is the area that they see. */
@@ -123,8 +175,14 @@ static const char *why_unbound(const starg_guards *g) {
 }
 
 static void say_count(cli_session *session, const starg_guards *g) {
-    cli_say(session, "guards        %zu", g->count);
-    if (g->options.max_guards > 0)
+    if (count_kept(g) > 0)
+        cli_say(session, "kept          %s\n",
+                cli_count_of(count_kept(g), "guard that stays", "guards that stay").text);
+    cli_say(session, count_kept(g) > 0 ? "added         %zu" : "guards        %zu",
+            g->count - count_kept(g));
+    if (count_kept(g) > 0 && g->count == count_kept(g))
+        cli_say(session, ": they see all that can be seen");
+    else if (g->options.max_guards > 0)
         cli_say(session, " of at most %zu", (size_t)g->options.max_guards);
     else if (g->optimal_everywhere)
         cli_say(session, ", the fewest possible wherever they stand");
@@ -149,8 +207,39 @@ static void say_uncovered(cli_session *session, const starg_guards *g) {
     if (left > 0)
         cli_say(session, "%zu that no candidate sees", left);
     if (left > 0 && g->options.candidates != STARG_CANDIDATES_GIVEN)
-        cli_say(session, ": --count %zu may", 5 * g->options.candidate_count);
+        cli_say(session, ": --count %zu may", 5 * g->candidate_count);
     cli_say(session, "%s\n", hidden > 0 ? ")" : "");
+}
+
+/* Says what is proven: of faces by their corners, whole faces, or every point. */
+static void say_coverage(cli_session *session, const starg_guards *g) {
+    const starg_visibility_options *view = &g->options.visibility;
+    if (view->target == STARG_TARGET_POINTS && g->points_complete) {
+        cli_say(session, "coverage      every point of the boundary\n");
+        return;
+    }
+    if (view->target == STARG_TARGET_POINTS) {
+        cli_say(session, "coverage      %g %% of the area point by point; %.2g %% is not decided\n",
+                cli_percent(g->points_seen), 100 * g->points_open);
+        return;
+    }
+    cli_say(session, "coverage      %g %% of the faces%s, %g %% of the area",
+            cli_percent(g->coverage_faces),
+            view->face_rule == STARG_FACES_WHOLE ? " as a whole" : " by their corners",
+            cli_percent(g->coverage_area));
+    if (view->patch > 0)
+        cli_say(session, ", in parts of at most %.3g", view->patch);
+    cli_say(session, "\n");
+}
+
+static void say_tour(cli_session *session, const starg_tour *t) {
+    if (t->stop_count == 0)
+        return;
+    cli_say(session, "tour          %.9g long", t->length);
+    if (t->blocked_count > 0)
+        cli_say(session, "; between %zu of %s no free way was found (--count N may help)",
+                t->blocked_count, cli_count_of(t->stop_count - 1, "pair", "pairs").text);
+    cli_say(session, "\n");
 }
 
 static void say_guards(cli_session *session, const starg_guards *g) {
@@ -159,8 +248,7 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         say_area_bound(session, g);
     else if (session->common.verbose || g->options.candidates == STARG_CANDIDATES_GIVEN)
         say_bound(session, g);
-    cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
-            cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
+    say_coverage(session, g);
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
@@ -168,21 +256,24 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "%s%s seen by at least %s\n", k == 0 ? "redundancy    " : "              ",
                 cli_count_of(g->redundant_faces[k], "face", "faces").text,
                 cli_count_of(k + 1, "guard", "guards").text);
+    if (g->need_count > 0)
+        cli_say(session, "required      %s, %zu as they need\n",
+                cli_count_of(g->need_count, "face", "faces").text, g->met_needs);
     if (g->options.baseline > 0)
         cli_say(session, "baseline      %s seen by two guards %g degrees apart\n",
                 cli_count_of(g->baseline_faces, "face", "faces").text, g->options.baseline);
+    say_tour(session, &g->tour);
     say_uncovered(session, g);
     cli_say(session, "candidates    %zu\n", g->candidate_count);
     if (g->time_limited)
-        cli_say(session, "time limit    reached; this is the best result found\n");
+        cli_say_limited(session);
 }
 
 /* Reports the file's contents and data about the run. */
 static starg_status report_guards(cli_session *session, const starg_guards *g, const char *output) {
-    starg_status status = STARG_OK;
     char *text;
     size_t size;
-    CLI_TRY(starg_guards_write_memory(session->context, g, session->operands[0], &text, &size));
+    TRY(starg_guards_write_memory(session->context, g, session->operands[0], &text, &size));
     cli_report_take(session, text, size);
     cli_put(session, session->report, "output", cli_json_text(output));
     cli_put(session, session->report, "unseen_faces", json_integer((json_int_t)g->unseen_count));
@@ -192,72 +283,90 @@ static starg_status report_guards(cli_session *session, const starg_guards *g, c
         cli_put(session, session->report, "witnesses", json_integer((json_int_t)g->witnesses));
         cli_put(session, session->report, "work", json_integer((json_int_t)g->prove_work));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- files ---- */
 
-static void paint_uncovered(uint8_t *colors, const starg_guards *g) {
-    for (size_t i = 0; i < g->uncovered_count; i++)
-        memcpy(colors + 3 * (size_t)g->uncovered[i], UNCOVERED, sizeof UNCOVERED);
+/* The surface as guards see it, and which of its faces or patches each sees. */
+typedef struct drawing {
+    starg_mesh *mesh;
+    starg_bits *seen;
+    uint8_t *colors;
+} drawing;
+
+static void drawing_free(drawing *d) {
+    starg_mesh_free(d->mesh);
+    starg_bits_free(d->seen);
+    free(d->colors);
+}
+
+/* Targets that nothing sees are dark red. */
+static starg_status draw(cli_session *session, const starg_solid *solid, const starg_guards *g,
+                         drawing *d) {
+    starg_status status = STARG_OK;
+    size_t count = 0;
+    uint32_t *missing = NULL;
+    *d = (drawing){0};
+    CLI_TRY(starg_guards_patches(session->context, solid, g, &d->mesh, &d->seen, &missing, &count));
+    d->colors = cli_colors_create(d->mesh);
+    for (size_t i = 0; d->colors != NULL && i < count; i++)
+        memcpy(d->colors + 3 * (size_t)missing[i], UNCOVERED, sizeof UNCOVERED);
+    if (d->colors == NULL)
+        status = cli_fail_memory(session);
+done:
+    starg_patches_free(session->context, missing);
+    return status;
 }
 
 static starg_status write_marks(cli_session *session, const starg_solid *solid,
                                 const starg_guards *g, const char *name) {
-    starg_status status = STARG_OK;
-    starg_bits *seen = NULL;
-    uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
-    if (colors == NULL)
-        return cli_fail_memory(session);
-    CLI_TRY(starg_guards_see(session->context, solid, g, &seen));
-    cli_colors_by_viewer(colors, seen);
-    paint_uncovered(colors, g);
-    CLI_TRY(cli_mesh_write(session, starg_solid_mesh(solid), STARG_MESH_PLY_BINARY, colors, name));
-done:
-    starg_bits_free(seen);
-    free(colors);
-    return status;
+    SCOPED_BY(drawing_free) drawing d = {0};
+    TRY(draw(session, solid, g, &d));
+    cli_colors_by_viewer(d.colors, d.seen);
+    TRY(cli_mesh_write(session, d.mesh, STARG_MESH_PLY_BINARY, d.colors, name));
+    return STARG_OK;
 }
 
 static starg_status write_picture(cli_session *session, const starg_solid *solid,
                                   const starg_guards *g, const char *name) {
     starg_picture_options picture;
+    SCOPED_BY(drawing_free) drawing d = {0};
     starg_picture_options_default(&picture);
-    uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
-    if (colors == NULL)
-        return cli_fail_memory(session);
-    paint_uncovered(colors, g);
-    picture.face_colors = colors;
+    TRY(draw(session, solid, g, &d));
+    picture.face_colors = d.colors;
     picture.points = g->positions;
     picture.point_count = g->count;
     picture.point_numbers = true;
     picture.views = g;
-    starg_status status = starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
-                                              cli_outputs_place(&session->outputs, name));
-    free(colors);
-    return status;
+    TRY(starg_picture_write(session->context, d.mesh, &picture,
+                            cli_outputs_place(&session->outputs, name)));
+    return STARG_OK;
 }
 
 /* Standard output comes last: output to it cannot be undone. */
 static starg_status write_files(cli_session *session, const values *v, const starg_solid *solid,
                                 const starg_guards *g, const char *why, size_t size) {
-    starg_status status = STARG_OK;
     if (v->certificate != NULL)
-        CLI_TRY(starg_certificate_write(session->context, why, size,
-                                        cli_outputs_place(&session->outputs, v->certificate)));
+        TRY(starg_certificate_write(session->context, why, size,
+                                    cli_outputs_place(&session->outputs, v->certificate)));
     if (v->poses_file != NULL)
-        CLI_TRY(starg_guards_write_poses(session->context, g,
-                                         cli_has_extension(v->poses_file, ".csv"),
-                                         cli_outputs_place(&session->outputs, v->poses_file)));
+        TRY(starg_guards_write_poses(session->context, g, cli_has_extension(v->poses_file, ".csv"),
+                                     cli_outputs_place(&session->outputs, v->poses_file)));
+    TRY(cli_tables_write(session, &v->tables, g));
+    if (v->curve != NULL)
+        TRY(starg_guards_write_curve(session->context, g, cli_has_extension(v->curve, ".svg"),
+                                     cli_outputs_place(&session->outputs, v->curve)));
+    if (v->matrix != NULL)
+        TRY(starg_guards_write_matrix(session->context, g,
+                                      cli_outputs_place(&session->outputs, v->matrix)));
     if (v->marks != NULL)
-        CLI_TRY(write_marks(session, solid, g, v->marks));
+        TRY(write_marks(session, solid, g, v->marks));
     if (v->picture != NULL)
-        CLI_TRY(write_picture(session, solid, g, v->picture));
-    CLI_TRY(starg_guards_write(session->context, g, session->operands[0],
-                               cli_outputs_place(&session->outputs, v->output)));
-done:
-    return status;
+        TRY(write_picture(session, solid, g, v->picture));
+    TRY(starg_guards_write(session->context, g, session->operands[0],
+                           cli_outputs_place(&session->outputs, v->output)));
+    return STARG_OK;
 }
 
 static starg_status announce_poses(cli_session *session, const char *name) {
@@ -312,27 +421,46 @@ done:
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
-    CLI_TRY(cli_announce(session, v->certificate));
+    TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
+    TRY(cli_announce(session, v->certificate));
     if (v->certificate != NULL && !v->wanted.prove)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate says why the bound of --prove holds; add --prove");
-    CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-    CLI_TRY(announce_poses(session, v->poses_file));
-    CLI_TRY(check_leak(session, v));
+    TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
+    TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    TRY(announce_poses(session, v->poses_file));
+    TRY(cli_tables_announce(session, &v->tables));
+    if (v->curve != NULL && !cli_has_extension(v->curve, ".csv") &&
+        !cli_has_extension(v->curve, ".svg"))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--curve needs a name that ends in .csv or .svg, not '%.200s'", v->curve);
+    TRY(cli_announce(session, v->curve));
+    TRY(cli_announce(session, v->matrix));
+    v->wanted.worth = v->curve != NULL || v->matrix != NULL;
+    if (v->wanted.worth && v->wanted.visibility.target == STARG_TARGET_POINTS)
+        return cli_fail(
+            session, STARG_ERROR_ARGUMENT,
+            "--curve and --matrix are about faces or vertices; leave out --target points");
+    TRY(check_leak(session, v));
     v->scene.clearance = v->wanted.clearance;
     memcpy(v->scene.up, v->wanted.visibility.up, sizeof v->scene.up);
-    CLI_TRY(cli_scene_prepare(session, &v->scene));
+    if (v->scene.require.count > 0 && v->wanted.visibility.fov[0] == 0)
+        for (size_t i = 0; i < v->scene.require.count; i++)
+            if (strrchr(v->scene.require.values[i], '=') != NULL &&
+                strchr(strrchr(v->scene.require.values[i], '='), ',') != NULL)
+                return cli_fail(session, STARG_ERROR_ARGUMENT,
+                                "--require %.100s asks for a density of pixels; add --fov H,V and "
+                                "--resolution W,H",
+                                v->scene.require.values[i]);
+    TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
-        CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->poses));
-done:
-    return status;
+        TRY(take_candidates(session, v->candidates, &v->wanted, &v->poses));
+    TRY(take_keep(session, v));
+    return STARG_OK;
 }
 
 static starg_status run(cli_session *session, void *data) {
-    const values *v = data;
+    values *v = data;
     starg_status status = STARG_OK;
     starg_guards *guards = NULL;
     char *why = NULL;
@@ -345,6 +473,8 @@ static starg_status run(cli_session *session, void *data) {
     else
         CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
     CLI_TRY(starg_guards_name_obstacles(session->context, guards, v->scene.obstacles.values));
+    if (v->scene.zone_files != NULL)
+        CLI_TRY(starg_guards_name_zones(session->context, guards, v->scene.zone_files));
     CLI_TRY(write_files(session, v, session->solid, guards, why, size));
     say_guards(session, guards);
     if (session->report != NULL)
@@ -369,6 +499,8 @@ static starg_status recall(cli_session *session, const starg_guards *g, values *
             v->candidates = sources[i].word;
     if (g->options.candidates == STARG_CANDIDATES_GIVEN)
         v->candidates = "CANDIDATES";
+    if (g->options.keep_count > 0)
+        v->keep_file = "KEEP";
     return cli_scene_recall(session, g, &v->scene);
 }
 
@@ -387,6 +519,8 @@ done:
 static void release(cli_session *session, void *data) {
     values *v = data;
     starg_poses_free(session->context, &v->poses);
+    starg_poses_free(session->context, &v->keep);
+    cli_scene_release(&v->scene);
 }
 
 const cli_command cli_command_guard = {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard kernel: decides whether a solid is star-shaped, and finds its kernel. */
 #include "commands.h"
-#include "session.h"
 #include "starguard/kernel.h"
 
 static const char *const verdict_words[] = {
@@ -49,14 +48,12 @@ static void report(cli_session *session, const starg_kernel_result *result) {
 
 static starg_status run(cli_session *session, void *data) {
     (void)data;
-    starg_status status = STARG_OK;
     starg_kernel_result result;
-    CLI_TRY(starg_kernel(session->context, starg_solid_mesh(session->solid), NULL, &result));
+    TRY(starg_kernel(session->context, starg_solid_mesh(session->solid), NULL, &result));
     tell(session, &result);
     if (session->report != NULL)
         report(session, &result);
-done:
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_kernel = {

@@ -5,8 +5,6 @@
 #include <string.h>
 
 #include "commands.h"
-#include "session.h"
-#include "starguard/morph.h"
 #include "starguard/picture.h"
 #include "starguard/solidmap.h"
 
@@ -15,7 +13,8 @@ typedef struct cli_solid_map {
     bool solid, overlay;
     const char *output, *map, *landmarks, *points, *field, *carried;
     bool back;
-    int shape; /* 0: B, else a starg_solid_shape plus 1 */
+    int connectivity; /* 0: of both, B itself; 1: of A */
+    int shape;        /* 0: B, else a starg_solid_shape plus 1 */
     const starg_solid_map_options *wanted;
 } cli_solid_map;
 
@@ -51,6 +50,9 @@ static starg_status check_options(cli_session *session, const cli_solid_map *v) 
     if (v->overlay && (v->shape > 0 || given))
         return refuse(session, "--overlay divides the surfaces of A and B; leave out --to, and a "
                                "map of solids");
+    if (v->connectivity > 0 && (v->overlay || v->shape > 0 || given))
+        return refuse(session, "--connectivity is for a new map from A to B; leave out --overlay, "
+                               "--to and a map of solids");
     if (v->shape > 0 && (v->landmarks != NULL || (v->map != NULL && !given)))
         return refuse(session, "--to ball and cube take no map of the surfaces and no landmarks");
     if (session->operand_count != (v->shape > 0 ? 1u : 2u))
@@ -63,26 +65,23 @@ static starg_status check_options(cli_session *session, const cli_solid_map *v) 
 
 /* Checks options, and announces outputs. */
 static starg_status cli_solid_map_prepare(cli_session *session, const cli_solid_map *v) {
-    starg_status status = STARG_OK;
     if (!v->solid) {
         if (v->map != NULL || v->points != NULL || v->field != NULL || v->carried != NULL ||
-            v->back || v->shape > 0)
-            return refuse(session, "--map, --to, --apply, --points, --carried and --back are for "
-                                   "maps of solids; add --solid");
+            v->back || v->shape > 0 || v->connectivity > 0)
+            return refuse(session, "--map, --to, --connectivity, --apply, --points, --carried and "
+                                   "--back are for maps of solids; add --solid");
         if (session->operand_count != 2)
             return refuse(session, "two models are needed, A and B");
         if (v->output != NULL && cli_has_extension(v->output, ".vtu"))
             return refuse(session, "a map of surfaces is MAP.json; for MAP.vtu add --solid");
         return cli_announce_needed(session, v->output, "MAP.json");
     }
-    CLI_TRY(check_options(session, v));
+    TRY(check_options(session, v));
     if (v->output != NULL && cli_has_extension(v->output, ".json"))
         return refuse(session, "a map of solids is MAP.vtu; for MAP.json leave out --solid");
     if (!is_solid_map(v->map) || v->output != NULL)
-        CLI_TRY(cli_announce_needed(session, v->output, "MAP.vtu"));
-    CLI_TRY(cli_announce(session, v->carried));
-done:
-    return status;
+        TRY(cli_announce_needed(session, v->output, "MAP.vtu"));
+    return cli_announce(session, v->carried);
 }
 
 /* ---- the surfaces ---- */
@@ -93,6 +92,7 @@ static starg_status map_solids(cli_session *session, const cli_solid_map *v,
     starg_map_options wanted;
     uint32_t *pairs = NULL;
     starg_map_options_default(&wanted);
+    wanted.solid = v->connectivity == 0;
     if (v->map != NULL)
         return starg_map_read(session->context, v->map, session->mesh, target, out);
     if (v->landmarks != NULL)
@@ -105,34 +105,43 @@ done:
     return status;
 }
 
+/* B, where a map ends only near it. */
+typedef struct ending {
+    double diagonal, volume;
+} ending;
+
 /* To B in A's faces. */
 static starg_status map_to_images(cli_session *session, const cli_solid_map *v,
-                                  const starg_mesh *target, const starg_map *map,
+                                  const starg_mesh *target, const starg_map *map, ending *end,
                                   starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    double *images = malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *images);
+    SCOPED double *images =
+        malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *images);
+    double lower[3], upper[3];
     if (images == NULL)
         return cli_fail_memory(session);
     starg_map_positions(map, target, images);
-    CLI_TRY(starg_solid_map_create(session->context, session->mesh, images, v->wanted, out));
-done:
-    free(images);
-    return status;
+    TRY(starg_solid_map_create(session->context, session->mesh, images, v->wanted, out));
+    TRY(starg_solid_map_compare(session->context, target, *out));
+    starg_mesh_bounds(target, lower, upper);
+    end->diagonal = hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+    end->volume = fabs(starg_mesh_volume(target));
+    return STARG_OK;
 }
 
-static starg_status map_to_target(cli_session *session, const cli_solid_map *v,
+static starg_status map_to_target(cli_session *session, const cli_solid_map *v, ending *end,
                                   starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_mesh *target = NULL;
     starg_map *map = NULL;
     CLI_TRY(starg_mesh_read(session->context, session->operands[1], &target));
     CLI_TRY(map_solids(session, v, target, &map));
-    if (v->overlay) {
-        CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
+    if (v->connectivity == 0) {
+        if (map->overlay.face_count == 0)
+            CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
         CLI_TRY(
             starg_solid_map_overlay(session->context, session->mesh, target, map, v->wanted, out));
     } else {
-        CLI_TRY(map_to_images(session, v, target, map, out));
+        CLI_TRY(map_to_images(session, v, target, map, end, out));
     }
 done:
     starg_map_free(session->context, map);
@@ -145,9 +154,7 @@ done:
 /* A map that has been made earlier is taken as it is; 'verify' checks it. */
 static starg_status read_map(cli_session *session, const char *file, starg_solid_map **out) {
     starg_result *result = NULL;
-    starg_status status = starg_result_read(session->context, file, &result);
-    if (status != STARG_OK)
-        return status;
+    TRY(starg_result_read(session->context, file, &result));
     *out = result->solid_map;
     result->solid_map = NULL;
     starg_result_free(session->context, result);
@@ -156,13 +163,14 @@ static starg_status read_map(cli_session *session, const char *file, starg_solid
     return STARG_OK;
 }
 
-static starg_status make_map(cli_session *session, const cli_solid_map *v, starg_solid_map **out) {
+static starg_status make_map(cli_session *session, const cli_solid_map *v, ending *end,
+                             starg_solid_map **out) {
     if (is_solid_map(v->map))
         return read_map(session, v->map, out);
     if (v->shape > 0)
         return starg_solid_map_to(session->context, session->mesh,
                                   (starg_solid_shape)(v->shape - 1), v->wanted, out);
-    return map_to_target(session, v, out);
+    return map_to_target(session, v, end, out);
 }
 
 /* ---- fields ---- */
@@ -193,7 +201,14 @@ done:
 /* ---- reports ---- */
 
 static void say(cli_session *session, const starg_solid_map *map, const cli_solid_map *v,
-                size_t carried) {
+                const ending *end, size_t carried) {
+    if (map->compared && end->diagonal > 0)
+        cli_say(session,
+                "ends at       B in A's faces, up to %.3g from B (%.3g %% of its diagonal), of "
+                "volume %.4g where B has %.4g\n",
+                fmax(map->distance, map->distance_back),
+                100 * fmax(map->distance, map->distance_back) / end->diagonal,
+                end->volume - map->missing, end->volume);
     cli_say(session, "tetrahedra    %zu, positive in both solids\n", map->count);
     cli_say(session, "vertices      %zu\n", map->vertex_count);
     cli_say(session, "pieces        %zu, star-shaped in both\n", map->piece_count);
@@ -226,6 +241,10 @@ static void report(cli_session *session, const starg_solid_map *map, const cli_s
     cli_put(
         session, object, "surface",
         json_pack("{s:I, s:f}", "strayed", (json_int_t)map->strayed, "farthest", map->farthest));
+    if (map->compared)
+        cli_put(session, object, "missed",
+                json_pack("{s:f, s:f, s:f}", "distance", map->distance, "distance_back",
+                          map->distance_back, "volume", map->missing));
     if (v->carried != NULL)
         cli_put(session, object, "carried", json_integer((json_int_t)carried));
 }
@@ -236,14 +255,15 @@ static void report(cli_session *session, const starg_solid_map *map, const cli_s
 static starg_status cli_solid_map_run(cli_session *session, const cli_solid_map *v) {
     starg_status status = STARG_OK;
     starg_solid_map *map = NULL;
+    ending end = {0};
     size_t carried = 0;
-    CLI_TRY(make_map(session, v, &map));
+    CLI_TRY(make_map(session, v, &end, &map));
     if (v->output != NULL)
         CLI_TRY(starg_solid_map_write(session->context, map,
                                       cli_outputs_place(&session->outputs, v->output)));
     if (v->carried != NULL)
         CLI_TRY(carry(session, v, map, &carried));
-    say(session, map, v, carried);
+    say(session, map, v, &end, carried);
     if (session->report != NULL)
         report(session, map, v, carried);
 done:
@@ -255,7 +275,7 @@ typedef struct values {
     const char *output, *landmarks, *picture, *map, *points, *field, *carried;
     int up;
     bool overlay, solid, back;
-    int shape;
+    int shape, connectivity;
     starg_solid_map_options wanted;
 } values;
 
@@ -265,45 +285,66 @@ static const double SQUARES = 16; /* of the checker along A's longest side */
 /* In the order of starg_picture_options.up. */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
+/* Words of --connectivity. */
+static const char *const connectivities[] = {"both", "a", NULL};
+
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("MAP.json|.vtu", "Map (docs/formats.md): MAP.json, or MAP.vtu with --solid; "
-                                       "'-' writes to standard output."),
+    CLI_OUTPUT_OPTION("MAP.json|.vtu",
+                      "Map (docs/formats.md): MAP.json, or MAP.vtu with --solid; "
+                      "'-' writes to standard output.",
+                      .group = "output", .brief = "the map"),
     CLI_INPUT_OPTION(
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
-        "of B; or six coordinates, which select the nearest vertices."),
+        "of B; or six coordinates, which select the nearest vertices.",
+        .group = "input", .brief = "pairs of places that belong together"),
     CLI_FLAG_OPTION(
         "overlay", overlay,
         "Also write the common refinement of both triangulations: points with their "
-        "places on A and on B, and triangles, each in one face of both. With --solid: divide "
-        "both surfaces by it, so that the map ends at B itself, not at B in A's faces."),
+        "places on A and on B, and triangles, each in one face of both. With --solid both "
+        "surfaces are divided by it anyway.",
+        .group = "output"),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of both surfaces: A with a checker, and B with what the map makes of "
-                    "it."),
-    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture."),
+                    "it.",
+                    .group = "output", .brief = "a picture of the map"),
+    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture.",
+                      .group = "output"),
     CLI_FLAG_OPTION("solid", solid,
                     "Map the solids that the surfaces bound: one set of tetrahedra, positive in "
-                    "both. Needs TetGen."),
+                    "both. Needs TetGen.",
+                    .group = "input", .brief = "between solids, not surfaces"),
     CLI_INPUT_OPTION("map", map, "FILE",
                      "With --solid: map of the surfaces from 'starguard map'; by default it is "
-                     "computed. Or a MAP.vtu, to carry points and fields by."),
+                     "computed. Or a MAP.vtu, to carry points and fields by.",
+                     .group = "input", .brief = "a map of the surfaces, for --solid"),
     CLI_CHOICE_OPTION("to", shape, cli_solid_shapes, 0, "b|ball|cube",
                       "With --solid: map A, of genus 0, to a polyhedron inscribed in a ball or a "
-                      "cube; B is then left out."),
+                      "cube; B is then left out.",
+                      .group = "input"),
+    CLI_CHOICE_OPTION("connectivity", connectivity, connectivities, 0, "both|a",
+                      "With --solid: both surfaces are divided by their overlay, so that the map "
+                      "ends at B itself; or the map ends at B in A's vertices and faces, and says "
+                      "how far that is from B.",
+                      .group = "output"),
     CLI_INPUT_OPTION("points", points, "FILE",
-                     "With --solid: points of A, x y z per line, to be carried to B."),
+                     "With --solid: points of A, x y z per line, to be carried to B.",
+                     .group = "input", .brief = "points that the map carries"),
     CLI_INPUT_OPTION(
         "apply", field, "FIELD",
         "With --solid: the same with values of a field: x y z and a number or a label, "
-        "or x y z and a vector, which is transformed by the map's Jacobian."),
+        "or x y z and a vector, which is transformed by the map's Jacobian.",
+        .group = "input"),
     CLI_TEXT_OPTION("carried", carried, "FILE",
-                    "Output of --points and --apply, in the same order."),
-    CLI_FLAG_OPTION("back", back, "Carry from B to A instead."),
+                    "Output of --points and --apply, in the same order.", .group = "output",
+                    .brief = "where it carries them"),
+    CLI_FLAG_OPTION("back", back, "Carry from B to A instead.", .group = "input"),
 };
 
 static cli_solid_map solid_options(const values *v) {
     return (cli_solid_map){.solid = v->solid,
                            .overlay = v->overlay,
+                           .connectivity = v->connectivity,
                            .output = v->output,
                            .map = v->map,
                            .landmarks = v->landmarks,
@@ -318,14 +359,11 @@ static cli_solid_map solid_options(const values *v) {
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
     const cli_solid_map solid = solid_options(v);
-    starg_status status = STARG_OK;
     if (v->solid && v->picture != NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--picture is for maps of surfaces; leave out --solid");
-    CLI_TRY(cli_solid_map_prepare(session, &solid));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-done:
-    return status;
+    TRY(cli_solid_map_prepare(session, &solid));
+    return cli_announce_with_extension(session, "--picture", v->picture, ".png");
 }
 
 /* ---- picture ---- */
@@ -370,24 +408,21 @@ static void color_faces(const starg_mesh *mesh, uint8_t *colors) {
 
 static starg_status write_picture(cli_session *session, const values *v, const starg_mesh *target,
                                   starg_map *map) {
-    starg_status status = STARG_OK;
-    sheet s = {0};
+    SCOPED_BY(sheet_free) sheet s = {0};
     const starg_mesh *const given[2] = {session->mesh, target};
     starg_picture_options wanted;
     const starg_overlay *overlay = &map->overlay;
     if (overlay->face_count == 0)
-        CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
+        TRY(starg_map_overlay(session->context, session->mesh, target, map));
     s.colors = malloc(3 * overlay->face_count + 1);
     for (int end = 0; end < 2; end++)
         s.positions[end] = malloc((3 * overlay->vertex_count + 1) * sizeof(double));
-    if (s.colors == NULL || s.positions[0] == NULL || s.positions[1] == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    if (s.colors == NULL || s.positions[0] == NULL || s.positions[1] == NULL)
+        return cli_fail_memory(session);
     for (int end = 0; end < 2; end++) {
         starg_overlay_positions(overlay, given[end], end, s.positions[end]);
-        CLI_TRY(starg_mesh_create(session->context, s.positions[end], overlay->vertex_count,
-                                  overlay->faces, overlay->face_count, &s.meshes[end]));
+        TRY(starg_mesh_create(session->context, s.positions[end], overlay->vertex_count,
+                              overlay->faces, overlay->face_count, &s.meshes[end]));
     }
     color_faces(s.meshes[0], s.colors);
     starg_picture_options_default(&wanted);
@@ -396,11 +431,8 @@ static starg_status write_picture(cli_session *session, const values *v, const s
     wanted.opacity = 1;
     wanted.up = v->up;
     wanted.face_colors = s.colors;
-    CLI_TRY(starg_picture_sheet_write(session->context, (const starg_mesh *const *)s.meshes, 1, 2,
-                                      &wanted, cli_outputs_place(&session->outputs, v->picture)));
-done:
-    sheet_free(&s);
-    return status;
+    return starg_picture_sheet_write(session->context, (const starg_mesh *const *)s.meshes, 1, 2,
+                                     &wanted, cli_outputs_place(&session->outputs, v->picture));
 }
 
 /* ---- report ---- */
@@ -420,19 +452,17 @@ static void say_map(cli_session *session, const starg_map *map) {
 
 /* Reports the file's contents and data about the run. */
 static starg_status report_map(cli_session *session, const starg_map *map, const values *v) {
-    starg_status status = STARG_OK;
     json_t *report = session->report;
     char *text;
     size_t size;
-    CLI_TRY(starg_map_write_memory(session->context, map, &text, &size));
+    TRY(starg_map_write_memory(session->context, map, &text, &size));
     cli_report_take(session, text, size);
     if (json_object_update_missing(report, json_object_get(report, "map")) != 0)
         session->report_broken = true;
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "collapsed", json_integer((json_int_t)map->collapsed));
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status map_surfaces(cli_session *session, const values *v) {

@@ -2,7 +2,6 @@
 /* starguard match: computes the distance between two models. */
 #include "commands.h"
 #include "database.h"
-#include "session.h"
 
 typedef struct values {
     int distance;

@@ -5,17 +5,19 @@
 #include <string.h>
 
 #include "commands.h"
-#include "session.h"
 #include "starguard/animation.h"
-#include "starguard/morph.h"
 #include "starguard/picture.h"
 #include "starguard/solidmap.h"
+
+static void starg_morph_drop(starg_morph **morph) {
+    starg_morph_free(*morph);
+}
 
 typedef struct values {
     const char *output, *map, *landmarks, *glb, *picture, *certificate;
     starg_morph_options wanted;
     uint64_t frames;
-    int up;
+    int up, connectivity;
     bool guards, pieces, overlay, report;
 } values;
 
@@ -27,37 +29,57 @@ static const double SECONDS = 2; /* of an animation */
 /* In the order of starg_picture_options.up. */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
+/* Words of --connectivity. */
+static const char *const connectivities[] = {"both", "a", NULL};
+
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off, frame_0001.off, ...; created if missing."),
+    CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off, frame_0001.off, ...; created if missing.",
+                      .group = "output", .brief = "a folder for the frames"),
     CLI_COUNT_OPTION("frames", frames, "N", 2, 10000, 21, NULL,
-                     "Number of frames, evenly spaced in time, including both ends."),
+                     "Number of frames, evenly spaced in time, including both ends.",
+                     .group = "output", .brief = "how many"),
     CLI_INPUT_OPTION("map", map, "FILE",
-                     "Map from 'starguard map'. Default: computed as by that command."),
-    CLI_INPUT_OPTION("landmarks", landmarks, "FILE", "Landmarks for the computed map."),
+                     "Map from 'starguard map'. Default: computed as by that command.",
+                     .group = "input", .brief = "a map that was made before"),
+    CLI_INPUT_OPTION("landmarks", landmarks, "FILE", "Landmarks for the computed map.",
+                     .group = "input", .brief = "pairs of places that belong together"),
     CLI_FLAG_OPTION(
         "overlay", overlay,
         "Refine A by the faces of B, so that the last frame is B itself: see 'starguard "
-        "map --overlay'."),
+        "map --overlay'.",
+        .group = "output"),
+    CLI_CHOICE_OPTION("connectivity", connectivity, connectivities, 0, "both|a",
+                      "With --method solid: all frames have the faces of the overlay, so that the "
+                      "last one is B itself (--overlay); or those of A, and how far the last one "
+                      "is from B is told.",
+                      .group = "output"),
     CLI_FLAG_OPTION(
         "report", report,
         "Also write morph.json into DIR: what --json reports, for 'starguard verify A B "
-        "DIR'."),
+        "DIR'.",
+        .group = "output"),
     CLI_TEXT_OPTION("glb", glb, "FILE.glb",
-                    "Frames as one animation of two seconds (glTF, morph targets)."),
+                    "Frames as one animation of two seconds (glTF, morph targets).",
+                    .group = "output", .brief = "an animation for Blender"),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
-                    "Picture of five time steps, one row each for star, arap and linear."),
+                    "Picture of five time steps, one row each for star, arap and linear.",
+                    .group = "output", .brief = "a picture of some frames"),
     CLI_TEXT_OPTION("certificate", certificate, "FILE.vtu",
                     "With --method solid: the tetrahedra and where they pass, as a map between the "
-                    "solids that 'starguard verify A B FILE.vtu' checks."),
-    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture."),
+                    "solids that 'starguard verify A B FILE.vtu' checks.",
+                    .group = "output"),
+    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture.",
+                      .group = "output"),
     CLI_FLAG_OPTION(
         "guards", guards,
         "Also write guards_a.json and guards_b.json into DIR: corresponding guards of A and of the "
-        "last frame. Reports how many each shape needs alone (star and spherical)."),
+        "last frame. Reports how many each shape needs alone (star and spherical).",
+        .group = "output"),
     CLI_FLAG_OPTION("pieces", pieces,
                     "Also cut both solids into compatible star-shaped pieces: pieces_a.vtk and "
                     "pieces_a.json for A, pieces_b.vtk and pieces_b.json for the last frame, in "
-                    "DIR. Neither may intersect itself; needs TetGen."),
+                    "DIR. Neither may intersect itself; needs TetGen.",
+                    .group = "output"),
 };
 
 static const char *method_word(const values *v) {
@@ -92,25 +114,22 @@ static starg_status announce_folder(cli_session *session, const values *v) {
     static const char *const guards[] = {"guards_a.json", "guards_b.json"};
     static const char *const pieces[] = {"pieces_a.vtk", "pieces_a.json", "pieces_b.vtk",
                                          "pieces_b.json"};
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_folder(session, v->output));
+    TRY(cli_announce_folder(session, v->output));
     for (uint64_t i = 0; i < v->frames; i++)
-        CLI_TRY(announce_path(session, frame_in_folder(v, i)));
+        TRY(announce_path(session, frame_in_folder(v, i)));
     if (v->report)
-        CLI_TRY(announce_path(session, in_folder(v, "morph.json")));
+        TRY(announce_path(session, in_folder(v, "morph.json")));
     for (int i = 0; v->guards && i < 2; i++)
-        CLI_TRY(announce_path(session, in_folder(v, guards[i])));
+        TRY(announce_path(session, in_folder(v, guards[i])));
     for (int i = 0; v->pieces && i < 4; i++)
-        CLI_TRY(announce_path(session, in_folder(v, pieces[i])));
-done:
-    return status;
+        TRY(announce_path(session, in_folder(v, pieces[i])));
+    return STARG_OK;
 }
 
 /* ---- options ---- */
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
     if (v->output == NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT, "no output folder; add -o DIR");
     if (strcmp(v->output, "-") == 0)
@@ -123,18 +142,19 @@ static starg_status prepare(cli_session *session, void *data) {
         v->wanted.method != STARG_MORPH_SPHERICAL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--guards: method %s has no guards; use star or spherical", method_word(v));
-    CLI_TRY(cli_announce_with_extension(session, "--glb", v->glb, ".glb"));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-    CLI_TRY(cli_announce_with_extension(session, "--certificate", v->certificate, ".vtu"));
+    TRY(cli_announce_with_extension(session, "--glb", v->glb, ".glb"));
+    TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    TRY(cli_announce_with_extension(session, "--certificate", v->certificate, ".vtu"));
     if (v->certificate != NULL && v->wanted.method != STARG_MORPH_SOLID)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate: only method solid has one, and this is %s", method_word(v));
+    if (v->connectivity > 0 && (v->overlay || v->wanted.method != STARG_MORPH_SOLID))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--connectivity is for method solid, and excludes --overlay");
     if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
         return cli_fail(session, STARG_ERROR_ARGUMENT, "--glb takes at most %d frames",
                         STARG_ANIMATION_FRAMES);
-    CLI_TRY(announce_folder(session, v));
-done:
-    return status;
+    return announce_folder(session, v);
 }
 
 /* ---- both ends ---- */
@@ -146,6 +166,7 @@ typedef struct subject {
     starg_mesh *refined; /* A with the overlay's faces; NULL without overlay */
     double *images;
     double distance, diagonal; /* of the last frame from B, and of B */
+    double volumes[2];         /* of the last frame, and of B */
 } subject;
 
 /* The first frame: A, or A refined. */
@@ -165,6 +186,7 @@ static starg_status make_map(cli_session *session, const values *v, subject *s) 
     starg_map_options wanted;
     uint32_t *pairs = NULL;
     starg_map_options_default(&wanted);
+    wanted.solid = v->wanted.method == STARG_MORPH_SOLID && v->connectivity == 0;
     if (v->map != NULL)
         return starg_map_read(session->context, v->map, session->mesh, s->target, &s->map);
     if (v->landmarks != NULL)
@@ -177,48 +199,48 @@ done:
     return status;
 }
 
+/* A map that keeps vertices may still connect surfaces with some different faces. */
+static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
+    size_t count = starg_mesh_face_count(a);
+    return starg_mesh_face_count(b) == count &&
+           starg_mesh_vertex_count(a) == starg_mesh_vertex_count(b) &&
+           memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
+}
+
 /* Both ends with the faces of the overlay. */
 static starg_status refine(cli_session *session, subject *s) {
-    starg_status status = STARG_OK;
     const starg_overlay *overlay = &s->map->overlay;
-    double *positions = NULL;
+    SCOPED double *positions = NULL;
     if (overlay->face_count == 0)
-        CLI_TRY(starg_map_overlay(session->context, session->mesh, s->target, s->map));
+        TRY(starg_map_overlay(session->context, session->mesh, s->target, s->map));
     positions = malloc((3 * overlay->vertex_count + 1) * sizeof *positions);
     s->images = malloc((3 * overlay->vertex_count + 1) * sizeof *s->images);
-    if (positions == NULL || s->images == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    if (positions == NULL || s->images == NULL)
+        return cli_fail_memory(session);
     starg_overlay_positions(overlay, session->mesh, 0, positions);
     starg_overlay_positions(overlay, s->target, 1, s->images);
-    CLI_TRY(starg_mesh_create(session->context, positions, overlay->vertex_count, overlay->faces,
-                              overlay->face_count, &s->refined));
-done:
-    free(positions);
-    return status;
+    return starg_mesh_create(session->context, positions, overlay->vertex_count, overlay->faces,
+                             overlay->face_count, &s->refined);
 }
 
 /* How far the last frame is from B. */
 static starg_status measure_end(cli_session *session, subject *s) {
-    starg_status status = STARG_OK;
     const starg_mesh *source = source_of(session, s);
-    starg_mesh *last = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *last = NULL;
     double lower[3], upper[3];
     starg_mesh_bounds(s->target, lower, upper);
     s->diagonal = hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
-    CLI_TRY(starg_mesh_create(session->context, s->images, starg_mesh_vertex_count(source),
-                              starg_mesh_faces(source), starg_mesh_face_count(source), &last));
-    CLI_TRY(starg_mesh_apart(session->context, last, s->target, &s->distance));
-done:
-    starg_mesh_free(last);
-    return status;
+    TRY(starg_mesh_create(session->context, s->images, starg_mesh_vertex_count(source),
+                          starg_mesh_faces(source), starg_mesh_face_count(source), &last));
+    TRY(starg_mesh_apart(session->context, last, s->target, &s->distance));
+    s->volumes[0] = fabs(starg_mesh_volume(last));
+    s->volumes[1] = fabs(starg_mesh_volume(s->target));
+    return STARG_OK;
 }
 
 /* A surface of few vertices is no picture of B, whatever their places: then both get the faces of
  * the overlay. */
 static starg_status refine_if_poor(cli_session *session, subject *s) {
-    starg_status status = STARG_OK;
     if (s->distance <= POOR * s->diagonal ||
         starg_mesh_vertex_count(session->mesh) >= starg_mesh_vertex_count(s->target))
         return STARG_OK;
@@ -228,28 +250,27 @@ static starg_status refine_if_poor(cli_session *session, subject *s) {
              starg_mesh_vertex_count(session->mesh), s->distance, 100 * s->distance / s->diagonal);
     free(s->images);
     s->images = NULL;
-    CLI_TRY(refine(session, s));
-    CLI_TRY(measure_end(session, s));
-done:
-    return status;
+    TRY(refine(session, s));
+    return measure_end(session, s);
 }
 
 static starg_status read_subject(cli_session *session, const values *v, subject *s) {
-    starg_status status = STARG_OK;
-    CLI_TRY(starg_mesh_read(session->context, session->operands[1], &s->target));
-    CLI_TRY(make_map(session, v, s));
-    if (v->overlay) {
-        CLI_TRY(refine(session, s));
+    TRY(starg_mesh_read(session->context, session->operands[1], &s->target));
+    TRY(make_map(session, v, s));
+    bool same = s->map->kind == STARG_MAP_SAME && has_same_faces(session->mesh, s->target);
+    bool itself = v->wanted.method == STARG_MORPH_SOLID && v->connectivity == 0;
+    if (v->overlay || (itself && !same)) {
+        TRY(refine(session, s));
         return measure_end(session, s);
     }
     s->images = malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *s->images);
     if (s->images == NULL)
         return cli_fail_memory(session);
     starg_map_positions(s->map, s->target, s->images);
-    CLI_TRY(measure_end(session, s));
-    CLI_TRY(refine_if_poor(session, s));
-done:
-    return status;
+    TRY(measure_end(session, s));
+    if (v->connectivity == 0)
+        TRY(refine_if_poor(session, s));
+    return STARG_OK;
 }
 
 /* ---- frames ---- */
@@ -292,17 +313,17 @@ done:
 
 static starg_status write_frames(cli_session *session, const values *v, const subject *s,
                                  const starg_morph *morph, json_t *list, totals *sum) {
-    starg_status status = STARG_OK;
     const starg_mesh *source = source_of(session, s);
-    double *positions = malloc((3 * starg_mesh_vertex_count(source) + 1) * sizeof *positions);
+    SCOPED double *positions =
+        malloc((3 * starg_mesh_vertex_count(source) + 1) * sizeof *positions);
     if (positions == NULL)
         return cli_fail_memory(session);
     for (uint64_t i = 0; i < v->frames; i++) {
         double t = (double)i / (double)(v->frames - 1);
         starg_frame_measures measures;
-        CLI_TRY(starg_morph_frame(morph, t, positions));
-        CLI_TRY(starg_morph_measure(morph, t, positions, &measures));
-        CLI_TRY(write_frame(session, source, positions, frame_in_folder(v, i)));
+        TRY(starg_morph_frame(morph, t, positions));
+        TRY(starg_morph_measure(morph, t, positions, &measures));
+        TRY(write_frame(session, source, positions, frame_in_folder(v, i)));
         cli_append(session, list, frame_json(session, t, &measures));
         sum->intersections += measures.intersections;
         sum->ends[i > 0] = measures.intersections;
@@ -313,46 +334,29 @@ static starg_status write_frames(cli_session *session, const values *v, const su
         if (drift > sum->drift)
             sum->drift = drift;
     }
-done:
-    free(positions);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- animation ---- */
 
 static starg_status write_animation(cli_session *session, const values *v, const subject *s,
                                     const starg_morph *morph) {
-    starg_status status = STARG_OK;
     const starg_mesh *source = source_of(session, s);
     size_t size = 3 * starg_mesh_vertex_count(source), count = (size_t)v->frames;
-    const double **frames = calloc(count, sizeof *frames);
-    double *positions =
+    SCOPED const double **frames = calloc(count, sizeof *frames);
+    SCOPED double *positions =
         size <= SIZE_MAX / sizeof(double) / count ? malloc(size * count * sizeof *positions) : NULL;
-    if (frames == NULL || positions == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    if (frames == NULL || positions == NULL)
+        return cli_fail_memory(session);
     for (size_t i = 0; i < count; i++) {
-        CLI_TRY(starg_morph_frame(morph, (double)i / (double)(count - 1), positions + i * size));
+        TRY(starg_morph_frame(morph, (double)i / (double)(count - 1), positions + i * size));
         frames[i] = positions + i * size;
     }
-    CLI_TRY(starg_animation_write(session->context, source, frames, count, SECONDS,
-                                  cli_outputs_place(&session->outputs, v->glb)));
-done:
-    free(positions);
-    free(frames);
-    return status;
+    return starg_animation_write(session->context, source, frames, count, SECONDS,
+                                 cli_outputs_place(&session->outputs, v->glb));
 }
 
 /* ---- results of both ends ---- */
-
-/* A map that keeps vertices may still connect surfaces with some different faces. */
-static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
-    size_t count = starg_mesh_face_count(a);
-    return starg_mesh_face_count(b) == count &&
-           starg_mesh_vertex_count(a) == starg_mesh_vertex_count(b) &&
-           memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
-}
 
 /* An end is the model itself if it equals the frame, otherwise that frame. NULL when out of
  * memory. */
@@ -398,17 +402,15 @@ done:
 
 static starg_status write_guards(cli_session *session, const values *v, const subject *s,
                                  const starg_morph *morph, separate *out) {
-    starg_status status = STARG_OK;
     for (int end = 0; end < 2; end++) {
         starg_guards *guards = NULL;
-        CLI_TRY(write_end(session, v, s, morph, end));
-        CLI_TRY(starg_morph_guards_separate(morph, end, &guards));
+        TRY(write_end(session, v, s, morph, end));
+        TRY(starg_morph_guards_separate(morph, end, &guards));
         out->count[end] = guards->count;
         out->bound[end] = guards->lower_bound;
         starg_guards_free(session->context, guards);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static json_t *separate_json(cli_session *session, const separate *found) {
@@ -424,33 +426,23 @@ static json_t *separate_json(cli_session *session, const separate *found) {
 
 static starg_status write_pieces_of(cli_session *session, const values *v, const subject *s,
                                     const starg_decomposition *pieces, int end) {
-    starg_status status = STARG_OK;
-    char *grid = in_folder(v, end == 0 ? "pieces_a.vtk" : "pieces_b.vtk");
-    char *told = in_folder(v, end == 0 ? "pieces_a.json" : "pieces_b.json");
-    char *model = model_of(session, v, s, end);
-    if (grid == NULL || told == NULL || model == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
-    CLI_TRY(starg_decomposition_write(session->context, pieces,
-                                      cli_outputs_place(&session->outputs, grid), false));
-    CLI_TRY(starg_decomposition_write_report(session->context, pieces, model,
-                                             cli_outputs_place(&session->outputs, told)));
-done:
-    free(grid);
-    free(told);
-    free(model);
-    return status;
+    SCOPED char *grid = in_folder(v, end == 0 ? "pieces_a.vtk" : "pieces_b.vtk");
+    SCOPED char *told = in_folder(v, end == 0 ? "pieces_a.json" : "pieces_b.json");
+    SCOPED char *model = model_of(session, v, s, end);
+    if (grid == NULL || told == NULL || model == NULL)
+        return cli_fail_memory(session);
+    TRY(starg_decomposition_write(session->context, pieces,
+                                  cli_outputs_place(&session->outputs, grid), false));
+    return starg_decomposition_write_report(session->context, pieces, model,
+                                            cli_outputs_place(&session->outputs, told));
 }
 
 static starg_status write_pieces(cli_session *session, const values *v, const subject *s,
                                  const starg_morph *morph, starg_decomposition *pieces[2]) {
-    starg_status status = STARG_OK;
-    CLI_TRY(starg_morph_solids(morph, pieces));
+    TRY(starg_morph_solids(morph, pieces));
     for (int end = 0; end < 2; end++)
-        CLI_TRY(write_pieces_of(session, v, s, pieces[end], end));
-done:
-    return status;
+        TRY(write_pieces_of(session, v, s, pieces[end], end));
+    return STARG_OK;
 }
 
 static json_t *pieces_json(const starg_decomposition *const pieces[2]) {
@@ -463,13 +455,16 @@ static json_t *pieces_json(const starg_decomposition *const pieces[2]) {
 
 /* ---- the path of a solid ---- */
 
-static starg_status write_certificate(cli_session *session, const values *v,
+static starg_status write_certificate(cli_session *session, const values *v, const subject *s,
                                       const starg_morph *morph) {
     starg_solid_map *map = NULL;
-    starg_status status = starg_morph_solid_map(morph, &map);
-    if (status == STARG_OK)
-        status = starg_solid_map_write(session->context, map,
-                                       cli_outputs_place(&session->outputs, v->certificate));
+    starg_status status = STARG_OK;
+    CLI_TRY(starg_morph_solid_map(morph, &map));
+    if (v->connectivity > 0)
+        CLI_TRY(starg_solid_map_compare(session->context, s->target, map));
+    CLI_TRY(starg_solid_map_write(session->context, map,
+                                  cli_outputs_place(&session->outputs, v->certificate)));
+done:
     starg_solid_map_free(session->context, map);
     return status;
 }
@@ -478,19 +473,15 @@ static starg_status write_certificate(cli_session *session, const values *v,
 
 static starg_status draw_row(cli_session *session, const subject *s, starg_morph_options wanted,
                              double *positions, starg_mesh **meshes) {
-    starg_status status = STARG_OK;
-    starg_morph *morph = NULL;
+    SCOPED_BY(starg_morph_drop) starg_morph *morph = NULL;
     const starg_mesh *source = source_of(session, s);
-    CLI_TRY(starg_morph_create(session->context, source, s->images, &wanted, &morph));
+    TRY(starg_morph_create(session->context, source, s->images, &wanted, &morph));
     for (size_t i = 0; i < SHEET_COLUMNS; i++) {
-        CLI_TRY(starg_morph_frame(morph, (double)i / (SHEET_COLUMNS - 1), positions));
-        CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(source),
-                                  starg_mesh_faces(source), starg_mesh_face_count(source),
-                                  &meshes[i]));
+        TRY(starg_morph_frame(morph, (double)i / (SHEET_COLUMNS - 1), positions));
+        TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(source),
+                              starg_mesh_faces(source), starg_mesh_face_count(source), &meshes[i]));
     }
-done:
-    starg_morph_free(morph);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status write_picture(cli_session *session, const values *v, const subject *s) {
@@ -506,8 +497,10 @@ static starg_status write_picture(cli_session *session, const values *v, const s
     if (positions == NULL)
         return cli_fail_memory(session);
     for (size_t i = 0; i < ROWS; i++)
-        CLI_TRY(draw_row(session, s, (starg_morph_options){rows[i], v->wanted.candidates},
-                         positions, meshes + i * SHEET_COLUMNS));
+        CLI_TRY(
+            draw_row(session, s,
+                     (starg_morph_options){.method = rows[i], .candidates = v->wanted.candidates},
+                     positions, meshes + i * SHEET_COLUMNS));
     starg_picture_options_default(&picture);
     picture.width = TILE_WIDTH;
     picture.height = TILE_HEIGHT;
@@ -590,6 +583,12 @@ static void warn_of_look(cli_session *session) {
 static void say_morph(cli_session *session, const values *v, const subject *s,
                       const starg_morph *morph, const extras *found, const totals *sum) {
     const separate *alone = &found->alone;
+    if (v->connectivity > 0)
+        cli_say(session,
+                "ends at       B in A's faces, up to %.3g from B (%.3g %% of its diagonal), of "
+                "volume %.4g where B has %.4g\n",
+                s->distance, s->diagonal > 0 ? 100 * s->distance / s->diagonal : 0, s->volumes[0],
+                s->volumes[1]);
     cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
     if (starg_morph_guard_count(morph) > 0)
         cli_say(session, "guards        %zu in each shape; %s seen in both by none\n",
@@ -628,15 +627,17 @@ static starg_status run(cli_session *session, void *data) {
     extras found = {0};
     json_t *frames = json_array();
     CLI_TRY(read_subject(session, v, &s));
+    starg_morph_options wanted = v->wanted;
+    wanted.centers = s.refined != NULL ? s.map->centers : NULL;
     CLI_TRY(
-        starg_morph_create(session->context, source_of(session, &s), s.images, &v->wanted, &morph));
+        starg_morph_create(session->context, source_of(session, &s), s.images, &wanted, &morph));
     CLI_TRY(write_frames(session, v, &s, morph, frames, &sum));
     if (v->guards)
         CLI_TRY(write_guards(session, v, &s, morph, &found.alone));
     if (v->pieces)
         CLI_TRY(write_pieces(session, v, &s, morph, found.pieces));
     if (v->certificate != NULL)
-        CLI_TRY(write_certificate(session, v, morph));
+        CLI_TRY(write_certificate(session, v, &s, morph));
     if (v->glb != NULL)
         CLI_TRY(write_animation(session, v, &s, morph));
     if (v->picture != NULL)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard repair: turns a nearly closed mesh into a solid. */
+#include <math.h>
 #include <string.h>
 
 #include "commands.h"
-#include "session.h"
 #include "starguard/repair.h"
 
 typedef struct values {
@@ -36,6 +36,7 @@ static void tell(cli_session *session, const starg_repair_report *r) {
         {"faces_turned", "faces turned", r->faces_turned},
         {"faces_added", "faces added", r->faces_added},
         {"holes_filled", "holes filled", r->holes_filled},
+        {"faces_divided", "faces divided", r->faces_divided},
         {"components_dropped", "components dropped", r->components_dropped},
         {"intersections_before", "intersections before", r->intersections_before},
         {"intersections_after", "intersections after", r->intersections_after},
@@ -49,6 +50,13 @@ static void tell(cli_session *session, const starg_repair_report *r) {
     }
     cli_put(session, report, "largest_move", cli_json_real(r->largest_move));
     cli_say(session, "%-22s %.6g\n", "largest move", r->largest_move);
+    cli_put(session, report, "conforming", cli_json_real(r->conforming));
+    cli_put(session, report, "volume_before",
+            r->closed_before ? cli_json_real(r->enclosed_before) : json_null());
+    cli_put(session, report, "volume_after", cli_json_real(r->enclosed_after));
+    if (r->closed_before)
+        cli_say(session, "%-22s %.9g\n", "volume before", r->enclosed_before);
+    cli_say(session, "%-22s %.9g\n", "volume after", r->enclosed_after);
     cli_put(session, report, "rounding", cli_json_real(r->rounding));
     if (r->union_rounds > 0)
         cli_say(session, "%-22s %.3g\n", "rounding", r->rounding);
@@ -66,6 +74,10 @@ static starg_status fail_in_vain(cli_session *session, const starg_repair_report
 }
 
 static void warn(cli_session *session, const starg_repair_report *r) {
+    double change = r->enclosed_after - r->enclosed_before;
+    if (r->closed_before && r->union_rounds == 0 && fabs(change) > 1e-9 * r->enclosed_before)
+        cli_warn(session, "warning: the volume was %.6g, and is %.6g now (%+.3g %%)",
+                 r->enclosed_before, r->enclosed_after, 100 * change / r->enclosed_before);
     if (r->grid[0] != '\0')
         cli_warn(session, "warning: %s", r->grid);
     else if (r->intersections_after > 0)
@@ -88,32 +100,27 @@ static void tell_origin(cli_session *session, const double origin[3]) {
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "FILE"));
+    TRY(cli_announce_needed(session, v->output, "FILE"));
     starg_mesh_write_options_default(&v->writing);
-    CLI_TRY(cli_mesh_format(session, v->output, &v->writing.format));
+    TRY(cli_mesh_format(session, v->output, &v->writing.format));
     if (v->origin != NULL && !is_auto(v) && !cli_number_list(v->origin, v->writing.origin, 3))
-        status = cli_fail(session, STARG_ERROR_ARGUMENT,
-                          "--origin takes X,Y,Z (three numbers, no spaces) or auto, not '%.100s'",
-                          v->origin);
-done:
-    return status;
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--origin takes X,Y,Z (three numbers, no spaces) or auto, not '%.100s'",
+                        v->origin);
+    return STARG_OK;
 }
 
 static starg_status run(cli_session *session, void *data) {
     values *v = data;
     const starg_mesh *mesh = session->mesh;
-    starg_status status = STARG_OK;
-    starg_mesh *mended = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mended = NULL;
     starg_repair_report report;
-    CLI_TRY(starg_mesh_repair(session->context, mesh, &v->wanted, &mended, &report));
-    if (report.in_vain) {
-        status = fail_in_vain(session, &report);
-        goto done;
-    }
+    TRY(starg_mesh_repair(session->context, mesh, &v->wanted, &mended, &report));
+    if (report.in_vain)
+        return fail_in_vain(session, &report);
     if (is_auto(v))
         starg_mesh_origin(mended, v->writing.origin);
-    CLI_TRY(cli_mesh_write_with(session, mended, &v->writing, v->output));
+    TRY(cli_mesh_write_with(session, mended, &v->writing, v->output));
     cli_say(session, "%zu vertices, %zu faces in; %zu vertices, %zu faces out\n",
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh),
             starg_mesh_vertex_count(mended), starg_mesh_face_count(mended));
@@ -126,9 +133,7 @@ static starg_status run(cli_session *session, void *data) {
                 json_pack("{s:o, s:I, s:I}", "file", cli_json_text(v->output), "vertices",
                           (json_int_t)starg_mesh_vertex_count(mended), "faces",
                           (json_int_t)starg_mesh_face_count(mended)));
-done:
-    starg_mesh_free(mended);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_repair = {

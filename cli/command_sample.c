@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard sample: generates procedural solids. */
 #include "commands.h"
-#include "options.h"
-#include "session.h"
 #include "starguard/sample.h"
 
 typedef struct values {
@@ -55,9 +53,8 @@ static starg_status check_name(cli_session *session, const char *name) {
 
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
     starg_mesh_format format;
-    starg_mesh *mesh = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
     if (v->list)
         return list_samples(session);
     if (session->operand_count == 0 || v->output == NULL)
@@ -65,17 +62,15 @@ static starg_status run(cli_session *session, void *data) {
             session, STARG_ERROR_ARGUMENT,
             "give a sample and an output: starguard sample NAME -o FILE; --list lists the names");
     const char *name = session->operands[0];
-    CLI_TRY(check_name(session, name));
-    CLI_TRY(cli_mesh_format(session, v->output, &format));
-    CLI_TRY(cli_announce(session, v->output));
-    CLI_TRY(starg_sample_create(session->context, name, &v->wanted, &mesh));
-    CLI_TRY(cli_mesh_write(session, mesh, format, NULL, v->output));
+    TRY(check_name(session, name));
+    TRY(cli_mesh_format(session, v->output, &format));
+    TRY(cli_announce(session, v->output));
+    TRY(starg_sample_create(session->context, name, &v->wanted, &mesh));
+    TRY(cli_mesh_write(session, mesh, format, NULL, v->output));
     cli_say(session, "%s, pose %d: %zu vertices, %zu faces\n", name, v->wanted.pose,
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh));
     cli_report_head(session, "starguard-sample", v->output, mesh);
-done:
-    starg_mesh_free(mesh);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_sample = {

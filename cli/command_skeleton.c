@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "commands.h"
-#include "session.h"
 #include "starguard/picture.h"
 #include "starguard/skeleton.h"
 
@@ -38,12 +37,9 @@ static starg_status choose_format(cli_session *session, const char *name,
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "FILE.obj, .cg, .vtk or .swc"));
-    CLI_TRY(choose_format(session, v->output, &v->format));
-    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
-done:
-    return status;
+    TRY(cli_announce_needed(session, v->output, "FILE.obj, .cg, .vtk or .swc"));
+    TRY(choose_format(session, v->output, &v->format));
+    return cli_announce_with_extension(session, "--picture", v->picture, ".png");
 }
 
 /* Draws nodes as small balls, ends and joints in their own colours. */
@@ -52,13 +48,10 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     static const uint8_t curve[3] = {200, 30, 30}, joint[3] = {20, 60, 200}, end[3] = {0, 130, 60};
     starg_picture_options picture;
     starg_picture_options_default(&picture);
-    uint8_t *colors = calloc(s->node_count + 1, 3);
-    uint32_t *degrees = calloc(s->node_count + 1, sizeof *degrees);
-    starg_status status = STARG_OK;
-    if (colors == NULL || degrees == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    SCOPED uint8_t *colors = calloc(s->node_count + 1, 3);
+    SCOPED uint32_t *degrees = calloc(s->node_count + 1, sizeof *degrees);
+    if (colors == NULL || degrees == NULL)
+        return cli_fail_memory(session);
     for (size_t i = 0; i < 2 * s->edge_count; i++)
         degrees[s->edges[i]]++;
     for (size_t i = 0; i < s->node_count; i++)
@@ -67,12 +60,8 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     picture.point_count = s->node_count;
     picture.point_colors = colors;
     picture.point_radius = 0.004;
-    CLI_TRY(starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
-                                cli_outputs_place(&session->outputs, name)));
-done:
-    free(colors);
-    free(degrees);
-    return status;
+    return starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
+                               cli_outputs_place(&session->outputs, name));
 }
 
 static void say_skeleton(cli_session *session, const starg_skeleton *s) {

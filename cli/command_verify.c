@@ -6,7 +6,6 @@
 
 #include "commands.h"
 #include "scene.h"
-#include "session.h"
 #include "starguard/verify.h"
 
 typedef struct values {
@@ -248,7 +247,6 @@ done:
 /* Reads all results before verifying the first, so that a bad name is reported at once. Results of
  * two models show that the second operand is one of these. */
 static starg_status read_inputs(cli_session *session, inputs *given) {
-    starg_status status = STARG_OK;
     size_t count = session->operand_count, last = count - 1;
     given->results = calloc(count, sizeof(starg_result *));
     given->folders = calloc(count, sizeof *given->folders);
@@ -257,12 +255,12 @@ static starg_status read_inputs(cli_session *session, inputs *given) {
     bool paired = false;
     for (size_t i = last; i > 0; i--) {
         if (i == 1 && paired) {
-            CLI_TRY(starg_mesh_read(session->context, session->operands[1], &given->target));
+            TRY(starg_mesh_read(session->context, session->operands[1], &given->target));
         } else if (is_folder(session->operands[i])) {
-            CLI_TRY(read_folder(session, session->operands[i], &given->folders[i]));
+            TRY(read_folder(session, session->operands[i], &given->folders[i]));
             paired = true;
         } else {
-            CLI_TRY(starg_result_read(session->context, session->operands[i], &given->results[i]));
+            TRY(starg_result_read(session->context, session->operands[i], &given->results[i]));
             paired =
                 paired || given->results[i]->map != NULL || given->results[i]->solid_map != NULL;
             if (given->results[i]->morph != NULL)
@@ -275,8 +273,7 @@ static starg_status read_inputs(cli_session *session, inputs *given) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "maps and morphs are of two models: verify A B %.200s",
                         session->operands[last]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A certificate must follow the guards or pieces that it belongs to. */
@@ -347,12 +344,14 @@ static starg_status verify_guards(cli_session *session, const model *given, size
                                   starg_result *const *results, const telling *to) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
-    starg_mesh **obstacles = NULL;
+    starg_mesh **obstacles = NULL, **zones = NULL;
     const starg_guards *guards = results[operand]->guards;
     size_t behind = certificate_behind(session, results, operand);
     CLI_TRY(cli_scene_read_obstacles(session, guards, &obstacles));
+    CLI_TRY(cli_scene_read_zones(session, guards, &zones));
     const starg_guards_evidence evidence = {.obstacles = (const starg_mesh *const *)obstacles,
                                             .obstacle_count = guards->obstacle_count,
+                                            .zones = (const starg_mesh *const *)zones,
                                             .certificate =
                                                 behind != 0 ? results[behind]->certificate : NULL};
     CLI_TRY(starg_verify_guards_with(session->context, given->mesh, &evidence, guards, &verdict));
@@ -363,6 +362,7 @@ static starg_status verify_guards(cli_session *session, const model *given, size
                  "guards stand where they may, and see what is told", entry, to);
 done:
     cli_scene_free_obstacles(obstacles, guards->obstacle_count);
+    cli_scene_free_obstacles(zones, guards->zone_count);
     starg_verdict_free(session->context, verdict);
     return status;
 }
@@ -379,13 +379,10 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
                         "'%.200s' is a certificate, and such are of surfaces; '%.200s' is a "
                         "tetrahedral mesh",
                         session->operands[found.certificate], session->operands[0]);
-    starg_status status = given->tetmesh != NULL
-                              ? starg_verify_pieces_of_tetmesh(session->context, given->tetmesh,
-                                                               pieces, report, &verdict)
-                              : starg_verify_pieces_with(session->context, given->mesh, why, pieces,
-                                                         report, &verdict);
-    if (status != STARG_OK)
-        return status;
+    TRY(given->tetmesh != NULL ? starg_verify_pieces_of_tetmesh(session->context, given->tetmesh,
+                                                                pieces, report, &verdict)
+                               : starg_verify_pieces_with(session->context, given->mesh, why,
+                                                          pieces, report, &verdict));
     json_t *entry = json_object();
     if (why != NULL)
         cli_put(session, entry, "certificate", cli_json_text(session->operands[found.certificate]));
@@ -456,7 +453,9 @@ static starg_status verify_solid_map(cli_session *session, const model *given, c
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)map->count));
     cli_put(session, entry, "pieces", json_integer((json_int_t)map->piece_count));
     tell_verdict(session, session->operands[operand], verdict,
-                 from->target != NULL ? "tetrahedra fill A and B, one to one" : "tetrahedra fill A",
+                 from->target == NULL ? "tetrahedra fill A"
+                 : map->compared      ? "tetrahedra fill A, and end near B as told"
+                                      : "tetrahedra fill A and B, one to one",
                  entry, to);
 done:
     starg_verdict_free(session->context, verdict);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard view: writes a page that shows results. */
 #include "commands.h"
-#include "database.h"
-#include "session.h"
 #include "show.h"
 
 typedef struct values {
@@ -20,12 +18,10 @@ static const cli_option options[] = {
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_needed(session, v->output, "PAGE.html"));
+    TRY(cli_announce_needed(session, v->output, "PAGE.html"));
     if (!starg_page_available()) /* the library says how to get the viewer */
-        CLI_TRY(starg_page_write(session->context, &(const starg_page){0}, v->output));
-done:
-    return status;
+        TRY(starg_page_write(session->context, &(const starg_page){0}, v->output));
+    return STARG_OK;
 }
 
 /* Lists the contents, named like the page's tabs. */

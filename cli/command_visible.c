@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard visible: computes what points inside a solid, or boxes in it, see. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,9 +11,14 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "starguard/visibility.h"
+#include "tables.h"
 
 typedef struct values {
     starg_places from, boxes;
+    const char *poses_file;
+    starg_poses poses; /* of it, or those of `from`, borrowed */
+    cli_tables tables;
+    bool share;
     bool unseen;
     uint64_t work;
     starg_visibility_options view;
@@ -21,20 +27,36 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_POINTS_OPTION("from", from, "X,Y,Z", "Viewpoint, in model coordinates. Repeatable."),
+    CLI_POINTS_OPTION("from", from, "X,Y,Z", "Viewpoint, in model coordinates. Repeatable.",
+                      .group = "places", .brief = "a point from which to look"),
+    CLI_INPUT_OPTION("poses", poses_file, "FILE",
+                     "Cameras to look from: text with three numbers per line, six with the "
+                     "direction in which it looks (--cone, --fov), or nine with what is up for it; "
+                     "CSV or JSON as 'guard --poses' writes it; a GUARDS.json; or the cameras of a "
+                     "GLB.",
+                     .group = "places", .brief = "cameras from a file"),
+    CLI_TABLE_OPTIONS,
+    CLI_FLAG_OPTION("share", share,
+                    "For each face: the share of the points, poses or boxes that see it, and the "
+                    "mean solid angle, in steradians, under which points see what they see of it.",
+                    .group = "output"),
     CLI_BOXES_OPTION("box", boxes, "X0,Y0,Z0,X1,Y1,Z1",
                      "View box, by two opposite corners, instead of points. Reports the "
                      "potentially visible set: everything else is proven hidden from all interior "
-                     "points of the box. The smaller the box, the tighter the set. Repeatable."),
+                     "points of the box. The smaller the box, the tighter the set. Repeatable.",
+                     .group = "places"),
     CLI_OUTPUT_OPTION(
         "FILE.ply",
         "Model with each face in the colour of the first point or box that sees it; unseen faces "
-        "are grey. With --target vertices, a face counts if one point sees all its vertices."),
+        "are grey. With --target vertices, a face counts if one point sees all its vertices.",
+        .group = "output", .brief = "the model with its visible faces marked"),
     {CLI_OPTION("unseen", STARG_FIELD_FLAG, unseen, NULL,
                 "Faces that no point of the free space sees, with proof, instead of what points "
-                "see. --from, if given, says where the free space is reached from.")},
+                "see. --from, if given, says where the free space is reached from.",
+                .group = "output", .brief = "faces that no point or place sees")},
     {CLI_OPTION("work", STARG_FIELD_COUNT, work, "N",
-                "--unseen: budget, in tests of a vertex against a box (about a microsecond each)."),
+                "--unseen: budget, in tests of a vertex against a box (about a microsecond each).",
+                .group = "search"),
      .most = UINT64_MAX >> 1, .initial = 30000000},
     CLI_SCENE_OPTIONS,
     CLI_LIMIT_OPTIONS,
@@ -144,6 +166,220 @@ static starg_status write_seen(cli_session *session, const look *l) {
     return status;
 }
 
+/* ---- shares ---- */
+
+static void subtract(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] - b[k];
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The solid angle of a triangle from p [Van Oosterom, Strackee 1983]. */
+static double solid_angle(const starg_mesh *mesh, size_t face, const double p[3]) {
+    const uint32_t *corner = starg_mesh_faces(mesh) + 3 * face;
+    double a[3], b[3], c[3];
+    subtract(starg_mesh_vertices(mesh) + 3 * (size_t)corner[0], p, a);
+    subtract(starg_mesh_vertices(mesh) + 3 * (size_t)corner[1], p, b);
+    subtract(starg_mesh_vertices(mesh) + 3 * (size_t)corner[2], p, c);
+    double la = sqrt(dot(a, a)), lb = sqrt(dot(b, b)), lc = sqrt(dot(c, c));
+    double triple = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                    a[2] * (b[0] * c[1] - b[1] * c[0]);
+    double sum = la * lb * lc + dot(a, b) * lc + dot(a, c) * lb + dot(b, c) * la;
+    return 2 * fabs(atan2(triple, sum));
+}
+
+/* A face's share counts those that see all of it. `parts` are rows of what is seen of `mesh`, whose
+ * triangles belong to the faces of `of`, or to themselves; places are NULL for boxes. */
+static starg_status tell_shares(cli_session *session, const starg_bits *faces,
+                                const starg_mesh *mesh, const starg_bits *parts, const uint32_t *of,
+                                const double *places) {
+    size_t count = starg_bits_columns(faces), rows = starg_bits_rows(faces), seen_by_all = 0;
+    double *angle = calloc(count + 1, sizeof *angle);
+    size_t *times = calloc(count + 1, sizeof *times), none = 0;
+    if (angle == NULL || times == NULL) {
+        free(angle);
+        free(times);
+        return cli_fail_memory(session);
+    }
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t f = 0; f < count; f++)
+            times[f] += starg_bits_test(faces, i, f);
+        for (size_t j = 0; places != NULL && j < starg_bits_columns(parts); j++)
+            if (starg_bits_test(parts, i, j))
+                angle[of != NULL ? of[j] : j] +=
+                    solid_angle(mesh, j, places + 3 * i) / (double)rows;
+    }
+    json_t *list = session->report != NULL ? json_array() : NULL;
+    for (size_t f = 0; f < count; f++) {
+        double share = (double)times[f] / (double)rows;
+        seen_by_all += times[f] == rows;
+        none += times[f] == 0;
+        if (list == NULL)
+            continue;
+        json_t *face = json_object();
+        cli_put(session, face, "face", json_integer((json_int_t)f));
+        cli_put(session, face, "share", cli_json_real(share));
+        if (places != NULL)
+            cli_put(session, face, "solid_angle", cli_json_real(angle[f]));
+        cli_append(session, list, face);
+    }
+    cli_say(session, "shares        %s seen whole by all of %zu, %zu by none\n",
+            cli_count_of(seen_by_all, "face", "faces").text, rows, none);
+    if (session->report == NULL)
+        for (size_t f = 0; f < count; f++) {
+            cli_say(session, "%zu  %.6g", f, (double)times[f] / (double)rows);
+            cli_say(session, places != NULL ? "  %.9g sr\n" : "\n", angle[f]);
+        }
+    if (list != NULL)
+        cli_put(session, session->report, "shares", list);
+    free(angle);
+    free(times);
+    return STARG_OK;
+}
+
+/* ---- cameras ---- */
+
+/* What one of them sees: whole faces, and the area of all that it sees. */
+static void tell_pose(cli_session *session, const values *v, const starg_guards *g,
+                      const starg_bits *faces, json_t *list, size_t i, double area) {
+    const double *p = g->positions + 3 * i;
+    bool inside = starg_solid_contains(session->solid, p);
+    (void)v;
+    cli_say(session, "%zu  %.17g,%.17g,%.17g  ", i, p[0], p[1], p[2]);
+    if (inside)
+        cli_say(session, "sees %zu of %zu faces, %.2f %% of the area\n", g->seen_faces[i],
+                g->target_count > 0 ? g->target_count : g->face_count, cli_percent(area));
+    else
+        cli_say(session, "not in the free space: sees nothing\n");
+    if (list == NULL)
+        return;
+    json_t *pose = json_object();
+    cli_put(session, pose, "position", cli_json_point(p));
+    if (g->directions != NULL)
+        cli_put(session, pose, "direction", cli_json_point(g->directions + 3 * i));
+    if (g->ups != NULL)
+        cli_put(session, pose, "up", cli_json_point(g->ups + 3 * i));
+    cli_put(session, pose, "inside", json_boolean(inside));
+    cli_put(session, pose, "count", json_integer((json_int_t)g->seen_faces[i]));
+    cli_put(session, pose, "area", cli_json_real(area));
+    cli_put(session, pose, "faces", cli_json_row(session, faces, i));
+    cli_append(session, list, pose);
+}
+
+/* The share of the area that one camera sees: of every point, or of faces or their parts. */
+static starg_status find_area(cli_session *session, const values *v, const starg_guards *g,
+                              const starg_bits *parts, const double *fractions, size_t i,
+                              double *area) {
+    if (v->view.target != STARG_TARGET_POINTS) {
+        double seen = 0, hidden = 0;
+        for (size_t j = 0; j < starg_bits_columns(parts); j++)
+            *(starg_bits_test(parts, i, j) ? &seen : &hidden) += fractions[j];
+        *area = seen / (seen + hidden);
+        return STARG_OK;
+    }
+    starg_guards *alone = NULL;
+    const starg_poses one = {.points = g->positions + 3 * i,
+                             .directions = g->directions != NULL ? g->directions + 3 * i : NULL,
+                             .ups = g->ups != NULL ? g->ups + 3 * i : NULL,
+                             .count = 1};
+    TRY(starg_guards_audit(session->context, session->solid, &one, &v->view, &alone));
+    *area = alone->points_seen;
+    starg_guards_free(session->context, alone);
+    return STARG_OK;
+}
+
+static starg_status tell_all(cli_session *session, const starg_guards *g, const starg_bits *faces,
+                             const starg_bits *parts, const double *fractions, const values *v) {
+    starg_status status = STARG_OK;
+    bool points = v->view.target == STARG_TARGET_POINTS;
+    json_t *list = session->report == NULL ? NULL : json_array();
+    for (size_t i = 0; i < g->count; i++) {
+        double area = 0;
+        CLI_TRY(find_area(session, v, g, parts, fractions, i, &area));
+        tell_pose(session, v, g, faces, list, i, area);
+    }
+    cli_say(session, "together  %.2f %% of the area%s; %s not seen whole\n",
+            cli_percent(g->coverage_area), points ? ", point by point" : "",
+            cli_count_of(g->uncovered_count, "face", "faces").text);
+    if (list == NULL)
+        return STARG_OK;
+    json_t *coverage = json_object();
+    if (points)
+        cli_put(session, coverage, "points",
+                json_pack("{s:f, s:f, s:b}", "seen", g->points_seen, "open", g->points_open,
+                          "complete", g->points_complete));
+    cli_put(session, coverage, "faces", cli_json_real(g->coverage_faces));
+    cli_put(session, coverage, "area", cli_json_real(g->coverage_area));
+    cli_put(session, coverage, "uncovered_faces",
+            cli_json_indices(session, g->uncovered, g->uncovered_count));
+    cli_put(session, session->report, "options",
+            cli_json_record(session, starg_visibility_options_fields(), &g->options.visibility));
+    cli_put(session, session->report, "points", list);
+    cli_put(session, session->report, "coverage", coverage);
+    return STARG_OK;
+done:
+    json_decref(list);
+    return status;
+}
+
+static starg_status write_parts(cli_session *session, const values *v, const starg_mesh *mesh,
+                                const starg_bits *parts) {
+    uint8_t *colors = cli_colors_create(mesh);
+    if (colors == NULL)
+        return cli_fail_memory(session);
+    cli_colors_by_viewer(colors, parts);
+    starg_status status = cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, v->output);
+    free(colors);
+    return status;
+}
+
+/* What given cameras see: no search. */
+static starg_status run_audit(cli_session *session, values *v) {
+    starg_status status = STARG_OK;
+    starg_guards *guards = NULL;
+    starg_bits *faces = NULL, *parts = NULL;
+    starg_mesh *mesh = NULL;
+    double *fractions = NULL;
+    uint32_t *of = NULL;
+    size_t count = 0;
+    starg_poses points = {.points = v->from.values, .count = v->from.count};
+    CLI_TRY(starg_guards_audit(session->context, session->solid,
+                               v->poses_file != NULL ? &v->poses : &points, &v->view, &guards));
+    CLI_TRY(starg_guards_see(session->context, session->solid, guards, &faces));
+    CLI_TRY(
+        starg_guards_patches(session->context, session->solid, guards, &mesh, &parts, NULL, NULL));
+    fractions = cli_area_fractions(mesh, starg_mesh_face_count(mesh));
+    if (fractions == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    CLI_TRY(cli_tables_write(session, &v->tables, guards));
+    if (v->output != NULL)
+        CLI_TRY(write_parts(session, v, mesh, parts));
+    CLI_TRY(tell_all(session, guards, faces, parts, fractions, v));
+    if (v->share) {
+        CLI_TRY(starg_guards_patch_faces(session->context, session->solid, guards, &of, &count));
+        CLI_TRY(tell_shares(session, faces, mesh, parts, of, guards->positions));
+    }
+done:
+    starg_patches_free(session->context, of);
+    free(fractions);
+    starg_mesh_free(mesh);
+    starg_bits_free(faces);
+    starg_bits_free(parts);
+    starg_guards_free(session->context, guards);
+    return status;
+}
+
+static bool audits(const values *v) {
+    return v->poses_file != NULL || cli_tables_wanted(&v->tables) ||
+           (v->share && v->boxes.count == 0) || v->view.patch > 0 ||
+           v->view.target == STARG_TARGET_POINTS;
+}
+
 /* ---- what nobody sees ---- */
 
 static const uint8_t UNSEEN[3] = {139, 0, 0}, UNDECIDED[3] = {230, 159, 0};
@@ -222,14 +458,36 @@ static starg_status check_viewpoints(cli_session *session, const values *v) {
                         "--unseen: --from says where the free space is reached from; give one "
                         "point, not %zu",
                         v->from.count);
+    if (v->unseen && (audits(v) || v->share))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--unseen is about whole faces and no cameras; leave out --poses, --share, "
+                        "--table, --summary, --patch and --target points");
     if (v->unseen)
         return STARG_OK;
-    if (v->scene.cell > 0 || v->scene.standoff.count > 0 || v->scene.within.count > 0)
+    if (v->scene.cell > 0 || v->scene.standoff.count > 0 || v->scene.within.count > 0 ||
+        v->scene.without.count > 0)
+        return cli_fail(
+            session, STARG_ERROR_ARGUMENT,
+            "--standoff, --within, --without and --cell are about the free space; add --unseen");
+    bool looks = v->view.cone < 360 || v->view.fov[0] > 0;
+    if (v->poses_file != NULL && (v->from.count > 0 || v->boxes.count > 0))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "--standoff, --within and --cell are about the free space; add --unseen");
-    if (v->from.count == 0 && v->boxes.count == 0)
+                        "--poses names the points to look from; leave out --from and --box");
+    if (looks && v->poses_file == NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "no viewpoint; add --from X,Y,Z or --box X0,Y0,Z0,X1,Y1,Z1");
+                        "--cone and --fov need to know where cameras look: give --poses FILE with "
+                        "directions");
+    if (audits(v) && v->boxes.count > 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--table, --summary, --patch and --target points are about what points "
+                        "see; leave out --box");
+    if ((v->share || audits(v)) && v->view.target == STARG_TARGET_VERTICES)
+        return cli_fail(
+            session, STARG_ERROR_ARGUMENT,
+            "--poses, --share, --table and --summary tell of faces; leave out --target vertices");
+    if (v->from.count == 0 && v->boxes.count == 0 && v->poses_file == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "no viewpoint; add --from X,Y,Z, --poses FILE or --box X0,Y0,Z0,X1,Y1,Z1");
     if (v->from.count > 0 && v->boxes.count > 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--from and --box exclude each other: visibility from points is exact, "
@@ -239,14 +497,19 @@ static starg_status check_viewpoints(cli_session *session, const values *v) {
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
-    starg_status status = STARG_OK;
-    CLI_TRY(check_viewpoints(session, v));
+    TRY(check_viewpoints(session, v));
     if (v->unseen) /* lent: freed where it comes from */
         v->scene.from = v->from;
-    CLI_TRY(cli_scene_prepare(session, &v->scene));
-    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".ply"));
-done:
-    return status;
+    TRY(cli_scene_prepare(session, &v->scene));
+    TRY(cli_announce_with_extension(session, "-o", v->output, ".ply"));
+    TRY(cli_tables_announce(session, &v->tables));
+    if (v->poses_file != NULL && strcmp(v->poses_file, "-") == 0 &&
+        strcmp(session->operands[0], "-") == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "the model and the cameras cannot both come from standard input");
+    if (v->poses_file != NULL)
+        return starg_poses_read(session->context, v->poses_file, &v->poses);
+    return STARG_OK;
 }
 
 /* Converts boxes given by opposite corners to lower and upper corners. */
@@ -280,6 +543,10 @@ static starg_status run(cli_session *session, void *data) {
         status = cli_fail_memory(session);
         goto done;
     }
+    if (audits(v)) {
+        status = run_audit(session, v);
+        goto done;
+    }
     if (v->unseen) {
         status = run_unseen(session, v, fractions);
         goto done;
@@ -287,6 +554,8 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(see(session, v, &seen));
     look l = {.wanted = v, .solid = solid, .seen = seen, .fractions = fractions};
     CLI_TRY(tell(session, &l));
+    if (v->share)
+        CLI_TRY(tell_shares(session, seen, starg_solid_mesh(solid), seen, NULL, NULL));
     if (v->output != NULL)
         CLI_TRY(write_seen(session, &l));
 done:
@@ -295,9 +564,15 @@ done:
     return status;
 }
 
+static void release(cli_session *session, void *data) {
+    values *v = data;
+    starg_poses_free(session->context, &v->poses);
+    cli_scene_release(&v->scene);
+}
+
 const cli_command cli_command_visible = {
     .name = "visible",
-    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1|--unseen [...]",
+    .usage = "MODEL --from X,Y,Z|--poses FILE|--box X0,...,Z1|--unseen [...]",
     .summary = "compute which faces are visible from points or boxes",
     .description =
         "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is "
@@ -305,7 +580,10 @@ const cli_command cli_command_visible = {
         "its three vertices are and the point is on its inner side. A point that is not inside "
         "sees nothing. --json lists the face indices (from 0, in file order). From a box, the "
         "result is conservative: all that any interior point of the box sees, and possibly more. "
-        "--unseen finds the faces that no point of the free space sees, and tells those for which "
+        "--poses takes cameras, and says what each of them and what all see; large faces are then "
+        "seen "
+        "in parts, as by 'guard'. --unseen finds the faces that no point of the free space sees, "
+        "and tells those for which "
         "that is proven from those for which neither is known.",
     .examples = "# how much of the room is visible from here\n"
                 "starguard visible room.off --from 1,1.7,2\n"
@@ -315,6 +593,9 @@ const cli_command cli_command_visible = {
                 "starguard visible room.off --box 0.5,0.5,0.5,1.5,1.5,1.5\n"
                 "# indices of the faces that are entirely visible, within 5 units\n"
                 "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json\n"
+                "# what given cameras see, with tables of faces, cameras and groups\n"
+                "starguard visible room.off --poses cameras.txt --fov 90,60 --range 8 \\\n"
+                "    --table faces.csv --summary cameras.csv\n"
                 "# what nobody sees of the room from outside\n"
                 "starguard visible room.off --outside --unseen",
     CLI_OPTIONS(options),
@@ -323,4 +604,5 @@ const cli_command cli_command_visible = {
     .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,
+    .release = release,
 };

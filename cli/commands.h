@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The table of commands, used by main, the help and the suggestions. */
-#ifndef STARGUARD_CLI_COMMANDS_H
-#define STARGUARD_CLI_COMMANDS_H
+#pragma once
 
-#include <stddef.h>
 #include <stdio.h>
 
-#include "options.h"
 #include "session.h"
 
 /* Meaning of the first operand, which is read before the command runs. */
@@ -137,8 +134,11 @@ void cli_help_short(FILE *stream);
 /* Describes the program and lists the commands. */
 void cli_help_program(FILE *stream);
 
-/* Complete help of one command. */
-void cli_help_command(FILE *stream, const cli_command *command);
+/* Help of one command: what most need (NULL), "all", or the options of a group. */
+void cli_help_command(FILE *stream, const cli_command *command, const char *part);
+
+/* Is it "all", or a group of the command's options? */
+bool cli_help_has_part(const cli_command *command, const char *word);
 
 /* All commands and options as one JSON object (docs/formats.md). False when out of memory. */
 bool cli_help_json(FILE *stream);
@@ -146,5 +146,3 @@ bool cli_help_json(FILE *stream);
 /* A file below share/ that tools/manual.py has made, as a text on the heap; NULL if there is none.
  */
 char *cli_installed_text(const char *name);
-
-#endif

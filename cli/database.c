@@ -3,8 +3,6 @@
 
 #include <stdlib.h>
 
-#include "session.h"
-
 const char *const cli_distance_words[] = {
     [STARG_SIGNATURE_D2] = "d2",     [STARG_SIGNATURE_SHAPE_DNA] = "shape-dna",
     [STARG_SIGNATURE_STAR] = "star", [STARG_SIGNATURE_PAPER] = "paper",
@@ -25,21 +23,15 @@ json_t *cli_json_model(const starg_database_model *model) {
 
 static starg_status make_distances(cli_session *session, cli_table *t) {
     size_t count = t->models->count;
-    starg_signature **signatures = calloc(count, sizeof(starg_signature *));
+    SCOPED starg_signature **signatures = calloc(count, sizeof(starg_signature *));
     t->distances = count <= SIZE_MAX / sizeof(double) / count
                        ? malloc(count * count * sizeof *t->distances)
                        : NULL;
-    starg_status status = STARG_OK;
-    if (signatures == NULL || t->distances == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    if (signatures == NULL || t->distances == NULL)
+        return cli_fail_memory(session);
     for (size_t i = 0; i < count; i++)
         signatures[i] = t->models->items[i].signature;
-    CLI_TRY(starg_signature_distances(session->context, signatures, count, t->distances));
-done:
-    free(signatures);
-    return status;
+    return starg_signature_distances(session->context, signatures, count, t->distances);
 }
 
 starg_status cli_table_make(cli_session *session, const char *file, int kind, cli_table *t) {

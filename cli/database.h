@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Shared by the database commands. */
-#ifndef STARGUARD_CLI_DATABASE_H
-#define STARGUARD_CLI_DATABASE_H
+#pragma once
 
-#include "options.h"
 #include "session.h"
 #include "starguard/database.h"
 
@@ -60,5 +58,3 @@ void cli_table_free(cli_session *session, cli_table *t);
 
 /* {"id", "name", "path", "vertices", "faces"} */
 json_t *cli_json_model(const starg_database_model *model);
-
-#endif

@@ -4,9 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "options.h"
 #include "ranks.h"
-#include "session.h"
 #include "starguard/version.h"
 
 /* Ends a run that only printed text. */
@@ -109,19 +107,32 @@ static int print_manual(const cli_command *command) {
     return finish_text();
 }
 
-/* help [--man] [COMMAND], help --json */
+/* Is the last word of `help` a part of the help of the command before? */
+static bool is_part(int argc, char **argv, const char *word) {
+    const cli_command *command = cli_command_find(cli_commands, argv[0]);
+    if (command != NULL && command->members != NULL && argc > 1)
+        command = cli_command_find(command->members, argv[1]);
+    return command != NULL && cli_help_has_part(command, word);
+}
+
+/* help [--man] [COMMAND [PART]], help --json */
 static int print_help(int argc, char **argv) {
     const cli_command *command;
+    const char *part = argc > 1 ? argv[argc - 1] : NULL;
     int result = CLI_EXIT_DONE;
     if (argc > 0 && strcmp(argv[0], "--json") == 0)
         return print_table(argc - 1);
     bool manual = argc > 0 && strcmp(argv[0], "--man") == 0;
+    if (part != NULL && !manual && is_part(argc - 1, argv, part))
+        argc--;
+    else
+        part = NULL;
     if (!find_topic(argc - manual, argv + manual, &command, &result))
         return result;
     if (manual)
         return print_manual(command);
     if (command != NULL)
-        cli_help_command(stdout, command);
+        cli_help_command(stdout, command, part);
     else
         cli_help_program(stdout);
     return finish_text();
@@ -162,8 +173,12 @@ static starg_status parse(cli_session *session, const cli_group *groups, int arg
 
 /* --help and --version, which need no operands and no run. */
 static int print_about(const cli_session *session) {
+    const char *part = NULL;
+    for (size_t i = 0; i < session->operand_count && part == NULL; i++)
+        if (cli_help_has_part(session->command, session->operands[i]))
+            part = session->operands[i];
     if (session->common.help)
-        cli_help_command(stdout, session->command);
+        cli_help_command(stdout, session->command, part);
     else
         printf("starguard %s\n", starg_version());
     return finish_text();
@@ -184,9 +199,8 @@ static starg_status name_input(cli_session *session, const cli_option *o, const 
 /* Registers all files that the command line names for reading. */
 static starg_status name_inputs(cli_session *session, const char *values) {
     const cli_command *command = session->command;
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < session->operand_count && command->operand_word == NULL; i++)
-        CLI_TRY(cli_name_input(session, session->operands[i]));
+        TRY(cli_name_input(session, session->operands[i]));
     for (size_t i = 0; i < command->option_count; i++) {
         const cli_option *o = &command->options[i];
         const void *member = values + o->offset;
@@ -194,12 +208,11 @@ static starg_status name_inputs(cli_session *session, const char *values) {
         if (!(o->flags & STARG_FIELD_INPUT))
             continue;
         if (o->kind == STARG_FIELD_TEXT)
-            CLI_TRY(name_input(session, o, *(const char *const *)member));
+            TRY(name_input(session, o, *(const char *const *)member));
         for (size_t k = 0; o->kind == STARG_FIELD_TEXTS && k < texts->count; k++)
-            CLI_TRY(name_input(session, o, texts->values[k]));
+            TRY(name_input(session, o, texts->values[k]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The frame of every command: mistakes are reported before the model is read, and the model's
@@ -254,11 +267,11 @@ free_values:
 static int run_member(const cli_command *group, int argc, char **argv) {
     const char *word = argc > 0 ? argv[0] : NULL;
     if (word == NULL) {
-        cli_help_command(stderr, group);
+        cli_help_command(stderr, group, NULL);
         return CLI_EXIT_USAGE;
     }
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
-        cli_help_command(stdout, group);
+        cli_help_command(stdout, group, NULL);
         return finish_text();
     }
     if (strcmp(word, "--version") == 0)

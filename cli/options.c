@@ -4,7 +4,6 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -149,8 +148,9 @@ static bool set_choice(parser *p, const match *m, const char *word) {
         if (used >= sizeof list)
             used = sizeof list - 1;
     }
-    if (m->option->kind == STARG_FIELD_COUNT && used < sizeof list)
-        snprintf(list + used, sizeof list - used, " or a whole number");
+    if (m->option->kind != STARG_FIELD_CHOICE && used < sizeof list)
+        snprintf(list + used, sizeof list - used,
+                 m->option->kind == STARG_FIELD_COUNT ? " or a whole number" : " or a number");
     if (near.best != NULL)
         return fail_parse(p, "%s takes %s, not '%.100s'; did you mean '%s'?", m->shown, list, word,
                           near.best);
@@ -177,6 +177,8 @@ static bool set_real(parser *p, const match *m, const char *word) {
     double value;
     if (cli_number_real(word, &value) && starg_field_set_real(o, m->group->values, value))
         return true;
+    if (o->words != NULL)
+        return set_choice(p, m, word);
     return fail_parse(p, "%s takes a number %s %g and at most %g, not '%.100s'", m->shown,
                       (o->flags & STARG_FIELD_ABOVE) ? "above" : "of at least", o->low, o->high,
                       word);
@@ -457,6 +459,14 @@ static void print_reals(const double *values, size_t count, FILE *stream) {
     }
 }
 
+static const char *word_of(const cli_option *o, const void *values) {
+    double value = 0;
+    if (o->kind != STARG_FIELD_REAL)
+        return starg_field_word(o, starg_field_count(o, values));
+    memcpy(&value, (const char *)values + o->offset, sizeof value);
+    return starg_field_real_word(o, value);
+}
+
 /* One occurrence of an option; PLACES and TEXTS: number `i`. */
 static void print_option(const cli_option *o, const void *values, size_t i, FILE *stream) {
     const void *at = (const char *)values + o->offset;
@@ -464,10 +474,10 @@ static void print_option(const cli_option *o, const void *values, size_t i, FILE
     if (o->kind == STARG_FIELD_FLAG)
         return;
     fputc(' ', stream);
-    if (o->kind == STARG_FIELD_COUNT)
+    if (o->words != NULL && word_of(o, values) != NULL)
+        fputs(word_of(o, values), stream);
+    else if (o->kind == STARG_FIELD_COUNT)
         fprintf(stream, "%llu", (unsigned long long)starg_field_count(o, values));
-    else if (o->kind == STARG_FIELD_CHOICE)
-        fputs(o->words[starg_field_count(o, values)], stream);
     else if (o->kind == STARG_FIELD_REAL)
         print_reals(at, 1, stream);
     else if (o->kind == STARG_FIELD_NUMBERS)

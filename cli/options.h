@@ -6,12 +6,8 @@
  * Why not argp: it accepts abbreviated option names (so that a new option can break an old script),
  * cannot suggest the intended name, and hides its tables from other users (help in our order,
  * manual pages, completion). */
-#ifndef STARGUARD_CLI_OPTIONS_H
-#define STARGUARD_CLI_OPTIONS_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 #include "starguard/fields.h"
@@ -44,47 +40,48 @@ void cli_suggest_try(cli_suggestion *suggestion, const char *name);
 /* Rows with a NULL `option` are not options. */
 typedef starg_field cli_option;
 
-/* Entries of a command's table, whose struct type is `values`. */
-#define CLI_OPTION(NAME, KIND, MEMBER, VALUE, HELP)                                                \
+/* Entries of a command's table, whose struct type is `values`. After the help other members of the
+ * row may follow: .group, .brief. */
+#define CLI_OPTION(NAME, KIND, MEMBER, VALUE, ...)                                                 \
     .option = NAME, .kind = KIND, .offset = offsetof(values, MEMBER),                              \
-    .size = sizeof(((values *)0)->MEMBER), .value = VALUE, .help = HELP
-#define CLI_FLAG_OPTION(NAME, MEMBER, HELP)                                                        \
-    { CLI_OPTION(NAME, STARG_FIELD_FLAG, MEMBER, NULL, HELP) }
-#define CLI_TEXT_OPTION(NAME, MEMBER, VALUE, HELP)                                                 \
-    { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP) }
+    .size = sizeof(((values *)0)->MEMBER), .value = VALUE, .help = __VA_ARGS__
+#define CLI_FLAG_OPTION(NAME, MEMBER, ...)                                                         \
+    { CLI_OPTION(NAME, STARG_FIELD_FLAG, MEMBER, NULL, __VA_ARGS__) }
+#define CLI_TEXT_OPTION(NAME, MEMBER, VALUE, ...)                                                  \
+    { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, __VA_ARGS__) }
 /* Same for an input file. */
-#define CLI_INPUT_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
-    { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP), .flags = STARG_FIELD_INPUT }
+#define CLI_INPUT_OPTION(NAME, MEMBER, VALUE, ...)                                                 \
+    { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, __VA_ARGS__), .flags = STARG_FIELD_INPUT }
 /* Input files, or names; each occurrence adds one. */
-#define CLI_INPUTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
-    { CLI_OPTION(NAME, STARG_FIELD_TEXTS, MEMBER, VALUE, HELP), .flags = STARG_FIELD_INPUT }
-#define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
-    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP), .length = 3 }
-#define CLI_BOXES_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
-    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP), .length = 6 }
-#define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, DEFAULT, VALUE, HELP)                               \
+#define CLI_INPUTS_OPTION(NAME, MEMBER, VALUE, ...)                                                \
+    { CLI_OPTION(NAME, STARG_FIELD_TEXTS, MEMBER, VALUE, __VA_ARGS__), .flags = STARG_FIELD_INPUT }
+#define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, ...)                                                \
+    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, __VA_ARGS__), .length = 3 }
+#define CLI_BOXES_OPTION(NAME, MEMBER, VALUE, ...)                                                 \
+    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, __VA_ARGS__), .length = 6 }
+#define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, DEFAULT, VALUE, ...)                                \
     {                                                                                              \
-        CLI_OPTION(NAME, STARG_FIELD_CHOICE, MEMBER, VALUE, HELP), .words = WORDS,                 \
-                                                                   .initial = DEFAULT              \
+        CLI_OPTION(NAME, STARG_FIELD_CHOICE, MEMBER, VALUE, __VA_ARGS__), .words = WORDS,          \
+                                                                          .initial = DEFAULT       \
     }
-#define CLI_COUNT_OPTION(NAME, MEMBER, VALUE, LEAST, MOST, DEFAULT, TEXT, HELP)                    \
+#define CLI_COUNT_OPTION(NAME, MEMBER, VALUE, LEAST, MOST, DEFAULT, TEXT, ...)                     \
     {                                                                                              \
-        CLI_OPTION(NAME, STARG_FIELD_COUNT, MEMBER, VALUE, HELP),                                  \
+        CLI_OPTION(NAME, STARG_FIELD_COUNT, MEMBER, VALUE, __VA_ARGS__),                           \
             .least = LEAST, .most = MOST, .initial = DEFAULT, .default_text = TEXT                 \
     }
-#define CLI_REAL_OPTION(NAME, MEMBER, VALUE, LOW, HIGH, DEFAULT, TEXT, HELP)                       \
+#define CLI_REAL_OPTION(NAME, MEMBER, VALUE, LOW, HIGH, DEFAULT, TEXT, ...)                        \
     {                                                                                              \
-        CLI_OPTION(NAME, STARG_FIELD_REAL, MEMBER, VALUE, HELP),                                   \
+        CLI_OPTION(NAME, STARG_FIELD_REAL, MEMBER, VALUE, __VA_ARGS__),                            \
             .low = LOW, .high = HIGH, .standard = DEFAULT, .default_text = TEXT                    \
     }
-#define CLI_POSITIVE_OPTION(NAME, MEMBER, VALUE, HIGH, DEFAULT, TEXT, HELP)                        \
+#define CLI_POSITIVE_OPTION(NAME, MEMBER, VALUE, HIGH, DEFAULT, TEXT, ...)                         \
     {                                                                                              \
-        CLI_OPTION(NAME, STARG_FIELD_REAL, MEMBER, VALUE, HELP),                                   \
+        CLI_OPTION(NAME, STARG_FIELD_REAL, MEMBER, VALUE, __VA_ARGS__),                            \
             .high = HIGH, .flags = STARG_FIELD_ABOVE, .standard = DEFAULT, .default_text = TEXT    \
     }
 /* -o, for a member `output`. */
-#define CLI_OUTPUT_OPTION(VALUE, HELP)                                                             \
-    { CLI_OPTION("output", STARG_FIELD_TEXT, output, VALUE, HELP), .letter = 'o' }
+#define CLI_OUTPUT_OPTION(VALUE, ...)                                                              \
+    { CLI_OPTION("output", STARG_FIELD_TEXT, output, VALUE, __VA_ARGS__), .letter = 'o' }
 
 /* A table and the struct that it fills; `values` is NULL for help. */
 typedef struct cli_group {
@@ -124,5 +121,3 @@ void cli_options_free(const cli_group *group);
 /* Help text of an option, with its default; truncated to `size` bytes. */
 void cli_option_help(const cli_option *option, char *text, size_t size);
 enum { CLI_HELP_SIZE = 1024 };
-
-#endif

@@ -22,9 +22,11 @@ static void format_time(double seconds, char *text, size_t size) {
         snprintf(text, size, "long");
 }
 
-void cli_progress_draw(cli_progress *progress, const cli_stage *stage, double fraction,
-                       double elapsed) {
+void cli_progress_draw(cli_progress *progress, const cli_stage *stage, const starg_context *context,
+                       double fraction, double elapsed) {
     char cells[BAR + 1], left[16];
+    const char *what;
+    size_t best = starg_context_best(context, &what);
     int full = (int)(fraction * BAR);
     memset(cells, ' ', BAR);
     memset(cells, '#', (size_t)full);
@@ -32,6 +34,8 @@ void cli_progress_draw(cli_progress *progress, const cli_stage *stage, double fr
     format_time(elapsed * (1 - fraction) / fraction, left, sizeof left);
     fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%  %.2g %%/s  %s left", stage->name, cells,
             100 * fraction, 100 * fraction / elapsed, left);
+    if (best > 0)
+        fprintf(stderr, "  %zu %s so far", best, what);
     fflush(stderr);
     progress->drawn = true;
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Processes started by mpirun for one command (starguard/ranks.h): rank 0 runs it, the others help.
  * Without MPI, or if started directly, there is only this process. */
-#ifndef STARGUARD_CLI_RANKS_H
-#define STARGUARD_CLI_RANKS_H
-
-#include <stdbool.h>
+#pragma once
 
 #include "starguard/ranks.h"
 
@@ -22,5 +19,3 @@ int cli_ranks_serve(void);
 
 /* Ends the run of rank 0 with the given exit status, and returns it. */
 int cli_ranks_end(int result);
-
-#endif

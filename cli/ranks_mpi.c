@@ -10,7 +10,6 @@
 
 #include <mpi.h>
 #include <sched.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>

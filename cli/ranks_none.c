@@ -2,8 +2,6 @@
 /* A build without MPI: this process is alone. */
 #include "ranks.h"
 
-#include <stddef.h>
-
 void cli_ranks_begin(int *argc, char ***argv) {
     (void)argc, (void)argv;
 }

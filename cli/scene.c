@@ -38,9 +38,10 @@ starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene) {
 
 static bool is_plain(const cli_scene *s) {
     return s->obstacles.count == 0 && s->orientation == STARG_ORIENTATION_NESTED && !s->outside &&
-           s->standoff.count == 0 && s->within.count == 0 && s->see.count == 0 &&
-           s->ignore.count == 0 && s->weights == NULL && !s->soup && !s->two_sided &&
-           s->from.count == 0 && s->over.count == 0 && s->mount.count == 0;
+           s->standoff.count == 0 && s->within.count == 0 && s->without.count == 0 &&
+           s->see.count == 0 && s->ignore.count == 0 && s->weights == NULL && !s->soup &&
+           !s->two_sided && s->require.count == 0 && s->clear.count == 0 && s->from.count == 0 &&
+           s->over.count == 0 && s->mount.count == 0;
 }
 
 static double diagonal(const starg_mesh *mesh) {
@@ -68,11 +69,68 @@ static void take_options(const cli_scene *s, const starg_mesh *model, starg_spac
         out->standoff_least = s->standoff.values[0];
         out->standoff_most = s->standoff.values[1];
     }
-    const double *box = s->within.count > 0 ? s->within.values : NULL;
-    for (int k = 0; box != NULL && k < 3; k++) {
-        out->within[k] = fmin(box[k], box[k + 3]);
-        out->within[k + 3] = fmax(box[k], box[k + 3]);
+}
+
+/* ---- zones ---- */
+
+static void free_zones(starg_zone *zones, size_t count) {
+    for (size_t i = 0; zones != NULL && i < count; i++)
+        starg_mesh_free((starg_mesh *)(uintptr_t)zones[i].mesh);
+    free(zones);
+}
+
+/* A box by two opposite corners, or else a file. */
+static starg_status read_zone(cli_session *session, const char *option, const char *word,
+                              starg_zone *zone) {
+    double corners[6];
+    starg_mesh *mesh = NULL;
+    if (!cli_number_list(word, corners, 6)) {
+        if (access(word, F_OK) != 0 && strcmp(word, "-") != 0)
+            return cli_fail(session, STARG_ERROR_READ,
+                            "%s takes a box of six numbers, X0,Y0,Z0,X1,Y1,Z1, or the file of a "
+                            "closed mesh, and there is no file '%.100s'",
+                            option, word);
+        starg_status status = starg_mesh_read(session->context, word, &mesh);
+        zone->mesh = mesh;
+        return status;
     }
+    for (int k = 0; k < 3; k++) {
+        zone->box[k] = fmin(corners[k], corners[k + 3]);
+        zone->box[k + 3] = fmax(corners[k], corners[k + 3]);
+        if (zone->box[k] == zone->box[k + 3])
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "%s %.100s is a box without an inside: both corners have the same %c",
+                            option, word, "xyz"[k]);
+    }
+    return STARG_OK;
+}
+
+/* One box alone is an option of the space, as ever. */
+static starg_status read_zones(cli_session *session, cli_scene *s, starg_space_options *out,
+                               starg_zone **list) {
+    starg_status status = STARG_OK;
+    size_t count = s->within.count + s->without.count;
+    starg_zone *zones = calloc(count + 1, sizeof *zones);
+    *list = zones;
+    free((void *)s->zone_files);
+    s->zone_files = calloc(count + 1, sizeof *s->zone_files);
+    if (zones == NULL || s->zone_files == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < count; i++) {
+        bool excludes = i >= s->within.count;
+        const char *word = excludes ? s->without.values[i - s->within.count] : s->within.values[i];
+        zones[i].excludes = excludes;
+        s->zone_files[i] = word;
+        CLI_TRY(read_zone(session, excludes ? "--without" : "--within", word, &zones[i]));
+    }
+    if (count == 1 && !zones[0].excludes && zones[0].mesh == NULL) {
+        memcpy(out->within, zones[0].box, sizeof out->within);
+        count = 0;
+    }
+    out->zones = zones;
+    out->zone_count = count;
+done:
+    return status;
 }
 
 static starg_status read_obstacles(cli_session *session, const char *const *files, size_t count,
@@ -147,6 +205,35 @@ static bool is_box(const double box[6]) {
     return box[0] < box[3] || box[1] < box[4] || box[2] < box[5];
 }
 
+/* Zones as words: numbers of boxes, files of meshes. */
+static bool recall_zones(const starg_guards *g, cli_scene *scene) {
+    char *text = NULL;
+    size_t size, all = g->zone_count > 0 ? g->zone_count : is_box(g->space.within);
+    scene->within.values = calloc(all + 1, sizeof *scene->within.values);
+    scene->without.values = calloc(all + 1, sizeof *scene->without.values);
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL)
+        return false;
+    for (size_t i = 0; i < all; i++) {
+        const double *box = g->zone_count > 0 ? g->zones[i].box : g->space.within;
+        for (int k = 0; k < 6; k++)
+            fprintf(stream, "%s%.17g", k > 0 ? "," : "", box[k]);
+        fputc('\0', stream);
+    }
+    if (fclose(stream) != 0 || scene->within.values == NULL || scene->without.values == NULL) {
+        free(text);
+        return false;
+    }
+    scene->recalled[3] = text;
+    for (size_t i = 0; i < all; i++, text += strlen(text) + 1) {
+        const starg_guard_zone *zone = g->zone_count > 0 ? &g->zones[i] : NULL;
+        starg_texts *words = zone != NULL && zone->excludes ? &scene->without : &scene->within;
+        bool mesh = zone != NULL && zone->face_count > 0;
+        words->values[words->count++] = !mesh ? text : zone->file != NULL ? zone->file : "ZONE";
+    }
+    return true;
+}
+
 starg_status cli_scene_recall(cli_session *session, const starg_guards *g, cli_scene *scene) {
     const starg_space_options *s = &g->space;
     const double standoff[2] = {s->standoff_least, s->standoff_most};
@@ -161,10 +248,10 @@ starg_status cli_scene_recall(cli_session *session, const starg_guards *g, cli_s
         done = done && recall_place(&scene->from, s->from, 3);
     if (standoff[0] > 0 || standoff[1] > 0)
         done = done && recall_place(&scene->standoff, standoff, 2);
-    if (is_box(s->within))
-        done = done && recall_place(&scene->within, s->within, 6);
+    done = done && recall_zones(g, scene);
     done = done && recall_faces(s->over, s->over_count, &scene->recalled[0], &scene->over);
     done = done && recall_faces(s->mount, s->mount_count, &scene->recalled[1], &scene->mount);
+    done = done && recall_faces(s->clear, s->clear_count, &scene->recalled[4], &scene->clear);
     if (are_alike(g))
         done = done && recall_faces(g->targets, g->target_count, &scene->recalled[2], &scene->see);
     else
@@ -180,12 +267,14 @@ starg_status cli_scene_recall(cli_session *session, const starg_guards *g, cli_s
 void cli_scene_forget(cli_scene *scene) {
     free(scene->from.values);
     free(scene->standoff.values);
-    free(scene->within.values);
+    free((void *)scene->within.values);
+    free((void *)scene->without.values);
     free((void *)scene->obstacles.values);
     free((void *)scene->over.values);
     free((void *)scene->mount.values);
     free((void *)scene->see.values);
-    for (int i = 0; i < 3; i++)
+    free((void *)scene->clear.values);
+    for (int i = 0; i < 5; i++)
         free(scene->recalled[i]);
     *scene = (cli_scene){0};
 }
@@ -315,35 +404,118 @@ static starg_status read_weights(cli_session *session, const cli_scene *s, size_
 /* The faces that words say, as an ascending list. */
 static starg_status read_list(cli_session *session, const char *option, const starg_texts *words,
                               size_t faces, uint32_t **list, size_t *count) {
-    starg_status status = STARG_OK;
-    double *values = NULL;
+    SCOPED double *values = NULL;
     *list = NULL;
     *count = 0;
     if (words->count == 0)
         return STARG_OK;
-    CLI_TRY(read_union(session, words, faces, &values));
+    TRY(read_union(session, words, faces, &values));
     *list = calloc(faces + 1, sizeof **list);
-    if (*list == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    if (*list == NULL)
+        return cli_fail_memory(session);
     for (size_t f = 0; f < faces; f++)
         if (values[f] != 0)
             (*list)[(*count)++] = (uint32_t)f;
     if (*count == 0)
-        status = cli_fail(session, STARG_ERROR_ARGUMENT, "%s %.100s are no faces of the model",
-                          option, words->values[0]);
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "%s %.100s are no faces of the model",
+                        option, words->values[0]);
+    return STARG_OK;
+}
+
+/* ---- needs ---- */
+
+/* K, or K and a density by number or name, after the last = of the word; true: it is that. */
+static bool parse_need(const char *text, starg_face_need *need) {
+    static const char *const names[] = {"monitor", "detect", "observe", "recognise", "identify"};
+    char *end;
+    unsigned long long times = strtoull(text, &end, 10);
+    *need = (starg_face_need){0};
+    if (end == text || *text == '-' || *text == '+' || times < 1 || times > 1000)
+        return false;
+    need->times = (uint32_t)times;
+    if (*end == '\0')
+        return true;
+    if (*end != ',')
+        return false;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(end + 1, names[i]) == 0)
+            need->density = STARG_DENSITY_MONITOR - (double)i;
+    return need->density < 0 || (cli_number_real(end + 1, &need->density) && need->density > 0);
+}
+
+static starg_status add_need(cli_session *session, const char *word, size_t faces,
+                             starg_face_need *needs) {
+    starg_status status = STARG_OK;
+    double *values = NULL;
+    starg_face_need need;
+    char *copy = strdup(word), *equals = copy != NULL ? strrchr(copy, '=') : NULL;
+    if (copy == NULL)
+        return cli_fail_memory(session);
+    if (equals == NULL || equals == copy || !parse_need(equals + 1, &need)) {
+        status =
+            cli_fail(session, STARG_ERROR_ARGUMENT,
+                     "--require takes FACES=K or FACES=K,DENSITY, such as doors=2 or "
+                     "doors=2,identify, with K from 1 to 1,000 and a density above 0 or one of "
+                     "monitor, detect, observe, recognise and identify, not '%.100s'",
+                     word);
+        goto done;
+    }
+    *equals = '\0';
+    const char *list[] = {copy};
+    const starg_texts words = {.values = list, .count = 1};
+    CLI_TRY(read_union(session, &words, faces, &values));
+    for (size_t f = 0, any = 0; f < faces || any == 0; f++) {
+        if (f == faces) {
+            status = cli_fail(session, STARG_ERROR_ARGUMENT,
+                              "--require %.100s: these are no faces of the model", word);
+            goto done;
+        }
+        if (values[f] == 0)
+            continue;
+        any = 1;
+        needs[f] = need;
+        needs[f].face = (uint32_t)f;
+    }
 done:
     free(values);
+    free(copy);
     return status;
 }
 
-starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
+/* Later ones beat earlier ones. */
+static starg_status require(cli_session *session, const cli_scene *s, size_t faces,
+                            const double *weights) {
+    starg_status status = STARG_OK;
+    size_t count = 0, ignored = 0;
+    starg_face_need *needs = calloc(faces + 1, sizeof *needs);
+    if (needs == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < s->require.count; i++)
+        CLI_TRY(add_need(session, s->require.values[i], faces, needs));
+    for (size_t f = 0; f < faces; f++)
+        if (needs[f].times > 0) {
+            ignored += weights != NULL && weights[f] == 0;
+            needs[count++] = needs[f];
+        }
+    if (ignored > 0)
+        status = cli_fail(session, STARG_ERROR_ARGUMENT,
+                          "--require names %s that --see, --ignore or --weights leave out; a face "
+                          "that need not be seen has no needs",
+                          cli_count_of(ignored, "face", "faces").text);
+    else
+        status = starg_space_require(session->solid, needs, count);
+done:
+    free(needs);
+    return status;
+}
+
+starg_status cli_scene_make(cli_session *session, cli_scene *s) {
     starg_status status = STARG_OK;
     starg_space_options options;
     starg_mesh **obstacles = NULL;
     double *weights = NULL;
-    uint32_t *over = NULL, *mount = NULL;
+    uint32_t *over = NULL, *mount = NULL, *clear = NULL;
+    starg_zone *zones = NULL;
     size_t faces = starg_mesh_face_count(session->mesh);
     take_options(s, session->mesh, &options);
     if (is_plain(s)) {
@@ -354,6 +526,9 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
     CLI_TRY(read_weights(session, s, faces, &weights));
     CLI_TRY(read_list(session, "--over", &s->over, faces, &over, &options.over_count));
     CLI_TRY(read_list(session, "--mount", &s->mount, faces, &mount, &options.mount_count));
+    CLI_TRY(read_list(session, "--clear", &s->clear, faces, &clear, &options.clear_count));
+    options.clear = clear;
+    CLI_TRY(read_zones(session, s, &options, &zones));
     options.over = over;
     options.mount = mount;
     CLI_TRY(starg_space_create(session->context, session->mesh,
@@ -361,19 +536,27 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
                                &session->solid));
     if (weights != NULL)
         CLI_TRY(starg_space_weigh(session->solid, weights));
+    if (s->require.count > 0)
+        CLI_TRY(require(session, s, faces, weights));
 done:
     free(weights);
     free(over);
     free(mount);
+    free(clear);
+    free_zones(zones, s->within.count + s->without.count);
     cli_scene_free_obstacles(obstacles, s->obstacles.count);
     starg_mesh_free(session->mesh);
     session->mesh = NULL;
     return status;
 }
 
+void cli_scene_release(cli_scene *scene) {
+    free((void *)scene->zone_files);
+    scene->zone_files = NULL;
+}
+
 starg_status cli_scene_read_obstacles(cli_session *session, const starg_guards *guards,
                                       starg_mesh ***out) {
-    starg_status status = STARG_OK;
     starg_mesh **list = calloc(guards->obstacle_count + 1, sizeof *list);
     *out = list;
     if (list == NULL)
@@ -383,6 +566,25 @@ starg_status cli_scene_read_obstacles(cli_session *session, const starg_guards *
         if (file == NULL)
             return cli_fail(session, STARG_ERROR_FORMAT,
                             "the result does not name the file of obstacle %zu", i);
+        TRY(starg_mesh_read(session->context, file, &list[i]));
+    }
+    return STARG_OK;
+}
+
+starg_status cli_scene_read_zones(cli_session *session, const starg_guards *guards,
+                                  starg_mesh ***out) {
+    starg_status status = STARG_OK;
+    starg_mesh **list = calloc(guards->zone_count + 1, sizeof *list);
+    *out = list;
+    if (list == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < guards->zone_count; i++) {
+        const char *file = guards->zones[i].file;
+        if (guards->zones[i].face_count == 0)
+            continue;
+        if (file == NULL)
+            return cli_fail(session, STARG_ERROR_FORMAT,
+                            "the result does not name the file of zone %zu", i);
         CLI_TRY(starg_mesh_read(session->context, file, &list[i]));
     }
 done:
@@ -391,7 +593,6 @@ done:
 
 starg_status cli_scene_join(cli_session *session, starg_mesh *const *obstacles, size_t count,
                             starg_mesh **out) {
-    starg_status status = STARG_OK;
     size_t vertices = 0, faces = 0;
     *out = NULL;
     for (size_t i = 0; i < count; i++) {
@@ -400,12 +601,10 @@ starg_status cli_scene_join(cli_session *session, starg_mesh *const *obstacles, 
     }
     if (faces == 0)
         return STARG_OK;
-    double *points = malloc(3 * vertices * sizeof *points);
-    uint32_t *corners = malloc(3 * faces * sizeof *corners);
-    if (points == NULL || corners == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    SCOPED double *points = malloc(3 * vertices * sizeof *points);
+    SCOPED uint32_t *corners = malloc(3 * faces * sizeof *corners);
+    if (points == NULL || corners == NULL)
+        return cli_fail_memory(session);
     vertices = faces = 0;
     for (size_t i = 0; i < count; i++) {
         const starg_mesh *mesh = obstacles[i];
@@ -416,9 +615,5 @@ starg_status cli_scene_join(cli_session *session, starg_mesh *const *obstacles, 
         vertices += own;
         faces += triangles;
     }
-    status = starg_mesh_create(session->context, points, vertices, corners, faces, out);
-done:
-    free(points);
-    free(corners);
-    return status;
+    return starg_mesh_create(session->context, points, vertices, corners, faces, out);
 }

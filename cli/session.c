@@ -74,7 +74,7 @@ static bool cli_progress_report(void *user, const char *name, double fraction) {
     }
     bool due = now - stage->began >= PATIENCE && now - progress->drawn_at >= REDRAW;
     if (progress->bar && due && fraction > 0) {
-        cli_progress_draw(progress, stage, fraction, now - stage->began);
+        cli_progress_draw(progress, stage, progress->context, fraction, now - stage->began);
         progress->drawn_at = now;
     }
     return true;
@@ -89,11 +89,15 @@ const cli_option cli_common_options[] = {
     CLI_POSITIVE_OPTION("time-limit", time_limit, "S", 1e9, 0, "none",
                         "Stop after S seconds. Searches return their best result; without one, the "
                         "exit status is 3."),
+    CLI_FLAG_OPTION("keep-best", keep_best,
+                    "On Ctrl-C end searches and write their best result; a second one cancels."),
     CLI_FLAG_OPTION("quiet", quiet, "Print only warnings and errors."),
     CLI_FLAG_OPTION("verbose", verbose, "Print details, too."),
     CLI_FLAG_OPTION("json", json,
                     "Print one JSON object to standard output instead of text (docs/formats.md)."),
-    {CLI_OPTION("help", STARG_FIELD_FLAG, help, NULL, "Show this help."), .letter = 'h'},
+    {CLI_OPTION("help", STARG_FIELD_FLAG, help, NULL,
+                "Show help; '--help all' and '--help GROUP' show more."),
+     .letter = 'h'},
     CLI_FLAG_OPTION("version", version, "Show the version."),
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
@@ -102,14 +106,16 @@ const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_c
 
 /* The context for the signal handler, which has no other access to it. */
 static starg_context *volatile signal_context;
-static volatile sig_atomic_t signal_count;
+static volatile sig_atomic_t signal_count, signals_to_finish;
 
-/* The first two signals request cancellation; the third one kills. */
+/* The first one may end searches only, the next two request cancellation; then one kills. */
 static void on_signal(int number) {
     signal_count = signal_count + 1;
-    if (signal_context != NULL)
+    if (signal_context != NULL && signal_count <= signals_to_finish)
+        starg_context_finish(signal_context);
+    else if (signal_context != NULL)
         starg_context_cancel(signal_context);
-    if (signal_count >= 3) {
+    if (signal_count >= 3 + signals_to_finish) {
         signal(number, SIG_DFL);
         raise(number);
     }
@@ -125,6 +131,11 @@ static void catch_signals(void) {
     /* Failed writes must return an error, not kill the process. */
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+}
+
+void cli_say_limited(cli_session *session) {
+    cli_say(session, "%s; this is the best result found\n",
+            signal_count > 0 ? "interrupted   on request" : "time limit    reached");
 }
 
 /* ---- start ---- */
@@ -164,6 +175,8 @@ starg_status cli_session_start(cli_session *session) {
         return cli_fail(session, status, "%s", starg_status_string(status));
     starg_context_set_ranks(session->context, cli_ranks());
     signal_context = session->context;
+    session->progress.context = session->context;
+    signals_to_finish = session->common.keep_best;
     catch_signals();
     if (common->time_limit > 0)
         starg_context_set_time_limit(session->context, common->time_limit);
@@ -307,16 +320,14 @@ static starg_status flush_stdout(cli_session *session) {
 
 /* Everything that can still fail, the outputs last: after a failure none has changed. */
 static starg_status deliver(cli_session *session) {
-    starg_status status = STARG_OK;
     if (session->common.json)
-        CLI_TRY(cli_report_print(session));
-    CLI_TRY(flush_stdout(session));
-    if (signal_count > 0)
+        TRY(cli_report_print(session));
+    TRY(flush_stdout(session));
+    if (signal_count > signals_to_finish)
         return STARG_ERROR_CANCELLED;
     if (!cli_outputs_commit(&session->outputs))
-        status = cli_fail(session, STARG_ERROR_WRITE, "%s", session->outputs.message);
-done:
-    return status;
+        return cli_fail(session, STARG_ERROR_WRITE, "%s", session->outputs.message);
+    return STARG_OK;
 }
 
 /* Detail of a failure: the command line's own, otherwise the library's. */
@@ -359,4 +370,10 @@ int cli_session_finish(cli_session *session, starg_status status) {
     signal_context = NULL;
     starg_context_free(session->context);
     return result;
+}
+
+void cli_free_scoped(void *pointer) {
+    void *block;
+    memcpy(&block, pointer, sizeof block);
+    free(block);
 }

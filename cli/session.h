@@ -1,23 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One run of one command: its options, the library's context, the destinations of text, errors,
  * results and files, and the exit status. */
-#ifndef STARGUARD_CLI_SESSION_H
-#define STARGUARD_CLI_SESSION_H
+#pragma once
 
 #include <jansson.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <sys/types.h>
 
 #include "options.h"
 #include "starguard/bits.h"
-#include "starguard/context.h"
 #include "starguard/descriptor.h"
-#include "starguard/fields.h"
-#include "starguard/mesh.h"
-#include "starguard/solid.h"
 #include "starguard/tetra.h"
 
 /* Capabilities of a terminal. */
@@ -45,6 +37,7 @@ typedef struct cli_stage {
 } cli_stage;
 
 typedef struct cli_progress {
+    const starg_context *context;
     bool bar;   /* draw a bar */
     bool drawn; /* a bar is visible now */
     double drawn_at;
@@ -59,8 +52,8 @@ double cli_clock(void);
 bool cli_progress_visible(void);
 
 /* Draws the bar of a stage that has run for `elapsed` seconds; 0 < fraction < 1. */
-void cli_progress_draw(cli_progress *progress, const cli_stage *stage, double fraction,
-                       double elapsed);
+void cli_progress_draw(cli_progress *progress, const cli_stage *stage, const starg_context *context,
+                       double fraction, double elapsed);
 
 /* Erases the bar, so that a line can be written. */
 void cli_progress_erase(cli_progress *progress);
@@ -134,6 +127,7 @@ typedef enum cli_exit {
 /* Options common to all commands. */
 typedef struct cli_common {
     uint64_t threads, seed;
+    bool keep_best;
     double time_limit; /* seconds; 0: none */
     bool quiet, verbose, json, help, version;
 } cli_common;
@@ -164,7 +158,24 @@ typedef struct cli_session {
     char message[512];
 } cli_session;
 
-/* Evaluates EXPR; on failure jumps to `done` with `status` set. */
+/* Evaluates EXPR; returns its status on failure. */
+#define TRY(EXPR)                                                                                  \
+    do {                                                                                           \
+        starg_status cli_status_ = (EXPR);                                                         \
+        if (cli_status_ != STARG_OK)                                                               \
+            return cli_status_;                                                                    \
+    } while (0)
+
+/* Before a declaration: the variable's block is freed, or its address handed to F, on every way out
+ * of its scope. */
+#define SCOPED       SCOPED_BY(cli_free_scoped)
+#define SCOPED_BY(F) __attribute__((cleanup(F)))
+void cli_free_scoped(void *pointer);
+static inline void starg_mesh_drop(starg_mesh **mesh) {
+    starg_mesh_free(*mesh);
+}
+
+/* The same for functions that clean up after `done`. */
 #define CLI_TRY(EXPR)                                                                              \
     do {                                                                                           \
         status = (EXPR);                                                                           \
@@ -206,6 +217,9 @@ void cli_log(cli_session *session, starg_log_level level, const char *format, ..
 /* Text for people: standard output, or standard error if a result goes there; nothing with --quiet
  * or --json. */
 void cli_say(cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Says that a search ended early, and why. */
+void cli_say_limited(cli_session *session);
 
 /* Same on standard error whatever the options are. */
 void cli_warn(cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -320,5 +334,3 @@ typedef struct cli_amount {
     char text[64];
 } cli_amount;
 cli_amount cli_count_of(size_t count, const char *singular, const char *plural);
-
-#endif

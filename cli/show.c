@@ -7,9 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "session.h"
 #include "starguard/animation.h"
-#include "starguard/decompose.h"
 
 enum { HEAD = 4096 }; /* bytes used to recognize a file */
 
@@ -213,13 +211,11 @@ static const char *base_of(const char *path) {
 }
 
 static starg_status read_model(cli_session *session, const char *file, cli_show *show) {
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_shape_read(session, file, &show->model, &show->tetmesh));
+    TRY(cli_shape_read(session, file, &show->model, &show->tetmesh));
     if (show->tetmesh != NULL)
-        CLI_TRY(starg_tetmesh_surface(session->context, show->tetmesh, &show->model, NULL));
+        TRY(starg_tetmesh_surface(session->context, show->tetmesh, &show->model, NULL));
     show->page.model = show->model;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Guards require their model, skeletons can use one, pieces do not need it. */
@@ -255,6 +251,36 @@ static starg_status check_model(cli_session *session, const cli_show *show) {
                     show->guards_file, g->vertex_count, g->face_count, vertices, faces);
 }
 
+static void warn_of_faces(cli_session *session, const cli_show *show) {
+    const starg_guards *g = show->page.guards;
+    for (size_t i = 0; i < g->count; i++)
+        if (starg_bits_count(show->seen, i) != g->seen_faces[i]) {
+            cli_warn(session,
+                     "warning: guard %zu sees %zu faces, but '%.200s' says %zu; this may be the "
+                     "wrong model (check with 'starguard verify')",
+                     i, starg_bits_count(show->seen, i), show->guards_file, g->seen_faces[i]);
+            break;
+        }
+}
+
+/* Shows the patches in place of the faces. */
+static starg_status show_patches(cli_session *session, cli_show *show) {
+    const starg_guards *g = show->page.guards;
+    size_t missing = 0;
+    starg_bits_free(show->seen);
+    show->seen = NULL;
+    TRY(starg_guards_patches(session->context, show->solid, g, &show->patches, &show->seen,
+                             &show->uncovered, &missing));
+    show->shown = *g;
+    show->shown.vertex_count = starg_mesh_vertex_count(show->patches);
+    show->shown.face_count = starg_mesh_face_count(show->patches);
+    show->shown.uncovered = show->uncovered;
+    show->shown.uncovered_count = missing;
+    show->page.guards = &show->shown;
+    show->page.model = show->patches;
+    return STARG_OK;
+}
+
 /* Computes what every guard sees, and compares it with the file. */
 static starg_status see(cli_session *session, cli_show *show) {
     starg_status status = STARG_OK;
@@ -267,18 +293,13 @@ static starg_status see(cli_session *session, cli_show *show) {
     CLI_TRY(cli_scene_join(session, obstacles, g->obstacle_count, &show->obstacles));
     show->page.obstacles = show->obstacles;
     CLI_TRY(starg_guards_see(session->context, show->solid, g, &show->seen));
-    show->page.seen = show->seen;
+    warn_of_faces(session, show);
     if (!g->time_limited) /* what a clock has stopped does not come again */
         CLI_TRY(cli_guard_command(session, g, base_of(show->guards_file), &show->command));
     show->page.command = show->command;
-    for (size_t i = 0; i < g->count; i++)
-        if (starg_bits_count(show->seen, i) != g->seen_faces[i]) {
-            cli_warn(session,
-                     "warning: guard %zu sees %zu faces, but '%.200s' says %zu; this may be the "
-                     "wrong model (check with 'starguard verify')",
-                     i, starg_bits_count(show->seen, i), show->guards_file, g->seen_faces[i]);
-            break;
-        }
+    if (g->options.visibility.patch > 0)
+        CLI_TRY(show_patches(session, show));
+    show->page.seen = show->seen;
 done:
     cli_scene_free_obstacles(obstacles, g->obstacle_count);
     return status;
@@ -338,18 +359,16 @@ static starg_status recall_pieces(cli_session *session, cli_show *show) {
 }
 
 static starg_status compute(cli_session *session, cli_show *show) {
-    starg_status status = STARG_OK;
     bool radii = show->skeleton != NULL && show->skeleton->radii == NULL;
     if (show->page.guards != NULL)
-        CLI_TRY(see(session, show));
+        TRY(see(session, show));
     else if (show->model != NULL && radii)
-        CLI_TRY(starg_solid_create(session->context, show->model, &show->solid));
+        TRY(starg_solid_create(session->context, show->model, &show->solid));
     if (show->skeleton != NULL)
-        CLI_TRY(measure(session, show));
+        TRY(measure(session, show));
     if (show->page.report != NULL)
-        CLI_TRY(recall_pieces(session, show));
-done:
-    return status;
+        TRY(recall_pieces(session, show));
+    return STARG_OK;
 }
 
 /* ---- public function ---- */
@@ -411,6 +430,8 @@ void cli_show_free(cli_session *session, cli_show *show) {
     free(show->title);
     starg_skeleton_free(context, show->skeleton);
     starg_bits_free(show->seen);
+    starg_mesh_free(show->patches);
+    starg_patches_free(context, show->uncovered);
     starg_certificate_outline_free(context, show->proof);
     starg_solid_free(show->solid);
     starg_mesh_free(show->model);

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Contents of a page, read from result files of any kind, which are recognized by content. */
-#ifndef STARGUARD_CLI_SHOW_H
-#define STARGUARD_CLI_SHOW_H
+#pragma once
 
 #include "database.h"
-#include "session.h"
 #include "starguard/page.h"
-#include "starguard/tetra.h"
 
 typedef struct cli_show {
     starg_page page; /* refers to the members below */
@@ -15,6 +12,9 @@ typedef struct cli_show {
     starg_mesh *model, *obstacles, **frames;
     starg_solid *solid;
     starg_bits *seen;
+    starg_mesh *patches; /* in which guards see the model; NULL: its faces */
+    starg_guards shown;  /* the guards, with patches for faces */
+    uint32_t *uncovered;
     starg_certificate_outline *proof;
     starg_result **results;             /* one per operand, or NULL */
     starg_skeleton *skeleton, measured; /* as read; with radii */
@@ -43,5 +43,3 @@ starg_status cli_show_table(cli_session *session, const char *file, cli_show *sh
 starg_status cli_show_database(cli_session *session, const char *file, int distance,
                                cli_show *show);
 void cli_show_free_shapes(cli_session *session, cli_show *show);
-
-#endif

@@ -6,8 +6,6 @@
 #include <sys/stat.h>
 
 #include "commands.h"
-#include "database.h"
-#include "options.h"
 #include "show.h"
 #include "starguard/picture.h"
 
@@ -61,22 +59,19 @@ static void tell_missing(cli_session *session, const cli_show *show) {
 
 starg_status cli_show_database(cli_session *session, const char *file, int distance,
                                cli_show *show) {
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_table_make(session, file, distance, &show->table));
+    TRY(cli_table_make(session, file, distance, &show->table));
     const starg_database_models *models = show->table.models;
     if (models->count > MOST_SHAPES)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "'%.200s' has %zu models; a page shows at most %d", file, models->count,
                         MOST_SHAPES);
-    CLI_TRY(make_room(session, models->count, show));
+    TRY(make_room(session, models->count, show));
     for (size_t i = 0; i < models->count; i++) {
         show->shapes[i].name = models->items[i].name;
-        CLI_TRY(draw_shape(session, models->items[i].path, i, show));
+        TRY(draw_shape(session, models->items[i].path, i, show));
     }
     tell_missing(session, show);
-    CLI_TRY(cli_matrix_command(session, file, distance, "distances.csv", &show->table_command));
-done:
-    return status;
+    return cli_matrix_command(session, file, distance, "distances.csv", &show->table_command);
 }
 
 /* ---- tables of text ---- */

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# What a release consists of: source archive, wheel, Debian packages, web page, and SHA256SUMS.
+# What a release consists of: source archive, wheel, Debian packages, web page, site, and SHA256SUMS.
 #
 #   release.sh versions              do all places name the same version?
 #   release.sh check                 and is everything committed, and no other commit tagged with it?
@@ -46,6 +46,10 @@ collect() {
     else
         echo "release: without the web page, which has not been built"
     fi
+    [ -f "$1-site/index.html" ] || fail "there is no site in $1-site: make site"
+    tar -C "$(dirname "$1-site")" --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner \
+        --transform "s,^[^/]*,starguard-$version-site," -cf - "$(basename "$1-site")" |
+        gzip -9n >"$2/starguard-$version-site.tar.gz"
     (cd "$2" && sha256sum -- *"$version"* >SHA256SUMS && cat SHA256SUMS)
     echo "release: starguard $version with $(basename "$wheel") is in $2"
 }

@@ -72,6 +72,13 @@ def option_list(options):
     return out
 
 
+def grouped(table, options):
+    """The options by their groups, under titles; those of no group come last."""
+    parts = [(g["title"], [o for o in options if o.get("group") == g["name"]]) for g in table["groups"]]
+    rest = [o for o in options if "group" not in o]
+    return "".join(f".SS {title}\n" + option_list(part) for title, part in parts if part) + option_list(rest)
+
+
 def command_list(commands):
     return "".join(f".TP\n\\fB{page_name(c['name'])}\\fR(1)\n{filled(c['summary'])}" for c in commands)
 
@@ -99,7 +106,7 @@ def command_page(table, c):
     if c["group"]:
         out += ".SH COMMANDS\n" + command_list(members(table, c["name"]))
     if c["options"]:
-        out += ".SH OPTIONS\n" + option_list(c["options"])
+        out += ".SH OPTIONS\n" + grouped(table, c["options"])
     return (out + common_options(table) + ".SH EXAMPLES\n" + examples(c["examples"]) + exit_status(table)
             + ".SH SEE ALSO\n\\fBstarguard\\fR(1)\n")
 

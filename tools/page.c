@@ -105,14 +105,14 @@ static void put_option(FILE *page, const starg_field *f) {
     put_range(page, f);
     fputs(" | ", page);
     put_default(page, f);
-    fputs(" | ", page);
+    fprintf(page, " | %s | ", f->group != NULL ? f->group : "");
     put_meaning(page, f, false);
 }
 
 static void put_options(FILE *page, const call *c) {
     fprintf(page, "\n### %s\n\n", c->title);
-    fputs("| option | in Python | type | range | default | meaning |\n"
-          "|---|---|---|---|---|---|\n",
+    fputs("| option | in Python | type | range | default | group | meaning |\n"
+          "|---|---|---|---|---|---|---|\n",
           page);
     for (size_t i = 0; i < c->fields()->count; i++)
         put_option(page, &c->fields()->fields[i]);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Controls shared by all 3D views: opacity of the model, the cut, the up direction.
 import { shared } from "./materials.js";
-import { choice, element, heading, say, slider } from "./panel.js";
+import page from "./data.js";
+import { check, choice, element, heading, say, slider } from "./panel.js";
 import { percent } from "./text.js";
 
 const AXES = ["Off", "X", "Y", "Z"];
@@ -24,6 +25,19 @@ export class Controls {
                     stage.request();
                 },
             });
+        const hollow = page.guards?.hollow ?? false;
+        this.hollow =
+            surface &&
+            check({
+                name: "Doll's house: hide walls towards you",
+                id: "hollow",
+                value: hollow,
+                change: (on) => {
+                    surface.setHollow(on);
+                    stage.request();
+                },
+            });
+        if (surface) surface.setHollow(hollow);
         this.axis = choice({ name: "Cut", words: AXES, value: 0, change: () => this.cut() });
         this.place = slider({
             name: "Cut at",
@@ -44,7 +58,7 @@ export class Controls {
             "Reset view",
         );
         this.cutParts = element("div", { className: "beside" }, this.place.node, this.flip);
-        this.surfacePart = element("div", {}, ...(this.opacity ? [this.opacity.node] : []));
+        this.surfacePart = element("div", {}, ...(surface ? [this.opacity.node, this.hollow] : []));
         this.node = element(
             "div",
             {},

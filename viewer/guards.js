@@ -50,6 +50,7 @@ export class GuardsView extends View {
         this.objects = [this.points.object];
         if (told.list[0]?.direction) this.objects.push((this.pointers = this.makePointers()));
         if (told.list[0]?.corners || told.cone) this.objects.push((this.cones = this.makeCones()));
+        if (told.tour) this.objects.push((this.tour = tourObject(floats("guard-tour"))));
         if (page.obstacles) this.objects.push((this.obstacles = obstacleObject()));
         if (told.proof) {
             this.proof = new Proof(told.proof, indices("model-faces"), () => this.update());
@@ -117,13 +118,13 @@ export class GuardsView extends View {
 
     // ---- panel ----
 
-    makeSwitch() {
+    makeSwitch(name, id, object) {
         return check({
-            name: `Obstacles (${amount(page.obstacles, "face", "faces")})`,
-            id: "obstacles",
+            name,
+            id,
             value: true,
             change: (on) => {
-                this.obstacles.visible = on;
+                object.visible = on;
                 this.stage.request();
             },
         });
@@ -153,7 +154,11 @@ export class GuardsView extends View {
                     change: (on) => this.labels.want(on),
                 }),
             );
-        if (this.obstacles) node.append(this.makeSwitch());
+        if (this.tour) node.append(this.makeSwitch("Tour", "tour", this.tour));
+        if (this.obstacles) {
+            const name = `Obstacles (${amount(page.obstacles, "face", "faces")})`;
+            node.append(this.makeSwitch(name, "obstacles", this.obstacles));
+        }
         node.append(heading("Pick a guard to see what it sees"), this.list.node);
         this.place = note("");
         node.append(this.place);
@@ -174,7 +179,18 @@ export class GuardsView extends View {
             ["Guards", count(number), METHODS[told.method]],
             ...this.makeBounds(),
             ["Area seen", percent(told.coverage_area), `${percent(told.coverage_faces)} of faces`],
+            ...this.makeSearch(),
+            ...(told.tour ? [["Tour", told.tour.toPrecision(4), "long"]] : []),
         ]);
+    }
+
+    /** How many guards the search began with, and when it had found fewer. */
+    makeSearch() {
+        const steps = this.told.search ?? [];
+        if (steps.length < 2) return [];
+        const [work] = steps[steps.length - 1];
+        const numbers = steps.map(([, guards]) => guards).join(", ");
+        return [["Search", numbers, `the last after ${(work / 1e6).toPrecision(2)} million steps`]];
     }
 
     /** "Needed" holds for guards anywhere. With a given number of guards the area counts. */
@@ -191,7 +207,7 @@ export class GuardsView extends View {
                     ? ["Needed", count(told.lower_bound_everywhere), "anywhere: optimal", "good"]
                     : ["Needed", count(told.lower_bound_everywhere), "at least, anywhere"],
             );
-        bounds.push(["Of these candidates", count(told.lower_bound), "needed at least"]);
+        else bounds.push(["Needed", count(told.lower_bound), "at least, of these candidates"]);
         return bounds;
     }
 
@@ -303,6 +319,13 @@ export class GuardsView extends View {
     leave() {
         this.labels.leave();
     }
+}
+
+/** The way through the guards. */
+function tourObject(points) {
+    const ends = [];
+    for (let i = 3; i < points.length; i += 3) ends.push(...points.slice(i - 3, i + 3));
+    return lineObject(ends, null, "#e69f00");
 }
 
 /** Line segments between pairs of ends that nothing hides, in one colour or `tints` of the ends. */

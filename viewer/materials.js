@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Appearance: one shader for surfaces, one for points. Uses the style sheet's colours unchanged; light
 // comes from over the viewer's left shoulder.
-import { Color, DoubleSide, FrontSide, ShaderMaterial, Vector4 } from "three";
+import { BackSide, Color, DoubleSide, FrontSide, ShaderMaterial, Vector4 } from "three";
 
 /** Uniforms shared by all materials: the cut, which hides points with dot(p, cut.xyz) > cut.w. */
 export const shared = {
@@ -10,6 +10,8 @@ export const shared = {
     time: { value: 0 },
     pixels: { value: 1 },
 };
+
+const INNER = 0.74;
 
 const SURFACE_VERTEX = `
 uniform float explode, time;
@@ -61,7 +63,7 @@ void main() {
 const SURFACE_FRAGMENT = `
 uniform vec4 cut;
 uniform vec3 base;
-uniform float opacity, rim, pixels;
+uniform float opacity, rim, inner, pixels;
 varying vec3 where, direction, view, tint;
 #ifdef PIECES
 varying float fade;
@@ -86,7 +88,12 @@ vec3 checker(vec3 cell) {
 void main() {
     if (dot(where, cut.xyz) > cut.w) discard;
     vec3 n = normalize(direction), v = normalize(view);
-    if (!gl_FrontFacing) n = -n;
+#ifdef FLIP_SIDED
+    bool outer = false; /* only inner sides are drawn, and count as front faces */
+#else
+    bool outer = gl_FrontFacing;
+#endif
+    if (!outer) n = -n;
     float facing = clamp(dot(n, v), 0.0, 1.0);
     float key = max(dot(n, normalize(vec3(-0.45, 0.65, 0.7))), 0.0);
     float light = 0.50 + 0.40 * key + 0.16 * facing;
@@ -101,13 +108,13 @@ void main() {
     c *= mix(1.0, 0.45, step(0.5, fract((gl_FragCoord.x - gl_FragCoord.y) / (8.0 * pixels))));
 #endif
     float a = mix(opacity, 1.0, rim * pow(1.0 - facing, 2.5));
-    if (!gl_FrontFacing) {
+    if (!outer) {
 #ifdef SOLID
         /* what a cut lays open of a closed surface looks filled */
         float hatch = step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / (9.0 * pixels)));
         c = paint * (0.72 + 0.05 * hatch);
 #else
-        c *= 0.74;
+        c *= inner;
 #endif
     }
 #ifdef PIECES
@@ -135,6 +142,7 @@ export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defin
             opacity: { value: opacity },
             rim: { value: rim },
             picked: { value: -1 },
+            inner: { value: INNER }, // brightness of inner sides
             pattern: { value: 0 },
             grid: { value: new Vector4(0, 0, 0, 1) }, // origin, and cells in a unit
         },
@@ -153,9 +161,10 @@ export function setOpacity(material, opacity) {
     material.visible = opacity > 0.005;
 }
 
-/** A cut reveals inner sides. */
-export function setCutOpen(material, open) {
-    material.side = open ? DoubleSide : FrontSide;
+/** Which sides of faces are drawn; inner sides are darker beside outer ones. */
+export function setSides(material, outer, inner) {
+    material.uniforms.inner.value = outer ? INNER : 1;
+    material.side = !inner ? FrontSide : outer ? DoubleSide : BackSide;
     material.needsUpdate = true;
 }
 

@@ -3,7 +3,7 @@
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, smoothNormals } from "./geometry.js";
-import { setCutOpen, shared, surfaceMaterial } from "./materials.js";
+import { setSides, shared, surfaceMaterial } from "./materials.js";
 import { Labels } from "./labels.js";
 import { element, facts, note, say, slider } from "./panel.js";
 import { PickPoints } from "./points.js";
@@ -162,6 +162,6 @@ export class MorphView extends View {
     }
 
     setCutOpen(open) {
-        setCutOpen(this.material, open);
+        setSides(this.material, true, open);
     }
 }

@@ -3,7 +3,7 @@
 import { BufferAttribute, BufferGeometry, Color, Mesh } from "three";
 import page from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
-import { setCutOpen, shared, surfaceMaterial } from "./materials.js";
+import { setSides, shared, surfaceMaterial } from "./materials.js";
 import { normalAttribute } from "./surface.js";
 
 export class Parts {
@@ -104,7 +104,7 @@ export class Parts {
     }
 
     setCutOpen(open) {
-        setCutOpen(this.material, open);
+        setSides(this.material, true, open);
     }
 
     /** The first piece that a ray meets, -1 for none: tests every triangle. */

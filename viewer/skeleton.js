@@ -11,7 +11,7 @@ import {
 } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf } from "./geometry.js";
-import { setCutOpen, surfaceMaterial } from "./materials.js";
+import { setSides, surfaceMaterial } from "./materials.js";
 import { facts, note, slider } from "./panel.js";
 import { themeColor } from "./theme.js";
 import { count, percent } from "./text.js";
@@ -143,6 +143,6 @@ export class SkeletonView extends View {
     }
 
     setCutOpen(open) {
-        for (const object of this.objects) setCutOpen(object.material, open);
+        for (const object of this.objects) setSides(object.material, true, open);
     }
 }

@@ -3,7 +3,7 @@
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
-import { setCutOpen, setOpacity, surfaceMaterial } from "./materials.js";
+import { setOpacity, setSides, surfaceMaterial } from "./materials.js";
 import { themeColor } from "./theme.js";
 
 const GLASS = 0,
@@ -20,6 +20,8 @@ export class Surface {
         this.corners = surface.index;
         this.ball = ballOf(points);
         this.kinds = new Uint8Array(this.faceCount);
+        this.opacity = 0.3;
+        this.hollow = this.open = false;
         this.geometry = new BufferGeometry();
         this.geometry.setAttribute("position", new BufferAttribute(surface.position, 3));
         this.geometry.setAttribute("normal", normalAttribute(surface.normal));
@@ -44,11 +46,21 @@ export class Surface {
     }
 
     setOpacity(opacity) {
-        setOpacity(this.materials[GLASS], opacity);
+        this.opacity = opacity;
+        this.setHollow(this.hollow);
     }
 
     setCutOpen(open) {
-        this.materials.forEach((material) => setCutOpen(material, open));
+        this.open = open;
+        this.setHollow(this.hollow);
+    }
+
+    /** A doll's house: of a hollow model only what faces away from the viewer is drawn, and hides
+     * what is behind. */
+    setHollow(hollow) {
+        this.hollow = hollow;
+        setOpacity(this.materials[GLASS], hollow && this.opacity > 0 ? 1 : this.opacity);
+        this.materials.forEach((material) => setSides(material, !hollow, hollow || this.open));
     }
 
     /**
@@ -95,7 +107,7 @@ export function obstacleObject() {
     geometry.setAttribute("normal", normalAttribute(surface.normal));
     geometry.setIndex(new BufferAttribute(surface.index, 1));
     const material = surfaceMaterial({ color: "#967d5f", opacity: 0.6 });
-    setCutOpen(material, true);
+    setSides(material, true, true);
     const object = new Mesh(geometry, material);
     object.frustumCulled = false;
     object.renderOrder = 4; // after what is inside, before the glass

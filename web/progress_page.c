@@ -14,9 +14,9 @@ bool cli_progress_visible(void) {
     return true;
 }
 
-void cli_progress_draw(cli_progress *progress, const cli_stage *stage, double fraction,
-                       double elapsed) {
-    (void)progress, (void)elapsed;
+void cli_progress_draw(cli_progress *progress, const cli_stage *stage, const starg_context *context,
+                       double fraction, double elapsed) {
+    (void)progress, (void)context, (void)elapsed;
     show_progress(stage->name, fraction);
 }
 

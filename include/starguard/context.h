@@ -3,9 +3,9 @@
  * error.
  *
  * Threads: only one thread at a time may use a context; different contexts are independent.
- * Exception: starg_context_cancel may be called from any thread and any signal handler. Finished
- * objects (meshes, matrices, results) are immutable and may be shared freely. Free an object before
- * the context that created it, because its memory returns there. */
+ * Exceptions: starg_context_cancel and starg_context_finish may be called from any thread and any
+ * signal handler. Finished objects (meshes, matrices, results) are immutable and may be shared
+ * freely. Free an object before the context that created it, because its memory returns there. */
 #ifndef STARGUARD_CONTEXT_H
 #define STARGUARD_CONTEXT_H
 
@@ -69,7 +69,15 @@ STARG_API void starg_text_free(starg_context *context, char *text);
 /* Stops the running call, or the next one if none is running. Async-signal-safe. */
 STARG_API void starg_context_cancel(starg_context *context);
 
-/* Clears a cancellation so that the context can be used again. */
+/* Ends searches of the running call, or of the next one, as if a time limit had just passed: they
+ * return their best result, marked as time-limited. Other work goes on. Async-signal-safe. */
+STARG_API void starg_context_finish(starg_context *context);
+
+/* In a progress callback: how many guards or pieces the best result of the running search has so
+ * far, and which (`what`, may be NULL: "guards", "pieces"); 0: there is none yet. */
+STARG_API size_t starg_context_best(const starg_context *context, const char **what);
+
+/* Clears a cancellation, or a request to finish, so that the context can be used again. */
 STARG_API void starg_context_reset(starg_context *context);
 
 /* Wall-clock limit for all following calls, in seconds from now; 0 or less: none. A search that

@@ -30,6 +30,8 @@ typedef struct starg_cover_problem {
     const uint64_t *weights; /* one per column, sum below 2^62; NULL: 1 each             */
     uint64_t target;         /* weight to cover; UINT64_MAX: all that is coverable       */
     uint32_t redundancy;     /* 1 to 1,000                                               */
+    const uint32_t *needs;   /* one per column, in place of the redundancy; 0: needs none; NULL: the
+                                redundancy for each */
     size_t max_rows;         /* 0: no limit                                              */
     const uint32_t *given;   /* given_count rows, in any order                           */
     size_t given_count;

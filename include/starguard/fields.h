@@ -59,8 +59,8 @@ enum {
     STARG_FIELD_ABOVE = 16,   /* a real above `low`, not `low` itself                            */
     STARG_FIELD_INPUT = 32,   /* an input file name, or a word of `value` */
     STARG_FIELD_COUNTED = 64, /* numbers of a column: count in the member at `length` */
-    STARG_FIELD_RARE = 128,   /* with OPTIONAL: not in files where it is the default, which is 0 for
-                                 NUMBERS; a RECORD, where all of it is */
+    STARG_FIELD_RARE = 128,   /* with OPTIONAL: not in files where it is the default, of NUMBERS
+                                 `standard` for each; a RECORD, where all of it is */
     STARG_FIELD_ALONE = 256,  /* a CHOICE whose option needs no word: alone it stands for `none` */
     STARG_FIELD_ONCE = 512    /* PLACES, TEXTS: the option occurs at most once */
 };
@@ -80,7 +80,8 @@ typedef struct starg_field {
                                             `initial` is the default. LIST: `least` items */
     double low, high, standard;          /* REAL, NUMBERS: range, default                       */
     const char *const *words;            /* NULL-terminated. CHOICE: by number. COUNT: names of the
-                                            numbers from `most` + 1 on; NULL: none */
+                                            numbers from `most` + 1 on; REAL: of -1, -2, ...;
+                                            NULL: none */
 
     size_t length, limit;  /* LIST, INDICES: offsets of size_t members. NUMBERS: `length` is their
                               number; PLACES: numbers per row */
@@ -92,6 +93,8 @@ typedef struct starg_field {
     const char *value;        /* name of the option's value in help */
     const char *help;         /* description in sentences; the default is appended */
     const char *default_text; /* the default in words; "": nothing is appended */
+    const char *group;        /* of options, a word of starg_field_group; NULL: none */
+    const char *brief;        /* of an option that most users need: its help in a line */
 } starg_field;
 
 /* How a record is written. */
@@ -119,6 +122,10 @@ struct starg_fields {
 #define STARG_EFFORT_NORMAL ((uint64_t)INT64_MAX + 2)
 #define STARG_EFFORT_BEST   ((uint64_t)INT64_MAX + 3)
 
+/* The groups of options in the order of the help: the word and title of a group by its index; NULL
+ * after the last. */
+STARG_API const char *starg_field_group(size_t index, const char **title);
+
 /* Sets every member of a table to its default; other members are not changed. */
 STARG_API void starg_fields_default(const starg_fields *fields, void *record);
 
@@ -130,12 +137,15 @@ STARG_API void starg_field_default_text(const starg_field *field, char *text, si
  * truncated to `size` bytes. */
 STARG_API void starg_field_expectation(const starg_field *field, char *text, size_t size);
 
-/* Sets a CHOICE, or a COUNT that has words, to a word; false, without a change, if it has no such
- * word. */
+/* Sets a CHOICE, or a COUNT or REAL that has words, to a word; false, without a change, if it has
+ * no such word. */
 STARG_API bool starg_field_set_word(const starg_field *field, void *record, const char *word);
 
 /* The word for a number of a CHOICE or COUNT; NULL if there is none. */
 STARG_API const char *starg_field_word(const starg_field *field, uint64_t number);
+
+/* The word for a number of a REAL; NULL if there is none. */
+STARG_API const char *starg_field_real_word(const starg_field *field, double value);
 
 /* The word for a number of the CHOICE with a given key; NULL if there is none. */
 STARG_API const char *starg_fields_word(const starg_fields *fields, const char *key,

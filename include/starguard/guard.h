@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "bits.h"
 #include "context.h"
 #include "fields.h"
 #include "simplify.h"
@@ -58,6 +59,10 @@ typedef struct starg_guard_options {
                                  they may look anywhere */
     const double *ups;        /* of these directions: what is up, as in starg_visibility_options */
     size_t point_count;
+    /* Guards that stay: keep_count x 3, with directions and ups as above. They come first in the
+     * result and are no candidates: bounds, limits of guards and refinement are of the others. */
+    const double *keep, *keep_directions, *keep_ups;
+    size_t keep_count;
     starg_visibility_options visibility;
     double coverage;     /* fraction in (0, 1] of the coverable area to cover (of the coverable
                             vertices, if they are the target) */
@@ -66,6 +71,9 @@ typedef struct starg_guard_options {
     double baseline;     /* above 0: two of these, which are 2 or more, at least so many degrees
                             apart as seen from the centroid of the face, as far as candidates allow;
                             only where everything is to be seen */
+    bool worth;          /* find out what 1, 2, ... guards see (starg_guards_write_curve), and keep
+                            what candidates see (starg_guards_write_matrix) */
+    bool order;          /* put guards in the order of a short tour (starg_tour) */
     double clearance;    /* minimum distance from the boundary */
     size_t max_nodes;    /* branch-and-bound nodes per block, or STARG_DEFAULT_NODES */
 
@@ -118,6 +126,27 @@ typedef struct starg_guard_obstacle {
     size_t vertex_count, face_count;
 } starg_guard_obstacle;
 
+/* A zone of a scene. */
+typedef struct starg_guard_zone {
+    bool excludes;
+    double box[6];                   /* of a mesh: that holds it */
+    char *file;                      /* of a mesh: as given; NULL if made in memory */
+    size_t vertex_count, face_count; /* 0: it is the box */
+} starg_guard_zone;
+
+/* A way from the first guard to the last one, past all others in their order; those that stay come
+ * before and are no part of it. No segment of it meets a face, but for the straight legs that are
+ * blocked. */
+typedef struct starg_tour {
+    double length; /* of all segments, 0 for one guard */
+    size_t point_count;
+    double *points; /* point_count x 3; 0: there is no tour */
+    size_t stop_count;
+    uint32_t *stops; /* which of the points is each guard, ascending from 0 */
+    size_t blocked_count;
+    uint32_t *blocked; /* legs, from stop i to the next one, for which no free way was found */
+} starg_tour;
+
 /* A guarding result. Faces are indices into the model's mesh. */
 typedef struct starg_guards {
     char *file; /* the model's path as given; NULL if made in memory          */
@@ -129,15 +158,21 @@ typedef struct starg_guards {
     starg_space_options space; /* its lists belong to the result */
     size_t obstacle_count;
     starg_guard_obstacle *obstacles;
-    size_t target_count; /* faces to be seen; 0: all                              */
-    uint32_t *targets;   /* ascending; NULL: all */
-    double *importance;  /* of each target: starg_space_weigh, the largest is 1 */
+    size_t zone_count;
+    starg_guard_zone *zones;
+    size_t need_count;      /* of faces (starg_space_require) */
+    starg_face_need *needs; /* ascending */
+    size_t met_needs;       /* of those faces, that as many guards see as they need */
+    size_t target_count;    /* faces to be seen; 0: all                              */
+    uint32_t *targets;      /* ascending; NULL: all */
+    double *importance;     /* of each target: starg_space_weigh, the largest is 1 */
 
     size_t count;
     double *positions;  /* count x 3                                                  */
     double *directions; /* count x 3, viewing directions; NULL where guards look all around */
     double *ups;        /* count x 3, what is up there; NULL without a field of view */
     size_t *seen_faces; /* number of faces visible from each guard */
+    bool *kept;         /* by guard: it was given to stay, and comes first; NULL: none were */
     int *levels;        /* level of detail at which the guard was chosen; 0: the coarsest */
 
     size_t level_count;            /* of STARG_GUARD_PILP, before refinement; else 0             */
@@ -148,9 +183,17 @@ typedef struct starg_guards {
     size_t coverable_faces; /* number of faces that some candidate sees */
     size_t baseline_faces;  /* with a baseline: that two guards see from places so far apart */
     size_t uncovered_count;
-    uint32_t *uncovered; /* faces that no guard sees, ascending                        */
+    uint32_t *uncovered; /* faces of which no guard sees some or all, ascending */
+    size_t partial_count;
+    uint32_t *partial;     /* those of them of which guards see a part, ascending */
+    double *partial_share; /* seen share of the area of each */
     size_t unseen_count; /* of them: proven to be seen from nowhere where guards may stand; only of
                             starg_guard, not of files */
+
+    /* only for STARG_TARGET_POINTS, else 0: shares of the target area */
+    double points_seen;   /* of which every point is proven to be seen; coverage_area is this */
+    double points_open;   /* that is not decided */
+    bool points_complete; /* everything is seen */
 
     /* only for STARG_TARGET_VERTICES, else 0 */
     double coverage_vertices; /* covered fraction of the vertices used by faces */
@@ -158,10 +201,23 @@ typedef struct starg_guards {
     size_t uncovered_vertex_count;
     uint32_t *uncovered_vertices;
 
+    starg_tour tour; /* only with `order` */
+
     double *curve_faces; /* count: fraction of all faces covered by the first 1, 2, ... guards */
     double *curve_area;  /* the same for the area */
 
-    size_t candidate_count;        /* including those added */
+    size_t worth_count;  /* only with `worth`, of starg_guard: numbers of guards beside those that
+                            stay */
+    double *worth_seen;  /* fraction of the area that so many candidates were found to see */
+    double *worth_bound; /* and at most see */
+    starg_bits
+        *rows; /* what the final candidates see that is left to be seen, by patch or vertex */
+
+    size_t candidate_count; /* including those added */
+    size_t step_count;      /* the search began with step_guards[0] guards, and had found one with
+                               step_guards[i] after about step_work[i] microseconds of counted work */
+    uint64_t *step_work;
+    size_t *step_guards;
     uint64_t lines_tested;         /* by refinement, and what takes as long */
     size_t cells, witnesses;       /* of the search over every point */
     uint64_t prove_work;           /* spent on it */
@@ -201,16 +257,30 @@ STARG_API starg_status starg_certificate_write(starg_context *context, const cha
 STARG_API starg_status starg_guards_given(starg_context *context, const starg_solid *solid,
                                           const double *points, size_t count, starg_guards **out);
 
-/* The scene that a result is of, from the model and the obstacles that it names (space.h). Errors:
+/* The scene that a result is of, from the model and the obstacles that it names (space.h), without
+ * zones that are meshes: it is there to see what guards see, not to place others. Errors:
  * ARGUMENT (another model), those of starg_space_create. */
 STARG_API starg_status starg_guards_scene(starg_context *context, const starg_mesh *model,
                                           const starg_mesh *const *obstacles,
                                           const starg_guards *guards, starg_solid **out);
 
-/* What each guard of a result sees there: a row for each, with a column for each face of the model.
- * Errors: those of starg_visibility. */
+/* What each guard of a result sees there: a row for each, with a column for each face of the model;
+ * of a face in patches it sees all. Errors: those of starg_visibility. */
 STARG_API starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
                                         const starg_guards *guards, starg_bits **out);
+
+/* The same of the patches in which the result's faces are seen, and these as a mesh to be drawn,
+ * face by face (corners rounded); of the faces where there are none. `missing` (may be NULL) lists
+ * the patches of targets that no guard sees, ascending; free it with starg_patches_free. Errors:
+ * those of starg_visibility. */
+STARG_API starg_status starg_guards_patches(starg_context *context, const starg_solid *scene,
+                                            const starg_guards *guards, starg_mesh **mesh,
+                                            starg_bits **seen, uint32_t **missing, size_t *count);
+/* The face of each of these patches; free it with starg_patches_free. Errors: MEMORY. */
+STARG_API starg_status starg_guards_patch_faces(starg_context *context, const starg_solid *scene,
+                                                const starg_guards *guards, uint32_t **faces,
+                                                size_t *count);
+STARG_API void starg_patches_free(starg_context *context, uint32_t *missing);
 
 /* What is known of a face and the points of the free space. */
 typedef enum starg_face_state {
@@ -238,6 +308,10 @@ STARG_API starg_status starg_candidate_points(starg_context *context, const star
                                               starg_candidates source, size_t wanted,
                                               double clearance, double **points, size_t *count);
 STARG_API void starg_points_free(starg_context *context, double *points);
+
+/* The same of zones: for those that are boxes the names are not used. */
+STARG_API starg_status starg_guards_name_zones(starg_context *context, starg_guards *guards,
+                                               const char *const *files);
 
 /* Keeps the file names of the obstacles with the result, one for each in their order. Errors:
  * MEMORY. */
@@ -281,8 +355,8 @@ typedef struct starg_poses {
 
 /* Reads candidate poses: text with three numbers per line, six with a viewing direction, or nine
  * with what is up there (optionally after "v"; # begins a comment), the nodes of a skeleton (OBJ,
- * CG, VTK), or the guards of a GUARDS.json, recognized by content. Errors: READ, FORMAT (line and
- * reason), MEMORY. */
+ * CG, VTK), the guards of a GUARDS.json, what starg_guards_write_poses writes, or the cameras of a
+ * binary glTF, recognized by content. Errors: READ, FORMAT (line and reason), MEMORY. */
 STARG_API starg_status starg_poses_read(starg_context *context, const char *path, starg_poses *out);
 STARG_API starg_status starg_poses_read_memory(starg_context *context, const void *bytes,
                                                size_t size, const char *name, starg_poses *out);
@@ -294,6 +368,33 @@ STARG_API starg_status starg_points_read(starg_context *context, const char *pat
 STARG_API starg_status starg_points_read_memory(starg_context *context, const void *bytes,
                                                 size_t size, const char *name, double **points,
                                                 size_t *count);
+
+/* What given guards see, without any choice: the result has all of them in their order. One that is
+ * not in the free space sees nothing. The bounds are 0. Errors: ARGUMENT (no poses; views that look
+ * in one direction, and poses that have none), those of starg_visibility. */
+STARG_API starg_status starg_guards_audit(starg_context *context, const starg_solid *scene,
+                                          const starg_poses *poses,
+                                          const starg_visibility_options *view, starg_guards **out);
+
+/* Tables of what guards see of their scene, as CSV (docs/formats.md); path "-" is standard output.
+ * One has a row for each face to be seen, the other one for each guard, each group of faces, and
+ * all of them. `groups` may be NULL. Errors: WRITE, those of starg_visibility. */
+STARG_API starg_status starg_guards_write_table(starg_context *context, const starg_solid *scene,
+                                                const starg_guards *guards,
+                                                const starg_face_groups *groups, const char *path);
+STARG_API starg_status starg_guards_write_summary(starg_context *context, const starg_solid *scene,
+                                                  const starg_guards *guards,
+                                                  const starg_face_groups *groups,
+                                                  const char *path);
+
+/* Writes what 1, 2, ... guards see and its upper bound, as CSV or as a picture (SVG); path "-" is
+ * standard output. Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_guards_write_curve(starg_context *context, const starg_guards *guards,
+                                                bool svg, const char *path);
+
+/* Writes the set cover of the final candidates as text (docs/formats.md). Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_guards_write_matrix(starg_context *context, const starg_guards *guards,
+                                                 const char *path);
 
 #ifdef __cplusplus
 }

@@ -25,9 +25,12 @@ enum { STARG_LANDMARKS_MOST = 500 };
 typedef struct starg_map_options {
     const uint32_t *landmarks; /* landmark_count pairs: a vertex of A, a vertex of B */
     size_t landmark_count;
+    bool solid; /* of the solids inside: if both are star-shaped, points that are seen in the same
+                   direction from a point of each kernel correspond (`centers`), unless there are
+                   landmarks; the map then has its overlay. */
 } starg_map_options;
 
-/* No landmarks. */
+/* No landmarks, not of solids. */
 STARG_API void starg_map_options_default(starg_map_options *options);
 
 typedef enum starg_map_kind {
@@ -69,6 +72,8 @@ typedef struct starg_map {
     size_t direction_count, target_direction_count; /* as many as vertices, or 0 */
     size_t pair_count;
     uint32_t *pairs; /* pair_count x 2: the satisfied landmarks; NULL: none */
+    double *centers; /* 2 x 3: in the kernels of A and of B, from where the directions are those of
+                        the vertices; NULL: they are not */
     starg_overlay overlay;
 } starg_map;
 
@@ -85,10 +90,11 @@ STARG_API starg_status starg_map_create(starg_context *context, const starg_mesh
                                         starg_map **out);
 STARG_API void starg_map_free(starg_context *context, starg_map *map);
 
-/* Adds the overlay to a map from A to B, and moves the images of A's vertices to where it has them,
- * which is near. Points are rounded; exactly in barycentric coordinates, its triangles are positive
- * in their faces of A and of B, which they fill. Errors: MESH (the map has no directions, or they
- * fold: the face), SOLVER (points too close for doubles), MEMORY, CANCELLED. */
+/* Adds the overlay to a map from A to B, whose memory is then of this context, too, and moves the
+ * images of A's vertices to where it has them, which is near. Points are rounded; exactly in
+ * barycentric coordinates, its triangles are positive in their faces of A and of B, which they
+ * fill. Errors: MESH (the map has no directions, or they fold: the face), SOLVER (points too close
+ * for doubles), MEMORY, CANCELLED. */
 STARG_API starg_status starg_map_overlay(starg_context *context, const starg_mesh *a,
                                          const starg_mesh *b, starg_map *map);
 
@@ -132,7 +138,8 @@ typedef enum starg_morph_method {
 
 typedef struct starg_morph_options {
     starg_morph_method method;
-    size_t candidates; /* guard candidates, 1 to 100,000 (star, spherical) */
+    size_t candidates;     /* guard candidates, 1 to 100,000 (star, spherical) */
+    const double *centers; /* solid: those of the map (starg_map); NULL: not known. */
 } starg_morph_options;
 
 /* Star; 1,000 candidates. */

@@ -29,7 +29,8 @@ STARG_API const starg_sample_info *starg_sample_at(size_t index);
 
 typedef struct starg_sample_options {
     int pose;            /* 0 to poses - 1                                                  */
-    size_t vertex_count; /* 500 to 10,000,000; approximate (rigid polyhedra have fixed sizes) */
+    size_t vertex_count; /* 500 to 10,000,000, solids of cubes from 20; approximate (rigid polyhedra
+                            have fixed sizes) */
 } starg_sample_options;
 
 /* Pose 0, 5,000 vertices. */

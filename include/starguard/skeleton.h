@@ -62,8 +62,8 @@ typedef enum starg_skeleton_format {
 } starg_skeleton_format;
 
 /* Writes a skeleton; path "-" is standard output and needs a format. The file is written completely
- * or not at all. Errors: ARGUMENT (unknown file extension, a loop in SWC), WRITE, MEMORY,
- * CANCELLED. */
+ * or not at all. Errors: ARGUMENT (unknown file extension), MESH (a loop, which SWC cannot
+ * hold), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_skeleton_write(starg_context *context, const starg_skeleton *skeleton,
                                             const char *path, starg_skeleton_format format);
 

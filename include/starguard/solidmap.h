@@ -53,6 +53,11 @@ STARG_API starg_status starg_solid_map_overlay(starg_context *context, const sta
                                                const starg_solid_map_options *options,
                                                starg_solid_map **out);
 
+/* Measures how far the end of a map is from B: distances either way, and the volume that is missed,
+ * which the map then tells (starg_solid_map). Errors: MEMORY, CANCELLED. */
+STARG_API starg_status starg_solid_map_compare(starg_context *context, const starg_mesh *b,
+                                               starg_solid_map *map);
+
 typedef enum starg_solid_shape {
     STARG_SOLID_BALL = 0, /* of radius 1 about the origin */
     STARG_SOLID_CUBE = 1  /* of edge 2 about the origin */

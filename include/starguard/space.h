@@ -28,17 +28,28 @@ typedef enum starg_orientation {
                                      if the signed volume is negative */
 } starg_orientation;
 
+/* A part of space in which guards may stand, or may not; it blocks no view. Its border belongs to
+ * it. */
+typedef struct starg_zone {
+    bool excludes;          /* guards may not stand in it */
+    double box[6];          /* lower corner, upper corner */
+    const starg_mesh *mesh; /* closed, in place of the box; NULL: the box */
+} starg_zone;
+
 typedef struct starg_space_options {
     starg_orientation orientation; /* of the model's shells */
     bool soup; /* the model is any triangles, closed or not: each blocks the view from both sides,
                   and is seen from its front, where its corners turn counter-clockwise; space is
                   free but for the triangles themselves */
-    bool two_sided;        /* faces of a soup are seen from either side */
-    bool outside;          /* guards stand outside of the model and see it from there */
-    double standoff_least; /* distance of guards from the model */
-    double standoff_most;  /* may be INFINITY */
-    double within[6];      /* guards stand in this box: lower corner, upper corner; all 0:
-                              anywhere */
+    bool two_sided;          /* faces of a soup are seen from either side */
+    bool outside;            /* guards stand outside of the model and see it from there */
+    double standoff_least;   /* distance of guards from the model */
+    double standoff_most;    /* may be INFINITY */
+    double within[6];        /* guards stand in this box: lower corner, upper corner; all 0:
+                                anywhere */
+    const starg_zone *zones; /* zone_count of them: guards stand in the union of those that do not
+                                exclude, if there are any, and in none of those that do */
+    size_t zone_count;
     double cell; /* above 0: guards stand where one gets from `from` through cubes of that size
                     that no face meets */
     double from[3];
@@ -51,6 +62,10 @@ typedef struct starg_space_options {
                               from one of them; NULL: anywhere */
     size_t mount_count;
     double mount_distance;
+    uint32_t *clear; /* clear_count faces, ascending, that block no view, as glass and fences, and
+                        need not be seen. What is beyond is seen through them; nobody stands there
+                        for that */
+    size_t clear_count;
 } starg_space_options;
 
 /* All zero: NESTED, inside, anywhere. */
@@ -60,7 +75,8 @@ STARG_API void starg_space_options_default(starg_space_options *options);
  * solid: its inside is not free. An open one blocks the view from both sides. Faces of obstacles
  * are not to be seen. Errors: those of starg_solid_create for the model; ARGUMENT (numbers out of
  * range; more than 2^30 cubes; `from` in a cube that a face meets; faces that are not of the model;
- * an obstacle that lies beyond the bounding box of the model, by its index: not with `outside`). */
+ * a zone that is no box; an obstacle that lies beyond the bounding box of the model, by its index:
+ * not with `outside`). */
 STARG_API starg_status starg_space_create(starg_context *context, const starg_mesh *model,
                                           const starg_mesh *const *obstacles, size_t obstacle_count,
                                           const starg_space_options *options, starg_solid **out);
@@ -69,6 +85,19 @@ STARG_API starg_status starg_space_create(starg_context *context, const starg_me
  * not be seen. `weights` has a number for each face of the model, or is NULL: all matter alike.
  * Errors: ARGUMENT (a weight that is negative or not finite, by its face; all 0), MEMORY. */
 STARG_API starg_status starg_space_weigh(starg_solid *scene, const double *weights);
+
+/* What a face needs, in place of what others do. */
+typedef struct starg_face_need {
+    uint32_t face;
+    uint32_t times; /* guards that must see it, as far as candidates allow; 0: as many as others */
+    double density; /* of pixels, as in starg_visibility_options; 0: as others */
+} starg_face_need;
+
+/* Faces that need more, or less, than the redundancy says, and a density of pixels of their own; of
+ * a face that is given twice the last counts. Errors: ARGUMENT (no face of the model, more than
+ * 1,000 guards), MEMORY. */
+STARG_API starg_status starg_space_require(starg_solid *scene, const starg_face_need *needs,
+                                           size_t count);
 
 /* Weights from text files, for starg_space_weigh. Of a list of face numbers: 1 for those in it, 0
  * for the others. Of a list of weights: one for each face. # begins a comment. Free with
@@ -84,6 +113,21 @@ STARG_API starg_status starg_weights_read(starg_context *context, const char *pa
  * with those that there are; another model), those of starg_mesh_read. */
 STARG_API starg_status starg_faces_named(starg_context *context, const char *model_file,
                                          const char *name, size_t face_count, double **weights);
+/* The groups of a model's faces, by its own file: of an OBJ its groups, where there are none its
+ * objects or materials; of a scene its nodes. Other files have none. Free with
+ * starg_face_groups_free. Errors: those of starg_mesh_read. */
+typedef struct starg_face_groups {
+    size_t count;
+    char **names;
+    size_t face_count;
+    uint32_t *of; /* by face, a group, or UINT32_MAX: none */
+    char *text;   /* of the names */
+} starg_face_groups;
+
+STARG_API starg_status starg_face_groups_read(starg_context *context, const char *model_file,
+                                              starg_face_groups *out);
+STARG_API void starg_face_groups_free(starg_context *context, starg_face_groups *groups);
+
 STARG_API void starg_weights_free(starg_context *context, double *weights);
 
 /* Number of vertices and faces of the model: those before the obstacles' in the mesh. */

@@ -69,7 +69,7 @@ typedef struct starg_certificate_outline {
     starg_target target;
     size_t bound;
     size_t witness_count;
-    uint32_t *witnesses; /* faces or vertices */
+    uint32_t *witnesses; /* faces or vertices; of corners and points their faces */
     size_t cell_count;
     double *cells; /* cell_count x 6: lower corner, upper corner */
 } starg_certificate_outline;
@@ -85,6 +85,8 @@ STARG_API void starg_certificate_outline_free(starg_context *context,
 typedef struct starg_guards_evidence {
     const starg_mesh *const *obstacles; /* the meshes that the result names, in its order */
     size_t obstacle_count;
+    const starg_mesh *const *zones; /* one for each zone that the result names, NULL for boxes;
+                                       NULL: all are boxes */
     const starg_certificate *certificate; /* of lower_bound_everywhere, or NULL: then it is listed
                                              in `not_checked`. Any text may stand in it: a false one
                                              fails, and no solver's word is taken */
@@ -229,6 +231,11 @@ typedef struct starg_solid_map {
      * the check tells. */
     size_t strayed;
     double farthest;
+    /* Where it ends at B in A's faces, and not at B (starg_solid_map_compare): no point of the
+     * image's surface is farther from B's surface than `distance`, none of B's than `distance_back`
+     * from the image's, and B has `missing` more volume than the image. */
+    bool compared;
+    double distance, distance_back, missing;
     /* What a file says beside that, for the check; NULL and 0 if made. */
     double *ratios;   /* count: of each tetrahedron; or NULL                                  */
     size_t misplaced; /* offsets that are not 4, 8, 12, ...; the first is of `first_misplaced` */
@@ -253,8 +260,9 @@ STARG_API void starg_solid_map_free(starg_context *context, starg_solid_map *map
  * they fill both without overlap and the map is a homeomorphism; the pieces are star-shaped about
  * their guards in both, and the distortion is as stated. Models are taken as read (inward shells
  * are reversed). B may be NULL: then nothing is claimed about the surface of the images but that it
- * does not cross itself. Errors: ARGUMENT (an index out of range), RANGE, MESH (a model is not
- * closed and oriented), MEMORY, CANCELLED; a false claim is not an error. */
+ * does not cross itself. Where a map tells how far its end is from B, that is checked instead of
+ * the same surface. Errors: ARGUMENT (an index out of range), RANGE, MESH (a model is not closed
+ * and oriented), MEMORY, CANCELLED; a false claim is not an error. */
 STARG_API starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
                                               const starg_mesh *b, const starg_solid_map *map,
                                               starg_verdict **out);

@@ -26,7 +26,7 @@ from .descriptors import (NO_CLASS, Descriptor, Reconstruction, Retrieval, Signa
                           signatures)
 from .errors import (ArgumentError, CancelledError, Error, FormatError, MeshError, OutOfMemoryError,
                      RangeError, ReadError, SolverError, TimeLimitError, WriteError)
-from .guards import Guard, Guards, GuardLevel, candidate_points, guard, points_from_bytes, read_points, unseen
+from .guards import Guard, Guards, GuardLevel, Tour, audit, candidate_points, guard, guard_many, points_from_bytes, read_points, unseen
 from .kernels import Kernel, kernel
 from .mesh import NO_VERTEX, Check, Finding, Level, Mesh, RepairReport, as_mesh
 from .morphs import (FrameMeasures, Morph, SurfaceMap, animation_from_bytes, map_surface,
@@ -52,10 +52,10 @@ __all__ = [
     "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",
     "RangeError", "ReadError", "Reconstruction", "RepairReport", "Retrieval", "SampleInfo",
     "Scene", "Signature", "Skeleton", "Solid", "SolidMap", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
-    "TetraReport", "TimeLimitError", "Verdict", "WriteError", "__version__", "animation_from_bytes",
-    "as_mesh",
+    "TetraReport", "TimeLimitError", "Tour", "Verdict", "WriteError", "__version__", "animation_from_bytes",
+    "as_mesh", "audit",
     "candidate_points", "cone_cosine", "cover", "current_version", "decompose", "defaults",
-    "describe", "directions", "distances", "distinct_colors", "guard", "is_descriptor",
+    "describe", "directions", "distances", "distinct_colors", "guard", "guard_many", "is_descriptor",
     "is_tetrahedral", "kernel", "logger", "map_of_morph", "map_solid", "map_surface", "match", "page_available", "picture",
     "points_from_bytes", "read_animation", "read_landmarks", "read_points", "read_result", "retrieval", "sample", "samples", "signature",
     "signatures", "skeleton", "tetrahedralize", "unseen", "verify", "verify_map", "verify_morph", "visible", "visible_from_box",

@@ -34,6 +34,8 @@ class Field:
         if self._cleared:
             name = name[3:]
         self.name = name.replace("-", "_")
+        #: A word of starg_field_group, or "".
+        self.group = text(row.group)
         self.words: list[str] = []
         while row.words and row.words[len(self.words)]:
             self.words.append(text(row.words[len(self.words)]))
@@ -67,12 +69,13 @@ class Field:
     def get(self, struct: Any) -> Any:
         """The value as a caller would give it; None if it has no number."""
         if self.kind == lib.STARG_FIELD_REAL:
-            return self._at(struct, "double *")[0]
+            number = self._at(struct, "double *")[0]
+            return text(lib.starg_field_real_word(self._row, number)) or number
         if self.kind == lib.STARG_FIELD_TEXT:
             return text(self._at(struct, "char **")[0]) or None
         if self.kind == lib.STARG_FIELD_NUMBERS:
             numbers = tuple(self._numbers(struct))
-            return numbers if any(numbers) else None
+            return None if all(number == self._row.standard for number in numbers) else numbers
         value = lib.starg_field_count(self._row, struct)
         if self.kind == lib.STARG_FIELD_FLAG:
             return bool(value)
@@ -86,7 +89,9 @@ class Field:
         """Sets it; the returned object must live as long as the struct."""
         fits, keep = False, None
         try:
-            if self.kind == lib.STARG_FIELD_REAL:
+            if self.words and isinstance(value, str):
+                fits = lib.starg_field_set_word(self._row, struct, value.encode())
+            elif self.kind == lib.STARG_FIELD_REAL:
                 number = math.nan if isinstance(value, (str, bytes)) else float(value)
                 fits = (lib.starg_field_set_real(self._row, struct, number)
                         or number == self._row.standard)  # a default outside the range
@@ -104,8 +109,6 @@ class Field:
             elif self.kind == lib.STARG_FIELD_FLAG:
                 fits = (value in (True, False)
                         and lib.starg_field_set_count(self._row, struct, bool(value)))
-            elif self.words and isinstance(value, str):
-                fits = lib.starg_field_set_word(self._row, struct, value.encode())
             else:
                 number = operator.index(value)
                 fits = number <= self._row.most and lib.starg_field_set_count(self._row, struct, number)
@@ -200,13 +203,25 @@ class _Values(dict[str, Any]):
 # ---- what help() shows ----
 
 
+def _groups() -> list[tuple[str, str]]:
+    """Words and titles of the groups of options; "" is that of the others."""
+    title = ffi.new("char **")
+    found: list[tuple[str, str]] = []
+    while group := text(lib.starg_field_group(len(found), title)):
+        found.append((group, text(title[0])))
+    return [*found, ("", "Others")]
+
+
 def _explained(doc: str | None, fields: list[Field]) -> str:
     """A docstring with a list of options before its example."""
     told, example, rest = inspect.cleandoc(doc or "").partition(">>> ")
-    lines = [textwrap.fill(field.explain(), 96, subsequent_indent="  ", break_on_hyphens=False)
-             for field in fields]
-    return "\n".join([told.rstrip(), "", "Options (None is the default):", "", *lines,
-                      "", example + rest]).rstrip()
+    lines: list[str] = []
+    for group, title in _groups():
+        part = [textwrap.fill(field.explain(), 96, subsequent_indent="  ", break_on_hyphens=False)
+                for field in fields if field.group == group]
+        if part:
+            lines += [f"{title}:", *part, ""]
+    return "\n".join([told.rstrip(), "", "Options (None is the default):", "", *lines, example + rest]).rstrip()
 
 
 def takes(options: Options) -> Callable[[T], T]:

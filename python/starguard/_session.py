@@ -19,7 +19,7 @@ import threading
 from dataclasses import dataclass
 from typing import Any, SupportsIndex
 
-from . import errors
+from . import _told, errors
 from ._library import ffi, lib, text
 from ._types import Progress
 
@@ -50,14 +50,18 @@ class _Listener:
     """Receives the library's callbacks, on any thread."""
 
     def __init__(self) -> None:
-        self.reports: collections.deque[tuple[str, float]] | None = None
+        self.context: Any = None
+        self.reports: collections.deque[tuple[str, float, str]] | None = None
 
 
 @ffi.callback("starg_progress_fn")  # type: ignore[misc]
 def _on_progress(user: Any, stage: Any, fraction: float) -> bool:
-    reports = ffi.from_handle(user).reports
+    listener = ffi.from_handle(user)
+    reports = listener.reports
     if reports is not None:
-        reports.append((text(stage), fraction))
+        what = ffi.new("char **")
+        best = lib.starg_context_best(listener.context, what)
+        reports.append((text(stage), fraction, f"{best} {text(what[0])} so far" if best > 0 else ""))
     return True
 
 
@@ -76,7 +80,7 @@ def _whole(name: str, value: SupportsIndex, most: int) -> int:
 # What objects and contexts need when they are freed, by address. A closure would not work: in cyclic
 # garbage the collector clears functions in any order before it frees the objects that call them. This
 # table is never garbage, so a context outlives all of its objects.
-_owned: dict[int, tuple[Any, Any, bool]] = {}
+_owned: dict[int, tuple[Any, Any, bool, list[Any]]] = {}
 _callbacks: dict[int, Any] = {}
 
 
@@ -84,13 +88,14 @@ def _address(block: Any) -> int:
     return int(ffi.cast("uintptr_t", block))
 
 
-def _release(block: Any, owned: dict[int, tuple[Any, Any, bool]] = _owned,
+def _release(block: Any, owned: dict[int, tuple[Any, Any, bool, list[Any]]] = _owned,
              address: Any = _address) -> None:
-    free, context, shared = owned.pop(address(block))
+    free, context, shared, others = owned.pop(address(block))
     if shared:
         free(context, block)
     else:
         free(block)
+    del others
 
 
 def _release_context(context: Any, callbacks: dict[int, Any] = _callbacks, address: Any = _address,
@@ -120,6 +125,7 @@ class Session:
 
         _callbacks[_address(out[0])] = handle
         self.context = ffi.gc(out[0], _release_context)
+        self._listener.context = out[0]
 
     # ---- calls ----
 
@@ -129,8 +135,12 @@ class Session:
         thread."""
         lib.starg_context_set_time_limit(self.context, _seconds(time_limit))
         on_main_thread = threading.current_thread() is threading.main_thread()
+        if progress is False:
+            progress = None
         if brief or (progress is None and not on_main_thread):
             status = function(*arguments)
+        elif progress is True:
+            status = _told.with_bar(lambda bar: self._call_aside(function, arguments, bar))
         else:
             status = self._call_aside(function, arguments, progress)
         if status != lib.STARG_OK:
@@ -141,7 +151,7 @@ class Session:
         """Runs the call on a separate thread and always waits for it."""
         begun, done = threading.Event(), threading.Event()
         outcome: list[Any] = []
-        reports: collections.deque[tuple[str, float]] = collections.deque()
+        reports: collections.deque[tuple[str, float, str]] = collections.deque()
         self._listener.reports = reports if progress is not None else None
 
         def work() -> None:
@@ -184,12 +194,17 @@ class Session:
                 del interruption, outcome  # break the reference cycle with this frame
         return int(outcome[0])
 
-    def _deliver(self, reports: collections.deque[tuple[str, float]],
+    def _deliver(self, reports: collections.deque[tuple[str, float, str]],
                  progress: Progress | None) -> None:
         while reports:
-            stage, fraction = reports.popleft()
-            if progress is not None and progress(stage, fraction) is False:
+            stage, fraction, best = reports.popleft()
+            if isinstance(progress, _told.Bar) and best:
+                stage = f"{stage}, {best}"
+            answer = progress(stage, fraction) if callable(progress) else None
+            if answer is False:
                 lib.starg_context_cancel(self.context)
+            elif answer == "enough":
+                lib.starg_context_finish(self.context)
 
     # ---- what calls make ----
 
@@ -207,8 +222,12 @@ class Session:
 
     def own(self, pointer: Any, free: Any, shared: bool = False) -> Any:
         """A handle that frees its object; `shared`: with the context as first argument."""
-        _owned[_address(pointer)] = free, self.context, shared
+        _owned[_address(pointer)] = free, self.context, shared, []
         return ffi.gc(pointer, _release)
+
+    def lends(self, handle: Any) -> None:
+        """The object of `handle` now holds memory of this context as well, which has to outlive it."""
+        _owned[_address(handle)][3].append(self.context)
 
 
 def _seconds(time_limit: float | None) -> float:

@@ -12,5 +12,6 @@ Array = NDArray[Any]
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 
-#: Receives the name of a stage and its completed fraction; return False to cancel the call.
-Progress = Callable[[str, float], Optional[bool]]
+#: Receives the name of a stage and its completed fraction; return False to cancel the call, "enough" to
+#: end a search, which returns its best result. True: a bar on standard error.
+Progress = Union[bool, Callable[[str, float], Union[None, bool, str]]]

@@ -13,6 +13,7 @@ from ._choice import choose, give
 from ._fields import fill
 from ._library import ffi, lib
 from ._session import Session
+from ._told import Told
 from ._types import Array, Progress
 from .errors import ArgumentError
 from .visibility import Bits
@@ -21,8 +22,8 @@ _METHODS = {"greedy": lib.STARG_COVER_GREEDY, "ilp": lib.STARG_COVER_ILP, "lp": 
             "local": lib.STARG_COVER_LOCAL}
 
 
-@dataclass(frozen=True, eq=False)
-class Cover:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cover(Told):
     """A cover and its proven bounds."""
 
     #: The chosen rows, largest gain first. No copy.

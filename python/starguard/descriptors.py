@@ -15,6 +15,7 @@ from ._fields import fill
 from ._library import ffi, lib, text
 from ._options import Options, takes
 from ._session import Session
+from ._told import Told
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .guards import name_of
@@ -173,8 +174,8 @@ def directions(count: int = 256) -> Array:
 # ---- signatures ----
 
 
-@dataclass(frozen=True, eq=False)
-class Signature:
+@dataclass(frozen=True, eq=False, repr=False)
+class Signature(Told):
     """A signature of a model: numbers of a kind ("d2", "shape-dna", "star" or "paper")."""
 
     kind: str
@@ -335,8 +336,8 @@ def distances(signatures: Sequence[Signature], *, threads: int | None = None,
 # ---- retrieval ----
 
 
-@dataclass(frozen=True, eq=False)
-class Retrieval:
+@dataclass(frozen=True, eq=False, repr=False)
+class Retrieval(Told):
     """Retrieval measures averaged over queries, each in [0, 1]; 1 is perfect."""
 
     models: int

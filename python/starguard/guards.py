@@ -2,9 +2,10 @@
 """Guarding: few points inside a solid that together see its whole boundary, with a proven bound."""
 from __future__ import annotations
 
+import multiprocessing
 import os
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Iterator
+from typing import TYPE_CHECKING, Any, Iterable, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +16,7 @@ from ._fields import fill
 from ._library import ffi, lib, text
 from ._options import Options, takes
 from ._session import Session
+from ._told import Told
 from ._types import Array, PathLike, Progress
 from .solid import as_solid
 
@@ -30,8 +32,8 @@ _CANDIDATES = {word: number for number, word in enumerate(_OPTIONS.fields["candi
                if number != lib.STARG_CANDIDATES_GIVEN}
 
 
-@dataclass(frozen=True, eq=False)
-class GuardLevel:
+@dataclass(frozen=True, eq=False, repr=False)
+class GuardLevel(Told):
     """The guards of one level of detail; they cover all that some candidate sees."""
 
     vertex_count: int
@@ -58,6 +60,21 @@ class Guard:
 
 
 @dataclass(frozen=True, eq=False)
+class Tour:
+    """A way from the first guard to the last one, past all others in their order; guards that stay are
+    no part of it. Its segments meet no face, but for blocked legs, which are straight."""
+
+    #: Of all segments.
+    length: float
+    #: (n, 3).
+    points: Array
+    #: Which of the points is each guard, ascending from 0.
+    stops: Array
+    #: Legs, from stop i to the next one, for which no free way was found.
+    blocked: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Guards:
     """A guarding result: a sequence of Guard, with arrays of all of them. Faces are indices into the
     model. The arrays are read-only views of the library's memory.
@@ -80,6 +97,10 @@ class Guards:
     ups: Array | None
     #: Number of faces visible from each guard, (k,).
     seen_faces: Array
+    #: Whether each guard was given to stay, (k,).
+    kept: Array
+    #: With needs of faces: number of those faces that as many guards see as they need.
+    met_needs: int
     #: Level of detail at which each guard was chosen, (k,); 0: the coarsest.
     levels: Array
     #: With method "pilp": the levels before refinement, coarsest first.
@@ -101,9 +122,15 @@ class Guards:
     coverage_vertices: float
     coverable_vertices: int
     uncovered_vertices: Array
+    #: With `order`: the way through the guards, else None.
+    tour: Tour | None
     #: Fractions of faces and of area covered by the first 1, 2, ... guards.
     curve_faces: Array
     curve_area: Array
+    #: Numbers of guards that the search had, and the counted work, in about microseconds, after which
+    #: it had found them.
+    step_guards: Array
+    step_work: Array
     candidate_count: int
     lines_tested: int
     #: Proven: no fewer candidates cover as much.
@@ -166,6 +193,12 @@ class Guards:
         return _others.card(repr(self), self.model, facts, points=self.positions, views=self,
                             point_colors=distinct_colors(len(self)) if len(self) > 0 else None)
 
+    @staticmethod
+    def _tour(keeper: Any, t: Any) -> Tour:
+        return Tour(t.length, _arrays.view(keeper, t.points, (t.point_count, 3), np.float64),
+                    _arrays.view(keeper, t.stops, (t.stop_count,), np.uint32),
+                    _arrays.view(keeper, t.blocked, (t.blocked_count,), np.uint32))
+
     @classmethod
     def _of(cls, g: Any, file: PathLike | None = None, owner: Any = None,
             model: Mesh | None = None) -> Guards:
@@ -181,11 +214,15 @@ class Guards:
             directions=_arrays.view(keeper, g.directions, (count, 3), np.float64) if g.directions else None,
             ups=_arrays.view(keeper, g.ups, (count, 3), np.float64) if g.ups else None,
             seen_faces=_arrays.view(keeper, g.seen_faces, (count,), np.uintp),
+            kept=_arrays.view(keeper, g.kept, (count,), np.bool_) if g.kept else np.zeros(count, bool),
             levels=_arrays.view(keeper, g.levels, (count,), np.intc),
             redundant_faces=_arrays.view(keeper, g.redundant_faces, (g.redundant_count,), np.uintp),
             uncovered=_arrays.view(keeper, g.uncovered, (g.uncovered_count,), np.uint32),
             uncovered_vertices=_arrays.view(keeper, g.uncovered_vertices, (g.uncovered_vertex_count,),
                                             np.uint32),
+            tour=cls._tour(keeper, g.tour) if g.tour.point_count > 0 else None,
+            step_guards=_arrays.view(keeper, g.step_guards, (g.step_count,), np.uintp),
+            step_work=_arrays.view(keeper, g.step_work, (g.step_count,), np.uint64),
             curve_faces=_arrays.view(keeper, g.curve_faces, (count,), np.float64),
             curve_area=_arrays.view(keeper, g.curve_area, (count,), np.float64),
             options=_OPTIONS.read(ffi.addressof(g, "options")))
@@ -228,6 +265,75 @@ class Guards:
                      name.lower().endswith(".csv"), _arrays.path(path))
 
 
+    def _write_tables(self, function: Any, path: PathLike, model: Any) -> None:
+        session = Session()
+        solid = as_solid(model if model is not None else self.model)
+        groups = ffi.new("starg_face_groups *")
+        file = solid.mesh.file
+        named = file is not None and os.path.exists(file)
+        if file is not None and named:
+            session.call(lib.starg_face_groups_read, session.context, _arrays.path(file), groups)
+        try:
+            session.call(function, session.context, solid._handle, self._handle,
+                         groups if named else ffi.NULL, _arrays.path(path))
+        finally:
+            lib.starg_face_groups_free(session.context, groups)
+
+    def write_table(self, path: PathLike, model: Any = None) -> None:
+        """Writes a row for each face as CSV: which guards see it (docs/formats.md). `model` is the scene
+        that was guarded; default: the model."""
+        self._write_tables(lib.starg_guards_write_table, path, model)
+
+    def write_summary(self, path: PathLike, model: Any = None) -> None:
+        """Writes a row for each guard and for each group of faces as CSV."""
+        self._write_tables(lib.starg_guards_write_summary, path, model)
+
+    def write_curve(self, path: PathLike) -> None:
+        """Writes what 1, 2, ... guards see, as CSV or SVG by the extension. Only with `worth`."""
+        session = Session()
+        session.call(lib.starg_guards_write_curve, session.context, self._handle,
+                     os.fsdecode(path).lower().endswith(".svg"), _arrays.path(path))
+
+    def write_matrix(self, path: PathLike) -> None:
+        """Writes the set cover of the candidates as text. Only with `worth`."""
+        session = Session()
+        session.call(lib.starg_guards_write_matrix, session.context, self._handle, _arrays.path(path))
+
+
+def _poses(given: ArrayLike, what: str) -> tuple[Any, list[Any]]:
+    """The number of poses, and pointers to their places, directions and ups; these may be NULL."""
+    width = (np.shape(given)[-1:] or (3,))[0]
+    rows = _arrays.points(given, what, width if width in (6, 9) else 3)
+    parts = [np.ascontiguousarray(rows[:, i:i + 3]) for i in range(0, rows.shape[1], 3)]
+    pointers = [_arrays.pointer("double[]", part) for part in parts]
+    return len(rows), pointers + [ffi.NULL] * (3 - len(pointers))
+
+
+def audit(model: Any, poses: ArrayLike, *, threads: int | None = None, time_limit: float | None = None,
+          progress: Progress | None = None, **options: Any) -> Guards:
+    """What given guards see, without a search: poses of shape (n, 3), (n, 6) or (n, 9) as in `guard`, and
+    the options of `visible`.
+
+    >>> import starguard
+    >>> room = starguard.sample("l-room", vertices=500)
+    >>> seen = starguard.audit(room, [[0.5, 0.5, 0.5, 1, 0, 0]], fov=(90, 60))
+    >>> len(seen), 0 < seen.coverage_area < 1
+    (1, True)
+    """
+    from .visibility import _OPTIONS as views
+
+    wanted = views.make(options)
+    count, (places, directions, ups) = _poses(poses, "poses")
+    given = ffi.new("starg_poses *")
+    given.points, given.directions, given.ups, given.count = places, directions, ups, count
+    solid = as_solid(model)
+    session = Session(threads)
+    handle = session.make("starg_guards", lib.starg_guards_free, lib.starg_guards_audit, session.context,
+                          solid._handle, given, wanted.pointer, shared=True, progress=progress,
+                          time_limit=time_limit)
+    return Guards._of(handle, solid.mesh.file, model=solid.mesh)
+
+
 def _certified(session: Session, path: PathLike, solid: Any, wanted: Any, **call: Any) -> Any:
     """Guards, and the file that says why their bound holds."""
     text, size = ffi.new("char **"), ffi.new("size_t *")
@@ -243,6 +349,7 @@ def _certified(session: Session, path: PathLike, solid: Any, wanted: Any, **call
 
 @takes(_OPTIONS)
 def guard(model: Any, *, candidates: str | ArrayLike | None = None,
+          keep: ArrayLike | None = None, worth: bool = False,
           certificate: PathLike | None = None, threads: int | None = None,
           seed: int | None = None, time_limit: float | None = None,
           progress: Progress | None = None, **options: Unpack[GuardOptions]) -> Guards:
@@ -252,7 +359,9 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
     axis, on a lattice in the "interior", or points of shape (n, 3), (n, 6) with the direction in
     which a camera looks, or (n, 9) with what is up for it. Faces that no candidate sees
     are listed in `uncovered` and are not an error. With `prove=True`, `certificate` is a file to write
-    that says why `lower_bound_everywhere` holds; `verify(model, guards, file)` checks it.
+    that says why `lower_bound_everywhere` holds; `verify(model, guards, file)` checks it. Guards of `keep`,
+    poses like those of candidates, stay and come first; the bounds are of the others. With `worth`, the
+    result can write its curve and its matrix.
 
     >>> import starguard
     >>> guards = starguard.guard(starguard.sample("l-room", vertices=500))
@@ -275,6 +384,10 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
         wanted.pointer.candidates = lib.STARG_CANDIDATES_GIVEN
         wanted.pointer.points = points
         wanted.pointer.point_count = len(places)
+    wanted.pointer.worth = worth
+    if keep is not None:
+        wanted.pointer.keep_count, stay = _poses(keep, "keep")
+        wanted.pointer.keep, wanted.pointer.keep_directions, wanted.pointer.keep_ups = stay
     solid = as_solid(model)
     if certificate is not None:
         handle = _certified(session, certificate, solid._handle, wanted.pointer, progress=progress,
@@ -284,6 +397,28 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
                               session.context, solid._handle, wanted.pointer, shared=True,
                               progress=progress, time_limit=time_limit)
     return Guards._of(handle, solid.mesh.file, model=solid.mesh)
+
+
+def _guard_one(work: tuple[Any, dict[str, Any]]) -> Guards:
+    model, options = work
+    return guard(model, **options)
+
+
+def guard_many(models: Iterable[Any], *, processes: int | None = None, **options: Any) -> list[Guards]:
+    """`guard` of each model, in their order, with the same options, on as many `processes` as there are cores (None),
+    one thread each. Models are such as `multiprocessing` can send: file names, Mesh, arrays. The first that
+    fails ends it with its error. A script that calls this needs `if __name__ == "__main__":` around the call, since
+    each process imports it.
+
+    >>> import starguard
+    >>> len(starguard.guard_many([starguard.sample("l-room", vertices=500)] * 2, processes=1))
+    2
+    """
+    works = [(model, {"threads": 1, **options}) for model in models]
+    if processes == 1:
+        return [_guard_one(work) for work in works]
+    with multiprocessing.get_context("spawn").Pool(processes) as pool:
+        return pool.map(_guard_one, works, chunksize=1)
 
 
 def _unpickled(data: bytes, model: Mesh | None, lines_tested: int, options: dict[str, Any]) -> Guards:

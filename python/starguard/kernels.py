@@ -10,6 +10,7 @@ import numpy as np
 from ._choice import word_of
 from ._library import ffi, lib
 from ._session import Session
+from ._told import Told
 from ._types import Array, Progress
 from .mesh import as_mesh
 
@@ -17,8 +18,8 @@ _VERDICTS = {"interior": lib.STARG_KERNEL_INTERIOR, "empty": lib.STARG_KERNEL_EM
              "undecided": lib.STARG_KERNEL_UNDECIDED}
 
 
-@dataclass(frozen=True, eq=False)
-class Kernel:
+@dataclass(frozen=True, eq=False, repr=False)
+class Kernel(Told):
     """The kernel of a solid and the verdict whether it is star-shaped."""
 
     #: "interior" (star-shaped: proven), "empty" (not star-shaped: proven) or "undecided".

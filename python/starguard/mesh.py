@@ -434,6 +434,8 @@ class RepairReport:
     faces_turned: int
     faces_added: int
     holes_filled: int
+    #: Faces cut into parts where others touch them.
+    faces_divided: int
     components_dropped: int
     intersections_before: int
     intersections_after: int
@@ -441,6 +443,15 @@ class RepairReport:
     faces_cut: int
     union_rounds: int
     largest_move: float
+    #: Largest distance between things that were joined.
+    conforming: float
+    #: Whether the surface was closed once what touches was joined; then the volume that its parts
+    #: enclose, and that afterwards.
+    closed_before: bool
+    enclosed_before: float
+    enclosed_after: float
+    #: Open sheets that were closed, and keep their sides for want of a proof.
+    sheets_kept: int
     #: With ``union``: largest distance of a new vertex from the exact intersection.
     rounding: float
     #: It was a solid, and intersects itself as often as before.

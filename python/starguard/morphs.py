@@ -15,6 +15,7 @@ from ._fields import fill
 from ._library import ffi, lib
 from ._options import Options, takes
 from ._session import Session
+from ._told import Told
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .mesh import Mesh, as_mesh
@@ -28,8 +29,8 @@ _OPTIONS = Options("starg_morph_options")
 _MAP_KINDS = {"same": lib.STARG_MAP_SAME, "sphere": lib.STARG_MAP_SPHERE, "given": lib.STARG_MAP_GIVEN}
 
 
-@dataclass(frozen=True, eq=False)
-class SurfaceMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class SurfaceMap(Told):
     """The image of each vertex of A on B. The arrays are read-only views of the library's memory."""
 
     #: "same" (vertex i maps to vertex i), "sphere", or "given" (read from a file).
@@ -85,6 +86,7 @@ class SurfaceMap:
         """
         session = Session()
         if not self._handle.overlay.face_count:
+            session.lends(self._handle)
             session.call(lib.starg_map_overlay, session.context, self.source._handle,
                          self.target._handle, self._handle)
         overlay = self._handle.overlay
@@ -112,10 +114,12 @@ class SurfaceMap:
                                     second._handle, shared=True), first, second)
 
 
-def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *,
+def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *, solid: bool = False,
                 threads: int | None = None, seed: int | None = None,
                 time_limit: float | None = None, progress: Progress | None = None) -> SurfaceMap:
-    """Maps A onto B. `landmarks` are pairs of vertices (k, 2), of A and of B, or a file of them.
+    """Maps A onto B. `landmarks` are pairs of vertices (k, 2), of A and of B, or a file of them. With
+    `solid`, of the solids inside: if both are star-shaped, points that are seen in the same direction from
+    a point of each kernel correspond.
 
     >>> import starguard
     >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
@@ -127,6 +131,7 @@ def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *
     session = Session(threads, seed)
     options = ffi.new("starg_map_options *")
     lib.starg_map_options_default(options)
+    options.solid = solid
     if landmarks is not None:
         is_file = isinstance(landmarks, (str, bytes)) or hasattr(landmarks, "__fspath__")
         pairs = (read_landmarks(landmarks, first, second) if is_file  # type: ignore[arg-type]

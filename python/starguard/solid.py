@@ -87,7 +87,9 @@ class Scene(Solid):
     (lower and upper corner) for guards; `start` a point, with the size of cubes `cell`, from which
     they can be reached. With `over` (faces, height) they stand straight above one of these faces,
     along `up` (by default y), with `mount` (faces, distance) no farther from one of them than that.
-    `weights` has a number for each face: how often its area counts.
+    `weights` has a number for each face: how often its area counts. Each of `zones` tells whether guards
+    may stand in it, and is a box or a closed model. Faces of `clear` block no view. `needs` are faces with
+    the number of guards that must see them, and a density of pixels (0: as others).
 
     >>> import starguard
     >>> part = starguard.Scene(starguard.sample("torus", vertices=500), outside=True, standoff=(1, 4))
@@ -102,6 +104,8 @@ class Scene(Solid):
                  start: ArrayLike | None = None, cell: float | None = None,
                  over: tuple[ArrayLike, float] | None = None, up: ArrayLike | None = None,
                  mount: tuple[ArrayLike, float] | None = None,
+                 zones: Sequence[tuple[bool, Any]] = (), clear: ArrayLike | None = None,
+                 needs: Sequence[tuple[int, int, float]] = (),
                  weights: ArrayLike | None = None, threads: int | None = None,
                  progress: Progress | None = None) -> None:
         #: What is to be seen, and what stands in the way.
@@ -121,7 +125,7 @@ class Scene(Solid):
         if start is not None:
             options.cell = cell
             setattr(options, "from", _arrays.points(start, "start")[0].tolist())
-        lists = []  # alive until the call is over
+        lists: list[Any] = []  # alive until the call is over
         for name, bound, distance in ("over", over, "height"), ("mount", mount, "mount_distance"):
             if bound is not None:
                 faces = np.unique(_arrays.given(bound[0], name)).astype(np.uint32)
@@ -129,6 +133,19 @@ class Scene(Solid):
                 setattr(options, name, _arrays.pointer("uint32_t[]", faces))
                 setattr(options, name + "_count", len(faces))
                 setattr(options, distance, bound[1])
+        if clear is not None:
+            faces = np.unique(_arrays.given(clear, "clear")).astype(np.uint32)
+            lists.append(faces)
+            options.clear, options.clear_count = _arrays.pointer("uint32_t[]", faces), len(faces)
+        given = ffi.new("starg_zone[]", max(len(zones), 1))
+        for zone, (admits, what) in zip(given, zones):
+            zone.excludes = not admits
+            if isinstance(what, Mesh) or not np.shape(what) == (6,):
+                lists.append(as_mesh(what))
+                zone.mesh = lists[-1]._handle
+            else:
+                zone.box = _arrays.points(what, "zones", 6)[0].tolist()
+        options.zones, options.zone_count = given, len(zones)
         if up is not None:
             options.up = _arrays.points(up, "up")[0].tolist()
         self._handle = session.make("starg_solid", lib.starg_solid_free, lib.starg_space_create,
@@ -136,6 +153,9 @@ class Scene(Solid):
                                     len(self.obstacles), options, progress=progress)
         if weights is not None:
             self._weigh(session, weights)
+        if needs:
+            wanted = ffi.new("starg_face_need[]", [{"face": f, "times": t, "density": d} for f, t, d in needs])
+            session.call(lib.starg_space_require, self._handle, wanted, len(needs))
         #: All that blocks the view: the faces of the model first.
         self.mesh = Mesh._of(lib.starg_solid_mesh(self._handle), self.model.file,
                              owner=self._handle)

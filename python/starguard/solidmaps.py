@@ -2,17 +2,19 @@
 """Maps between solids: one set of tetrahedra, positive in both."""
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays
+from . import _arrays, _others
 from ._fields import fill
 from ._library import ffi, lib
 from ._options import Options, takes
 from ._session import Session
+from ._told import Told
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .mesh import as_mesh
@@ -27,8 +29,8 @@ _OPTIONS = Options("starg_solid_map_options")
 _SHAPES = {"ball": lib.STARG_SOLID_BALL, "cube": lib.STARG_SOLID_CUBE}
 
 
-@dataclass(frozen=True, eq=False)
-class SolidMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class SolidMap(Told):
     """A piecewise linear map from a solid A to a solid B. Arrays are read-only views of the library's
     memory."""
 
@@ -49,6 +51,12 @@ class SolidMap:
     #: the distance of the farthest, in diagonals.
     strayed: int
     farthest: float
+    #: Does it tell how far its end is from B: `distance` from the image's surface to B's at most, and back, and
+    #: by how much B has more volume?
+    compared: bool
+    distance: float
+    distance_back: float
+    missing: float
     #: Of a morph: times between 0 and 1, and where the corners are then, (k, n, 3).
     times: Array
     keys: Array
@@ -80,6 +88,26 @@ class SolidMap:
                                     ffi.from_buffer(data) if data else ffi.NULL, len(data),
                                     _arrays.path(name), shared=True))
 
+    @classmethod
+    def read(cls, path: PathLike) -> SolidMap:
+        """Reads a MAP.vtu, without checking that it is a map (`verify`)."""
+        with open(path, "rb") as file:
+            return cls.from_bytes(file.read(), os.fsdecode(path))
+
+    def to_pyvista(self) -> Any:
+        """A copy of A as `pyvista.UnstructuredGrid`, with the piece of each cell as `piece` and the places in B as
+        `image`."""
+        grid = _others.pyvista_tetrahedra(self.vertices, self.tetrahedra, {"piece": self.labels})
+        grid.point_data["image"] = np.array(self.images)
+        return grid
+
+    def to_meshio(self) -> Any:
+        """A copy of A as `meshio.Mesh`, with the piece of each tetrahedron as `piece` and the places in B as
+        `image`."""
+        mesh = _others.meshio(self.vertices, "tetra", self.tetrahedra, {"piece": self.labels})
+        mesh.point_data["image"] = np.array(self.images)
+        return mesh
+
     def write(self, path: PathLike) -> None:
         """Writes MAP.vtu (docs/formats.md)."""
         session = Session()
@@ -108,19 +136,21 @@ class SolidMap:
 
 
 @takes(_OPTIONS)
-def map_solid(a: Any, target: Any, *, overlay: bool = False, threads: int | None = None, seed: int | None = None,
+def map_solid(a: Any, target: Any, *, overlay: bool = True, threads: int | None = None, seed: int | None = None,
               time_limit: float | None = None, progress: Progress | None = None,
               **options: Unpack[SolidMapOptions]) -> SolidMap:
     """Maps the solid A to another: `target` is a model B, a SurfaceMap, images of A's vertices (n, 3),
-    "ball" or "cube". Needs TetGen. B is mapped to in A's faces, or with `overlay` as it is: both surfaces
-    are divided by their overlay.
+    "ball" or "cube". Needs TetGen, unless both solids are star-shaped. Both surfaces are divided by their
+    overlay, so that the map ends at B itself; without `overlay`, or at images, it ends at B in A's faces.
 
     >>> import starguard
     >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
     >>> starguard.verify_map(a, b, starguard.map_solid(a, b)).passed
     True
     >>> a, b = (starguard.sample("sphere", vertices=vertices) for vertices in (500, 800))
-    >>> starguard.verify_map(a, b, starguard.map_solid(a, b, overlay=True)).passed
+    >>> starguard.verify_map(a, b, starguard.map_solid(a, b)).passed
+    True
+    >>> starguard.map_solid(a, b, overlay=False).distance > 0
     True
     """
     wanted = _OPTIONS.make(options)
@@ -131,24 +161,28 @@ def map_solid(a: Any, target: Any, *, overlay: bool = False, threads: int | None
             "starg_solid_map", lib.starg_solid_map_free, lib.starg_solid_map_to, session.context,
             mesh._handle, _SHAPES[target], wanted.pointer, shared=True, progress=progress,
             time_limit=time_limit))
-    if overlay:
-        surface = target if isinstance(target, SurfaceMap) else map_surface(mesh, target)
+    images_given = isinstance(target, (np.ndarray, list))
+    if overlay and not images_given:
+        surface = target if isinstance(target, SurfaceMap) else map_surface(mesh, target, solid=True)
         surface.overlay()
         return SolidMap._of(session.make(
             "starg_solid_map", lib.starg_solid_map_free, lib.starg_solid_map_overlay,
             session.context, surface.source._handle, surface.target._handle, surface._handle,
             wanted.pointer, shared=True, progress=progress, time_limit=time_limit))
-    if isinstance(target, (np.ndarray, list)):
+    if images_given:
         images = _arrays.reals(target, 3, "target")
     else:
         surface = target if isinstance(target, SurfaceMap) else map_surface(mesh, target)
         images = surface.images()
     if len(images) != len(mesh.vertices):
         raise ArgumentError(f"A has {len(mesh.vertices)} vertices, but there are {len(images)} images")
-    return SolidMap._of(session.make(
+    made = session.make(
         "starg_solid_map", lib.starg_solid_map_free, lib.starg_solid_map_create, session.context,
         mesh._handle, _arrays.pointer("double[]", images), wanted.pointer, shared=True,
-        progress=progress, time_limit=time_limit))
+        progress=progress, time_limit=time_limit)
+    if not images_given:
+        session.call(lib.starg_solid_map_compare, session.context, surface.target._handle, made)
+    return SolidMap._of(made)
 
 
 def map_of_morph(morph: Morph) -> SolidMap:

@@ -12,6 +12,7 @@ from . import _arrays
 from ._fields import fill
 from ._library import ffi, lib, text
 from ._session import Session
+from ._told import Told
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .guards import Guards
@@ -30,8 +31,8 @@ class Claim:
     holds: bool
 
 
-@dataclass(frozen=True)
-class Verdict:
+@dataclass(frozen=True, repr=False)
+class Verdict(Told):
     """All claims of a result; true if every one holds."""
 
     passed: bool
@@ -43,8 +44,8 @@ class Verdict:
         return self.passed
 
 
-@dataclass(frozen=True, eq=False)
-class PiecesMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class PiecesMesh(Told):
     """Labelled tetrahedra as read from PIECES.vtk, without any guarantee."""
 
     vertices: Array
@@ -67,8 +68,8 @@ class PiecesMesh:
                              lib.starg_pieces_mesh_read_memory))
 
 
-@dataclass(frozen=True, eq=False)
-class PiecesReport:
+@dataclass(frozen=True, eq=False, repr=False)
+class PiecesReport(Told):
     """The contents of PIECES.json."""
 
     mode: str
@@ -108,8 +109,8 @@ class PiecesReport:
                              lib.starg_pieces_report_read_memory))
 
 
-@dataclass(frozen=True, eq=False)
-class Certificate:
+@dataclass(frozen=True, eq=False, repr=False)
+class Certificate(Told):
     """Why `lower_bound_everywhere` of guards or `lower_bound` of pieces holds, as
     `guard(prove=True, certificate=FILE)` and `decompose` write it."""
 
@@ -134,16 +135,16 @@ def _read(data: bytes, name: str, kind: str, free: Any, function: Any) -> Any:
                         shared=True)
 
 
-@dataclass(frozen=True, eq=False)
-class MapFile:
+@dataclass(frozen=True, eq=False, repr=False)
+class MapFile(Told):
     """MAP.json as read for `verify_map`, without any guarantee."""
 
     _handle: Any = field(repr=False)
     _owner: Any = field(repr=False)
 
 
-@dataclass(frozen=True, eq=False)
-class MorphReport:
+@dataclass(frozen=True, eq=False, repr=False)
+class MorphReport(Told):
     """The morph.json of `starguard morph --report` as read for `verify_morph`."""
 
     _handle: Any = field(repr=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays
+from . import _arrays, _others
 from ._library import ffi, lib
 from ._options import Options, takes
 from ._session import Session
@@ -83,6 +83,19 @@ class Bits:
     def indices(self, row: int) -> Array:
         """The columns of the ones of a row, ascending."""
         return np.flatnonzero(self[row])
+
+    def to_scipy(self) -> Any:
+        """A copy as `scipy.sparse.csr_matrix` of ones, a row for each row here.
+
+        >>> import starguard
+        >>> starguard.Bits.of([[True, False], [True, True]]).to_scipy().sum()  # doctest: +SKIP
+        3
+        """
+        columns = [self.indices(row) for row in range(len(self))]
+        ends = np.concatenate([[0], np.cumsum([len(one) for one in columns])]).astype(np.int64)
+        ones = np.ones(int(ends[-1]), np.uint8)
+        return _others.package("scipy.sparse").csr_matrix(
+            (ones, np.concatenate([*columns, np.zeros(0, np.int64)]), ends), shape=self.shape)
 
     def counts(self) -> Array:
         """The number of ones in each row."""

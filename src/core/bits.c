@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/bits.h"
 
-#include "core/memory.h"
-
 starg_status starg_bits_create(starg_context *context, size_t rows, size_t columns,
                                starg_bits **out) {
     starg_status status = STARG_OK;
@@ -26,8 +24,7 @@ done:
 void starg_bits_free(starg_bits *bits) {
     if (bits == NULL)
         return;
-    starg_release(bits->context, bits->data);
-    starg_release(bits->context, bits);
+    RELEASE(bits->data, bits);
 }
 
 size_t starg_bits_rows(const starg_bits *bits) {

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of the public bit matrix, and word-wise helpers for bit rows. */
-#ifndef STARG_CORE_BITS_H
-#define STARG_CORE_BITS_H
+#pragma once
 
-#include "core/context.h"
+#include "core/memory.h"
 #include "starguard/bits.h"
 
 struct starg_bits {
@@ -49,4 +48,4 @@ static inline size_t starg_bit_count(const uint64_t *row, size_t words) {
          starg_word_ != 0 && (BIT = (uint64_t)starg_bit_lowest(starg_word_), 1);                   \
          starg_word_ &= starg_word_ - 1)
 
-#endif
+STARG_DROP(starg_bits, starg_bits)

@@ -2,8 +2,7 @@
 /* Fingerprint of a surface: FNV-1a (64 bits) over the positions of all corners. It does not depend
  * on where a face starts or on whether coincident vertices are merged. It detects a wrong model
  * early; equal sums prove nothing. */
-#ifndef STARG_CORE_CHECKSUM_H
-#define STARG_CORE_CHECKSUM_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -42,5 +41,3 @@ static inline uint64_t starg_checksum_face(uint64_t sum, const double *points,
             sum = starg_checksum_double(sum, corner[i][k]);
     return sum;
 }
-
-#endif

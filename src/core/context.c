@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -116,8 +115,19 @@ void starg_context_cancel(starg_context *context) {
     atomic_store(&context->cancelled, true);
 }
 
+void starg_context_finish(starg_context *context) {
+    atomic_store(&context->finishes, true);
+}
+
+size_t starg_context_best(const starg_context *context, const char **what) {
+    if (what != NULL)
+        *what = context->best > 0 ? context->best_of : "";
+    return context->best;
+}
+
 void starg_context_reset(starg_context *context) {
     atomic_store(&context->cancelled, false);
+    atomic_store(&context->finishes, false);
 }
 
 double starg_clock(void) {
@@ -150,7 +160,9 @@ double starg_seconds_left(const starg_context *context) {
 }
 
 bool starg_time_is_over(const starg_context *context) {
-    return starg_seconds_left(context) <= 0;
+    return starg_seconds_left(context) <= 0 ||
+           (context->deadline.rule == STARG_TIME_SHORTENS &&
+            atomic_load_explicit(&context->finishes, memory_order_relaxed));
 }
 
 bool starg_time_is_long_over(const starg_context *context) {
@@ -296,4 +308,13 @@ void starg_progress_end(starg_context *context) {
             report(context, p->stages[p->depth - 1].name, 1);
     }
     p->depth--;
+}
+
+starg_context *starg_stage_enter(starg_context *context, const char *stage, double share) {
+    starg_progress_begin_part(context, stage, share);
+    return context;
+}
+
+void starg_stage_leave(starg_context **context) {
+    starg_progress_end(*context);
 }

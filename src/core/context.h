@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of the context: memory, error detail, cancellation, deadline. */
-#ifndef STARG_CORE_CONTEXT_H
-#define STARG_CORE_CONTEXT_H
+#pragma once
 
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include "core/private.h"
-#include "starguard/context.h"
 #include "starguard/ranks.h"
 
 typedef struct starg_workers starg_workers; /* core/workers.c */
@@ -50,16 +45,18 @@ struct starg_context {
     starg_log_fn *log;
     void *log_user;
 
-    atomic_bool cancelled;
+    atomic_bool cancelled, finishes;
     starg_deadline deadline;
 
     const starg_ranks *ranks; /* processes that share the work, or NULL */
     uint64_t shared_loops;    /* number of shared loops so far */
     uint64_t work;            /* counted by searches so far, about microseconds */
-    uint64_t search_scenes;   /* number of search scenes so far */
-    uint64_t shared_scene;    /* the search scene that other processes hold; 0: none */
-    double shared_seconds;    /* total time in them */
-    uint64_t helped_items;    /* their items that other processes computed */
+    size_t best; /* number of `best_of` in the best result of the running search; 0: none */
+    const char *best_of;
+    uint64_t search_scenes; /* number of search scenes so far */
+    uint64_t shared_scene;  /* the search scene that other processes hold; 0: none */
+    double shared_seconds;  /* total time in them */
+    uint64_t helped_items;  /* their items that other processes computed */
 
     atomic_size_t live_bytes, peak_bytes, live_blocks;
 
@@ -86,10 +83,16 @@ starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule)
     STARG_PRIVATE(starg_time_begin);
 void starg_time_end(starg_context *context, starg_time_rule former) STARG_PRIVATE(starg_time_end);
 
+/* What the running search has so far; 0 when it ends. */
+static inline void starg_tell_best(starg_context *context, size_t count, const char *what) {
+    context->best = count;
+    context->best_of = what;
+}
+
 /* Seconds left, negative after the time limit; INFINITY without a limit or when it is ignored. */
 double starg_seconds_left(const starg_context *context) STARG_PRIVATE(starg_seconds_left);
 
-/* True after the time limit, unless it is ignored. */
+/* True after the time limit, unless it is ignored, and for searches after a request to finish. */
 bool starg_time_is_over(const starg_context *context) STARG_PRIVATE(starg_time_is_over);
 
 /* True half a second after it, or a tenth of it if that is longer: too late for what would be the
@@ -138,5 +141,3 @@ void starg_progress_begin_part(starg_context *context, const char *stage, double
 void starg_progress_step(starg_context *context, size_t done, size_t total)
     STARG_PRIVATE(starg_progress_step);
 void starg_progress_end(starg_context *context) STARG_PRIVATE(starg_progress_end);
-
-#endif

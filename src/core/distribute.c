@@ -15,7 +15,6 @@
  * process is cancelled or cannot continue. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "core/workers.h"
 
 enum { PREFETCH = 2, SHARES = 4 };
@@ -30,7 +29,6 @@ typedef struct distribution {
 } distribution;
 
 static starg_status send_jobs(const distribution *s) {
-    starg_status status = STARG_OK;
     starg_context *context = s->group->context;
     const starg_parallel_remote *remote = s->group->loop->remote;
     ranks_message head = {
@@ -39,10 +37,9 @@ static starg_status send_jobs(const distribution *s) {
         double left = starg_seconds_left(context);
         if (left < INFINITY) /* 0 means no limit */
             head.seconds = fmax(left, 1e-9);
-        STARG_TRY(ranks_send(context, s->ranks, to, &head, remote->job->data, remote->job->count));
+        TRY(ranks_send(context, s->ranks, to, &head, remote->job->data, remote->job->count));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Leaves SHARES blocks per process, within limits; at least one item per thread of the helper. */
@@ -58,7 +55,6 @@ static size_t block_size(const distribution *s) {
 }
 
 static starg_status hand_out(distribution *s, int to) {
-    starg_status status = STARG_OK;
     worker_group *group = s->group;
     size_t size = block_size(s), first = atomic_fetch_add(&group->next, size);
     if (first >= group->loop->count || worker_group_must_stop(group, first))
@@ -66,19 +62,16 @@ static starg_status hand_out(distribution *s, int to) {
     size_t left = group->loop->count - first;
     const ranks_message head = {
         .kind = RANKS_BLOCK, .loop = s->number, .first = first, .count = size < left ? size : left};
-    STARG_TRY(ranks_send(group->context, s->ranks, to, &head, NULL, 0));
+    TRY(ranks_send(group->context, s->ranks, to, &head, NULL, 0));
     s->under_way++;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status hand_out_first(distribution *s) {
-    starg_status status = STARG_OK;
     for (int i = 0; i < PREFETCH; i++)
         for (int to = 1; to < s->ranks->count; to++)
-            STARG_TRY(hand_out(s, to));
-done:
-    return status;
+            TRY(hand_out(s, to));
+    return STARG_OK;
 }
 
 static bool is_sound(const distribution *s, const ranks_message *head) {
@@ -109,24 +102,18 @@ static starg_status take_reply(distribution *s, const ranks_message *head,
 
 /* Waits briefly for a reply; its sender gets the next block. */
 static starg_status serve_one(distribution *s) {
-    starg_status status = STARG_OK;
     starg_context *context = s->group->context;
-    void *bytes = NULL;
+    SCOPED void *bytes = NULL;
     int from;
     ranks_message head;
     starg_bytes_reader rest;
-    STARG_TRY(ranks_receive(context, s->ranks, PATIENCE, &from, &head, &rest, &bytes));
+    TRY(ranks_receive(context, s->ranks, PATIENCE, &from, &head, &rest, &bytes));
     if (bytes == NULL || head.loop != s->number)
-        goto done;
-    if (!is_sound(s, &head)) {
-        status = STARG_ERROR_RANK;
-        goto done;
-    }
-    STARG_TRY(take_reply(s, &head, &rest));
-    STARG_TRY(hand_out(s, from));
-done:
-    starg_release(context, bytes);
-    return status;
+        return STARG_OK;
+    if (!is_sound(s, &head))
+        return STARG_ERROR_RANK;
+    TRY(take_reply(s, &head, &rest));
+    return hand_out(s, from);
 }
 
 static bool is_over(const distribution *s) {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/fields.h"
+#include "core/memory.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* ---- members ---- */
 
@@ -64,6 +64,13 @@ static uint64_t first_word(const starg_field *f) {
     return f->kind == STARG_FIELD_COUNT ? f->most + 1 : 0;
 }
 
+const char *starg_field_real_word(const starg_field *field, double value) {
+    for (size_t i = 0; i < word_count(field); i++)
+        if (value == -(double)(i + 1))
+            return field->words[i];
+    return NULL;
+}
+
 const char *starg_field_word(const starg_field *field, uint64_t number) {
     uint64_t at = number - first_word(field);
     return number >= first_word(field) && at < word_count(field) ? field->words[at] : NULL;
@@ -72,7 +79,11 @@ const char *starg_field_word(const starg_field *field, uint64_t number) {
 bool starg_field_set_word(const starg_field *field, void *record, const char *word) {
     for (size_t i = 0; i < word_count(field); i++)
         if (strcmp(field->words[i], word) == 0) {
-            store_count(field, record, first_word(field) + i);
+            double value = -(double)(i + 1);
+            if (field->kind == STARG_FIELD_REAL)
+                memcpy(member(field, record), &value, sizeof value);
+            else
+                store_count(field, record, first_word(field) + i);
             return true;
         }
     return false;
@@ -115,11 +126,11 @@ bool starg_field_set_real(const starg_field *field, void *record, double value) 
 }
 
 static void list_words(const starg_field *f, char *text, size_t size) {
-    bool count = f->kind == STARG_FIELD_COUNT;
-    size_t used = (size_t)snprintf(text, size, count ? "" : "one of ");
+    bool number = f->kind != STARG_FIELD_CHOICE;
+    size_t used = (size_t)snprintf(text, size, number ? "" : "one of ");
     for (size_t i = 0; f->words[i] != NULL && used < size; i++)
         used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", f->words[i]);
-    if (count && used < size)
+    if (number && used < size)
         snprintf(text + used, size - used, " or a number");
 }
 
@@ -159,7 +170,8 @@ bool field_fits(const starg_field *field, const void *record) {
     bool nullable = f->flags & STARG_FIELD_NULLABLE;
     if (f->kind == STARG_FIELD_REAL) {
         double value = real_of(f, record);
-        return real_fits(f, value) || (nullable && value == f->standard);
+        return real_fits(f, value) || (nullable && value == f->standard) ||
+               starg_field_real_word(f, value) != NULL;
     }
     uint64_t value = starg_field_count(f, record);
     return count_fits(f, value) || (nullable && value == f->none);
@@ -184,17 +196,29 @@ static starg_status check_field(starg_context *context, const char *stage, const
 
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
                           const void *record) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < fields->count; i++) {
         const starg_field *f = &fields->fields[i];
         if (f->kind <= STARG_FIELD_CHOICE && (f->applies == NULL || f->applies(record)))
-            STARG_TRY(check_field(context, stage, f, record));
+            TRY(check_field(context, stage, f, record));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- defaults ---- */
+
+const char *starg_field_group(size_t index, const char **title) {
+    static const char *const groups[][2] = {{"input", "What goes in"},
+                                            {"targets", "What to see"},
+                                            {"places", "Where guards may stand"},
+                                            {"cameras", "Cameras"},
+                                            {"number", "How many"},
+                                            {"search", "Effort and method"},
+                                            {"output", "What comes out"}};
+    if (index >= sizeof groups / sizeof *groups)
+        return NULL;
+    *title = groups[index][1];
+    return groups[index][0];
+}
 
 void starg_fields_default(const starg_fields *fields, void *record) {
     for (size_t i = 0; i < fields->count; i++) {
@@ -204,9 +228,12 @@ void starg_fields_default(const starg_fields *fields, void *record) {
         else if (f->kind <= STARG_FIELD_CHOICE)
             store_count(f, record, f->initial);
         else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES ||
-                 f->kind == STARG_FIELD_TEXTS ||
-                 (f->kind == STARG_FIELD_NUMBERS && (f->flags & STARG_FIELD_RARE)))
+                 f->kind == STARG_FIELD_TEXTS)
             memset(member(f, record), 0, f->size);
+        else if (f->kind == STARG_FIELD_NUMBERS && (f->flags & STARG_FIELD_RARE))
+            for (size_t k = 0; k < f->length; k++)
+                memcpy((char *)member(f, record) + k * sizeof f->standard, &f->standard,
+                       sizeof f->standard);
         else if (f->kind == STARG_FIELD_RECORD)
             starg_fields_default(f->of, member(f, record));
     }
@@ -232,7 +259,8 @@ void starg_field_default_text(const starg_field *field, char *text, size_t size)
     if (words != NULL && words[0] == '\0')
         return;
     if (words == NULL && word_count(field) > 0)
-        words = starg_field_word(field, field->initial);
+        words = field->kind == STARG_FIELD_REAL ? starg_field_real_word(field, field->standard)
+                                                : starg_field_word(field, field->initial);
     if (words == NULL && field->kind == STARG_FIELD_COUNT)
         put_count(number, sizeof number, field->initial);
     else if (words == NULL && field->kind == STARG_FIELD_REAL)

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rows of field tables, and range checks by them. */
-#ifndef STARG_CORE_FIELDS_H
-#define STARG_CORE_FIELDS_H
+#pragma once
 
 #include "core/context.h"
-#include "core/private.h"
 #include "starguard/fields.h"
 
 /* Offset and size of a member of struct T. */
@@ -22,5 +20,3 @@ bool field_fits(const starg_field *field, const void *record);
 /* Checks the ranges of all applicable members. Errors: ARGUMENT. */
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
                           const void *record) STARG_PRIVATE(fields_check);
-
-#endif

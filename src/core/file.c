@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -129,16 +128,14 @@ starg_status starg_output_open(starg_context *context, const char *stage, const 
     }
 done:
     if (status != STARG_OK) {
-        starg_release(context, output->path);
-        starg_release(context, output->temporary);
+        RELEASE(output->path, output->temporary);
         *output = (starg_output){.context = context, .stage = stage};
     }
     return status;
 }
 
 static void reset_output(starg_output *output) {
-    starg_release(output->context, output->path);
-    starg_release(output->context, output->temporary);
+    RELEASE(output->path, output->temporary);
     *output = (starg_output){.context = output->context, .stage = output->stage};
 }
 

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reads whole files, and writes whole files: output goes to a temporary file, renamed once
  * everything is on disk. */
-#ifndef STARG_CORE_FILE_H
-#define STARG_CORE_FILE_H
+#pragma once
 
 #include <locale.h>
 #include <stdio.h>
 
 #include "core/context.h"
-#include "core/private.h"
 
 /* Largest file accepted, in bytes. */
 #define STARG_FILE_LIMIT ((size_t)2 << 30)
@@ -54,5 +52,3 @@ starg_status starg_c_locale_enter(starg_context *context, starg_c_locale *locale
     STARG_PRIVATE(starg_c_locale_enter);
 /* Does nothing if it was not entered. */
 void starg_c_locale_leave(starg_c_locale *locale) STARG_PRIVATE(starg_c_locale_leave);
-
-#endif

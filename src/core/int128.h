@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* 128-bit integers: an extension of gcc and clang. */
-#ifndef STARG_CORE_INT128_H
-#define STARG_CORE_INT128_H
+#pragma once
 
 __extension__ typedef __int128 starg_int128;
 __extension__ typedef unsigned __int128 starg_uint128;
-
-#endif

@@ -39,12 +39,11 @@ bool starg_json_put(FILE *stream, const char *before, json_t *value, const char 
 
 starg_status starg_json_path(starg_context *context, const char *stage, const char *path,
                              char **copy) {
-    starg_status status = STARG_OK;
     *copy = NULL;
     if (path == NULL)
         return STARG_OK;
     size_t length = strlen(path);
-    STARG_NEW(context, stage, *copy, length + 1);
+    NEW(context, stage, *copy, length + 1);
     memcpy(*copy, path, length + 1);
     json_t *probe = json_string(path);
     if (probe == NULL)
@@ -52,26 +51,20 @@ starg_status starg_json_path(starg_context *context, const char *stage, const ch
             if ((unsigned char)path[i] >= 0x80)
                 (*copy)[i] = '?';
     json_decref(probe);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_json_write(starg_context *context, const char *stage, const char *path,
                               starg_json_writer *put, const void *result, const char *model_file) {
-    starg_status status = STARG_OK;
     starg_output output = {0};
-    char *shown = NULL;
-    STARG_TRY(starg_json_path(context, stage, model_file, &shown));
-    STARG_TRY(starg_output_open(context, stage, path, &output));
+    SCOPED char *shown = NULL;
+    TRY(starg_json_path(context, stage, model_file, &shown));
+    TRY(starg_output_open(context, stage, path, &output));
     if (!put(output.stream, result, shown)) {
         starg_output_discard(&output);
-        status = starg_fail_memory(context, stage);
-        goto done;
+        return starg_fail_memory(context, stage);
     }
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_release(context, shown);
-    return status;
+    return starg_output_commit(&output);
 }
 
 starg_status starg_json_write_memory(starg_context *context, const char *stage,

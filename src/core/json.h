@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* JSON results as text: one key a line, reals with 17 significant digits, so that reading gives
  * back the same doubles. */
-#ifndef STARG_CORE_JSON_H
-#define STARG_CORE_JSON_H
+#pragma once
 
 #include <jansson.h>
 #include <stdio.h>
 
 #include "core/context.h"
-#include "core/private.h"
 
 /* Parses a text; messages call it `name`. Free *root with json_decref. Duplicate keys are an error.
  * Errors: FORMAT (with the line), MEMORY. */
@@ -39,5 +37,3 @@ starg_status starg_json_write_memory(starg_context *context, const char *stage,
                                      starg_json_writer *put, const void *result,
                                      const char *model_file, char **text, size_t *size)
     STARG_PRIVATE(starg_json_write_memory);
-
-#endif

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/memory.h"
 
-#include <stdint.h>
-
 /* Precedes every block. Its size keeps the block aligned for any type. */
 typedef union block_header {
-    size_t bytes;
+    struct {
+        size_t bytes;
+        starg_context *context;
+    } of;
     max_align_t align;
 } block_header;
 
@@ -24,7 +25,8 @@ void *starg_allocate(starg_context *context, size_t count, size_t size) {
     block_header *header = context->allocator.allocate(context->allocator.user, bytes);
     if (header == NULL)
         return NULL;
-    header->bytes = bytes;
+    header->of.bytes = bytes;
+    header->of.context = context;
     count_up(context, bytes);
     return header + 1;
 }
@@ -51,9 +53,21 @@ void starg_release(starg_context *context, void *block) {
     if (block == NULL)
         return;
     block_header *header = (block_header *)block - 1;
-    atomic_fetch_sub(&context->live_bytes, header->bytes);
+    atomic_fetch_sub(&context->live_bytes, header->of.bytes);
     atomic_fetch_sub(&context->live_blocks, 1);
     context->allocator.release(context->allocator.user, header);
+}
+
+void starg_release_all(void *const *blocks, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (blocks[i] != NULL)
+            starg_release(((block_header *)blocks[i] - 1)->of.context, blocks[i]);
+}
+
+void starg_release_scoped(void *pointer) {
+    void *block;
+    memcpy(&block, pointer, sizeof block);
+    RELEASE(block);
 }
 
 void starg_text_free(starg_context *context, char *text) {

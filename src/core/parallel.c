@@ -106,15 +106,13 @@ static size_t count_threads(const worker_group *group, bool shared) {
 }
 
 static starg_status prepare(worker_group *group) {
-    starg_status status = STARG_OK;
     starg_context *context = group->context;
     const char *stage = group->loop->stage;
     if (group->loop->advance != NULL)
-        STARG_NEW_ZERO(context, stage, group->is_finished, group->loop->count);
+        NEW_ZERO(context, stage, group->is_finished, group->loop->count);
     if (mtx_init(&group->lock, mtx_plain) != thrd_success)
-        status = starg_fail_memory(context, stage);
-done:
-    return status;
+        return starg_fail_memory(context, stage);
+    return STARG_OK;
 }
 
 starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop) {

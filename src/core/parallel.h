@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Parallel loops whose result does not depend on the number of threads: an item writes only to
  * outputs addressed by its index. */
-#ifndef STARG_CORE_PARALLEL_H
-#define STARG_CORE_PARALLEL_H
+#pragma once
 
-#include "core/private.h"
 #include "core/ranks.h"
 
 /* Computes one item. `scratch` belongs to the running thread. It may allocate, but not log, report
@@ -47,5 +45,3 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
 /* Same, but fails with STARG_ERROR_TIME at the time limit. */
 starg_status starg_parallel_in_time(starg_context *context, const starg_parallel_loop *loop)
     STARG_PRIVATE(starg_parallel_in_time);
-
-#endif

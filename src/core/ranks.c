@@ -66,15 +66,12 @@ static starg_status fail_lost(starg_context *context) {
 
 starg_status ranks_send(starg_context *context, const starg_ranks *ranks, int to,
                         const ranks_message *head, const void *rest, size_t size) {
-    starg_status status = STARG_OK;
-    starg_bytes message = {0};
-    STARG_TRY(starg_bytes_put(context, &message, head, 1, sizeof *head));
-    STARG_TRY(starg_bytes_put(context, &message, rest, size, 1));
+    SCOPED starg_bytes message = {0};
+    TRY(starg_bytes_put(context, &message, head, 1, sizeof *head));
+    TRY(starg_bytes_put(context, &message, rest, size, 1));
     if (!ranks->send(ranks->user, to, message.data, message.count))
-        status = fail_lost(context);
-done:
-    STARG_ARRAY_FREE(context, &message);
-    return status;
+        return fail_lost(context);
+    return STARG_OK;
 }
 
 starg_status ranks_receive(starg_context *context, const starg_ranks *ranks, double seconds,
@@ -103,19 +100,17 @@ done:
 
 /* Receives whatever else the helper sent, so that it does not block on sending. */
 starg_status starg_ranks_release(starg_context *context, const starg_ranks *ranks) {
-    starg_status status = STARG_OK;
     const ranks_message end = {.kind = RANKS_END};
     for (int to = 1; to < ranks->count; to++)
-        STARG_TRY(ranks_send(context, ranks, to, &end, NULL, 0));
+        TRY(ranks_send(context, ranks, to, &end, NULL, 0));
     for (int gone = 1; gone < ranks->count;) {
         void *bytes;
         int from;
         ranks_message head;
         starg_bytes_reader rest;
-        STARG_TRY(ranks_receive(context, ranks, 1, &from, &head, &rest, &bytes));
+        TRY(ranks_receive(context, ranks, 1, &from, &head, &rest, &bytes));
         gone += bytes != NULL && head.kind == RANKS_END;
         starg_release(context, bytes);
     }
-done:
-    return status;
+    return STARG_OK;
 }

@@ -4,13 +4,9 @@
  * For each shared loop rank 0 sends every helper a JOB (the data common to all items), then BLOCKs:
  * ranges of items. A helper answers each block with one REPLY, in order. END releases a helper,
  * which echoes it. Loops are numbered, so that late replies can be recognized. */
-#ifndef STARG_CORE_RANKS_H
-#define STARG_CORE_RANKS_H
-
-#include <stdint.h>
+#pragma once
 
 #include "core/memory.h"
-#include "core/private.h"
 
 /* Messages as bytes: values are read in the order in which they were written. Numbers keep their
  * layout in memory, since both ends are the same program. */
@@ -87,5 +83,3 @@ starg_status ranks_receive(starg_context *context, const starg_ranks *ranks, dou
  * NULL for those that it lacks. Errors: as for starg_ranks_serve. */
 starg_status ranks_serve(starg_context *context, const starg_ranks *ranks,
                          const ranks_work *const works[RANKS_WORKS]) STARG_PRIVATE(ranks_serve);
-
-#endif

@@ -8,7 +8,6 @@
 #include "core/record.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "core/memory.h"
 
@@ -64,6 +63,8 @@ static json_t *real_json(const starg_field *f, const char *at) {
     memcpy(&value, at, sizeof value);
     if ((f->flags & STARG_FIELD_NULLABLE) && value == f->standard)
         return json_null();
+    if (f->words != NULL && starg_field_real_word(f, value) != NULL)
+        return json_string(starg_field_real_word(f, value));
     return isfinite(value) ? json_real(value) : json_null();
 }
 
@@ -169,7 +170,7 @@ static bool is_default(const starg_field *f, const void *record) {
     case STARG_FIELD_NUMBERS:
         for (size_t i = 0; i < f->length; i++) {
             memcpy(&value, at + i * sizeof value, sizeof value);
-            same = same && value == 0;
+            same = same && value == f->standard;
         }
         return same;
     case STARG_FIELD_INDICES:
@@ -363,7 +364,7 @@ static starg_status read_number(const reader *r, json_t *value, const starg_fiel
     else if (f->kind == STARG_FIELD_COUNT && json_is_integer(value) &&
              json_integer_value(value) >= 0)
         good = starg_field_set_count(f, record, (uint64_t)json_integer_value(value));
-    else if (f->kind == STARG_FIELD_COUNT && f->words != NULL && json_is_string(value))
+    else if (f->words != NULL && json_is_string(value))
         good = starg_field_set_word(f, record, json_string_value(value));
     else if (f->kind == STARG_FIELD_COUNT && json_is_string(value) &&
              read_digits(json_string_value(value), &large))
@@ -374,7 +375,6 @@ static starg_status read_number(const reader *r, json_t *value, const starg_fiel
 }
 
 static starg_status read_text(const reader *r, json_t *value, const starg_field *f, void *record) {
-    starg_status status = STARG_OK;
     char *copy = NULL;
     if (json_is_null(value)) {
         store_pointer(record, f->offset, NULL);
@@ -382,11 +382,10 @@ static starg_status read_text(const reader *r, json_t *value, const starg_field 
     }
     if (!json_is_string(value))
         return reject(r, f, "a text, or null");
-    STARG_NEW(r->context, r->file->name, copy, json_string_length(value) + 1);
+    NEW(r->context, r->file->name, copy, json_string_length(value) + 1);
     memcpy(copy, json_string_value(value), json_string_length(value) + 1);
     store_pointer(record, f->offset, copy);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_point(const reader *r, json_t *value, const starg_field *f, void *record) {
@@ -419,12 +418,11 @@ static starg_status read_numbers(const reader *r, json_t *value, const starg_fie
 
 static starg_status read_indices(const reader *r, json_t *value, const starg_field *f,
                                  void *record) {
-    starg_status status = STARG_OK;
     size_t count = json_array_size(value), limit = load_size(record, f->limit);
     uint32_t *items = NULL;
     if (!json_is_array(value))
         return reject(r, f, "an array of indices");
-    STARG_NEW(r->context, r->file->name, items, count);
+    NEW(r->context, r->file->name, items, count);
     store_pointer(record, f->offset, items);
     memcpy((char *)record + f->length, &count, sizeof count);
     for (size_t i = 0; i < count; i++) {
@@ -434,8 +432,7 @@ static starg_status read_indices(const reader *r, json_t *value, const starg_fie
             return reject(r, f, "an array of ascending indices of the model");
         items[i] = (uint32_t)index;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Does column k share the block of the column before it? Members of structs do. */
@@ -505,48 +502,41 @@ static starg_status check_numbers(const reader *r, json_t *items, const starg_fi
 /* Row i of columns. */
 static starg_status read_row(reader *r, json_t *item, const starg_fields *fields, void *record,
                              size_t i) {
-    starg_status status = STARG_OK;
     for (size_t k = 0; k < fields->count; k++) {
         const starg_field *f = &fields->fields[k], own = in_column(f, record);
         if (applies(f, record))
-            STARG_TRY(read_field(r, value_in(item, fields, k), &own, row_of(f, &own, record, i)));
+            TRY(read_field(r, value_in(item, fields, k), &own, row_of(f, &own, record, i)));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_items(reader *r, json_t *items, const starg_field *f, void *record) {
-    starg_status status = STARG_OK;
     const reader outside = *r;
     r->list = f->key;
     for (r->item = 0; r->item < json_array_size(items); r->item++) {
         json_t *item = json_array_get(items, r->item);
-        STARG_TRY(check_form(r, item, f->of, "what stands"));
+        TRY(check_form(r, item, f->of, "what stands"));
         if (f->of->columns)
-            STARG_TRY(read_row(r, item, f->of, record, r->item));
+            TRY(read_row(r, item, f->of, record, r->item));
         else
-            STARG_TRY(read_fields(r, item, f->of,
-                                  (char *)load_pointer(record, f->offset) + r->item * f->of->size));
+            TRY(read_fields(r, item, f->of,
+                            (char *)load_pointer(record, f->offset) + r->item * f->of->size));
     }
     *r = outside;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_list(reader *r, json_t *value, const starg_field *f, void *record) {
-    starg_status status = STARG_OK;
     size_t count = json_array_size(value);
     if (!json_is_array(value) || count < f->least)
         return reject(r, f, f->least > 0 ? "an array that is not empty" : "an array");
     if ((f->flags & STARG_FIELD_MATCHING) && count != load_size(record, f->length))
         return reject(r, f, "an array with an item for each guard");
     if (f->of->columns)
-        STARG_TRY(check_numbers(r, value, f->of, record));
-    STARG_TRY(make_items(r, f, record, count));
+        TRY(check_numbers(r, value, f->of, record));
+    TRY(make_items(r, f, record, count));
     memcpy((char *)record + f->length, &count, sizeof count);
-    STARG_TRY(read_items(r, value, f, record));
-done:
-    return status;
+    return read_items(r, value, f, record);
 }
 
 static starg_status read_record(reader *r, json_t *value, const starg_field *f, void *record) {
@@ -617,19 +607,17 @@ static starg_status read_field(reader *r, json_t *value, const starg_field *f, v
 
 static starg_status read_fields(reader *r, json_t *object, const starg_fields *fields,
                                 void *record) {
-    starg_status status = STARG_OK;
     for (size_t k = 0; k < fields->count; k++) {
         const starg_field *f = &fields->fields[k];
         json_t *value = value_in(object, fields, k);
         if (f->key == NULL && fields->form == STARG_FORM_OBJECT)
             set_default(f, record);
         else if (applies(f, record))
-            STARG_TRY(read_field(r, value, f, record));
+            TRY(read_field(r, value, f, record));
         else
             set_default(f, record);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status record_read(starg_context *context, const char *name, json_t *object,

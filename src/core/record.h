@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Records in JSON: writes and reads structs by their field tables. */
-#ifndef STARG_CORE_RECORD_H
-#define STARG_CORE_RECORD_H
+#pragma once
 
 #include "core/fields.h"
 #include "core/json.h"
-#include "core/private.h"
 
 /* Writes a struct as an object, one key a line, indented by `margin` blanks; lists that are marked
  * so get one item a line. False when out of memory. */
@@ -22,5 +20,3 @@ starg_status record_read(starg_context *context, const char *name, json_t *objec
 /* FORMAT error of a reader, for conditions that the tables do not express. */
 starg_status record_reject(starg_context *context, const char *name, const starg_fields *fields,
                            const char *key, const char *expected) STARG_PRIVATE(record_reject);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Random numbers that depend only on (seed, stage, item), never on the order of calls or threads:
  * the splitmix64 finaliser over a counter. */
-#ifndef STARG_CORE_RNG_H
-#define STARG_CORE_RNG_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -48,5 +47,3 @@ static inline void starg_rng_direction(starg_rng *rng, double out[3]) {
     out[1] = side * sin(angle);
     out[2] = z;
 }
-
-#endif

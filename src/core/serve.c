@@ -4,8 +4,6 @@
  * with runs without helpers. */
 #include "core/ranks.h"
 
-#include "core/memory.h"
-
 static const double PATIENCE = 0.05; /* seconds between checks for cancellation */
 
 typedef struct helper {
@@ -63,23 +61,19 @@ static starg_status release_helper(helper *h, const ranks_message *head) {
 }
 
 static starg_status take_message(helper *h) {
-    starg_status status = STARG_OK;
-    void *bytes = NULL;
+    SCOPED void *bytes = NULL;
     int from;
     ranks_message head;
     starg_bytes_reader rest;
-    STARG_TRY(ranks_receive(h->context, h->ranks, PATIENCE, &from, &head, &rest, &bytes));
+    TRY(ranks_receive(h->context, h->ranks, PATIENCE, &from, &head, &rest, &bytes));
     if (bytes == NULL)
-        goto done;
-    if (head.kind == RANKS_JOB)
-        begin_job(h, &head, &rest);
-    else if (head.kind == RANKS_BLOCK)
-        status = work_on_block(h, &head);
-    else
-        status = release_helper(h, &head);
-done:
-    starg_release(h->context, bytes);
-    return status;
+        return STARG_OK;
+    if (head.kind == RANKS_BLOCK)
+        return work_on_block(h, &head);
+    if (head.kind != RANKS_JOB)
+        return release_helper(h, &head);
+    begin_job(h, &head, &rest);
+    return STARG_OK;
 }
 
 starg_status ranks_serve(starg_context *context, const starg_ranks *ranks,

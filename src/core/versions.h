@@ -5,13 +5,10 @@
  *
  * For static functions only: gcc gives an external one of several versions default visibility,
  * whatever the library hides. */
-#ifndef STARG_CORE_VERSIONS_H
-#define STARG_CORE_VERSIONS_H
+#pragma once
 
 #if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
 #define STARG_SEVERAL_VERSIONS __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define STARG_SEVERAL_VERSIONS
-#endif
-
 #endif

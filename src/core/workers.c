@@ -9,8 +9,6 @@
 #include <threads.h>
 #include <unistd.h>
 
-#include "core/context.h"
-
 struct starg_workers {
     pid_t process;
     atomic_bool in_use; /* between workers_begin and workers_end */

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Threads that run loops, and the one loop that they run. */
-#ifndef STARG_CORE_WORKERS_H
-#define STARG_CORE_WORKERS_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <threads.h>
 
 #include "core/parallel.h"
-#include "starguard/context.h"
 
 /* The threads of a context besides the calling one. They sleep between loops: searches run many
  * loops that take less time than the start of a thread. */
@@ -53,5 +49,3 @@ void worker_group_report(worker_group *group);
 
 /* The calling thread's part in a loop that is shared with other processes (core/distribute.c). */
 void worker_group_distribute(worker_group *group);
-
-#endif

@@ -12,7 +12,6 @@
  * and a cover of the rest. */
 #include "cover/solve.h"
 
-#include "cover/dual.h"
 #include "cover/greedy.h"
 #include "cover/ilp.h"
 #include "cover/local.h"
@@ -52,27 +51,21 @@ static void raise_bound(block_solve *block, size_t rows) {
 
 /* Makes the forced rows and a cover of the rest the best cover if that is smaller. */
 static starg_status offer_cover(block_solve *block, const cover_state *cover) {
-    starg_status status = STARG_OK;
     if (block->forced.count + cover->count >= block->best.count)
         return STARG_OK;
     block->best.count = 0;
     for (size_t i = 0; i < block->forced.count; i++)
-        STARG_PUSH(block->run->context, "cover", &block->best, block->forced.data[i]);
+        PUSH(block->run->context, "cover", &block->best, block->forced.data[i]);
     for (size_t i = 0; i < cover->count; i++)
-        STARG_PUSH(block->run->context, "cover", &block->best,
-                   block->rest.row_names[cover->rows[i]]);
-done:
-    return status;
+        PUSH(block->run->context, "cover", &block->best, block->rest.row_names[cover->rows[i]]);
+    return STARG_OK;
 }
 
 static starg_status find_first_cover(cover_run *run, const cover_instance *instance,
                                      cover_state *cover) {
-    starg_status status = STARG_OK;
-    STARG_TRY(cover_greedy(run, cover, instance->total, instance->rows));
+    TRY(cover_greedy(run, cover, instance->total, instance->rows));
     cover_drop_needless(cover, instance->total);
-    STARG_TRY(cover_shrink(run, cover, instance->total));
-done:
-    return status;
+    return cover_shrink(run, cover, instance->total);
 }
 
 static bool is_too_large(const block_solve *block, size_t allowance) {
@@ -84,76 +77,65 @@ static bool is_too_large(const block_solve *block, size_t allowance) {
 
 /* Improves the multipliers by the linear relaxation where the subgradient method was not enough. */
 static starg_status bound_by_lp(block_solve *block, cover_dual *dual, bool *found) {
-    starg_status status = STARG_OK;
     starg_context *context = block->run->context;
-    cover_relaxation relaxation = {0};
-    int64_t *reduced = NULL;
+    SCOPED_BY(cover_relaxation_free) cover_relaxation relaxation = {0};
+    SCOPED int64_t *reduced = NULL;
     *found = false;
     if (is_too_large(block, RELAXATION_ENTRIES))
         return STARG_OK;
-    STARG_NEW(context, "bound", reduced, block->rest.rows);
-    STARG_TRY(cover_relax(block->run, &block->rest, &relaxation, found));
+    NEW(context, "bound", reduced, block->rest.rows);
+    TRY(cover_relax(block->run, &block->rest, &relaxation, found));
     if (*found) {
         const int64_t *multipliers = relaxation.multipliers;
         int64_t value = cover_dual_value(&block->rest, multipliers, reduced);
         cover_dual_offer(&block->rest, dual, multipliers, reduced, value);
     }
-done:
-    starg_release(context, reduced);
-    cover_relaxation_free(&block->rest, &relaxation);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status bound_rest(block_solve *block, cover_dual *dual, cover_state *cover) {
-    starg_status status = STARG_OK;
     bool relaxed = block->run->relaxed;
     if (relaxed) {
-        STARG_TRY(bound_by_lp(block, dual, &relaxed));
+        TRY(bound_by_lp(block, dual, &relaxed));
         raise_bound(block, cover_dual_rows(dual->value));
     }
     if (relaxed)
-        goto done;
+        return STARG_OK;
     if (block->run->local) {
-        STARG_TRY(cover_local_search(block->run, 1, cover));
-        status = offer_cover(block, cover);
-        goto done;
+        TRY(cover_local_search(block->run, 1, cover));
+        return offer_cover(block, cover);
     }
-    STARG_TRY(cover_lagrange(block->run, &block->rest, dual, cover));
-    STARG_TRY(cover_local_search(block->run, cover_dual_rows(dual->value), cover));
-    STARG_TRY(offer_cover(block, cover));
+    TRY(cover_lagrange(block->run, &block->rest, dual, cover));
+    TRY(cover_local_search(block->run, cover_dual_rows(dual->value), cover));
+    TRY(offer_cover(block, cover));
     raise_bound(block, cover_dual_rows(dual->value));
     if (is_closed(block) || cover_time_is_over(block->run))
-        goto done;
-    STARG_TRY(bound_by_lp(block, dual, &relaxed));
+        return STARG_OK;
+    TRY(bound_by_lp(block, dual, &relaxed));
     raise_bound(block, cover_dual_rows(dual->value));
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Fixes rows by reduced costs and reduces the rest; *again tells whether another round pays: at
  * least one row in twenty is gone. */
 static starg_status fix_rest(block_solve *block, const cover_dual *dual, bool *again) {
-    starg_status status = STARG_OK;
     starg_context *context = block->run->context;
-    uint64_t *keep = NULL, *take = NULL;
+    SCOPED uint64_t *keep = NULL, *take = NULL;
     bool feasible;
     size_t before = block->rest.rows;
-    STARG_NEW(context, "bound", keep, block->rest.column_words);
-    STARG_NEW_ZERO(context, "bound", take, block->rest.column_words);
+    NEW(context, "bound", keep, block->rest.column_words);
+    NEW_ZERO(context, "bound", take, block->rest.column_words);
     cover_mask_fill(keep, block->rest.rows);
     size_t most = block->best.count - 1 - block->forced.count;
     if (!cover_dual_fix(&block->rest, dual, most, keep, take))
-        goto done;
-    STARG_TRY(cover_take_rows(&block->rest, take, keep, &block->forced));
-    STARG_TRY(cover_reduce_full(block->run, &block->rest, &block->forced, NULL, &feasible));
+        return STARG_OK;
+    TRY(cover_take_rows(&block->rest, take, keep, &block->forced));
+    TRY(cover_reduce_full(block->run, &block->rest, &block->forced, NULL, &feasible));
     if (!feasible) /* no better cover exists */
         block->lower_bound = block->best.count;
     raise_bound(block, 0);
     *again = block->rest.columns == 0 || 20 * block->rest.rows <= 19 * before;
-done:
-    starg_release(context, keep);
-    starg_release(context, take);
-    return status;
+    return STARG_OK;
 }
 
 /* Multipliers from before any row was fixed are valid for the whole block. */
@@ -167,64 +149,50 @@ static void export_prices(block_solve *block, const cover_dual *dual) {
 }
 
 static starg_status run_round(block_solve *block, bool *again) {
-    starg_status status = STARG_OK;
-    cover_dual dual = {0};
-    cover_state cover = {0};
+    SCOPED_BY(cover_dual_free) cover_dual dual = {0};
+    SCOPED_BY(cover_state_free) cover_state cover = {0};
     *again = false;
-    STARG_TRY(cover_state_create(&block->rest, &cover));
-    STARG_TRY(find_first_cover(block->run, &block->rest, &cover));
-    STARG_TRY(offer_cover(block, &cover));
-    STARG_TRY(cover_dual_create(&block->rest, &dual));
-    STARG_TRY(bound_rest(block, &dual, &cover));
+    TRY(cover_state_create(&block->rest, &cover));
+    TRY(find_first_cover(block->run, &block->rest, &cover));
+    TRY(offer_cover(block, &cover));
+    TRY(cover_dual_create(&block->rest, &dual));
+    TRY(bound_rest(block, &dual, &cover));
     export_prices(block, &dual);
     if (is_closed(block) || is_brief(block) || cover_time_is_over(block->run))
-        goto done;
+        return STARG_OK;
     cover_state_free(&cover); /* the rest is about to change */
-    STARG_TRY(fix_rest(block, &dual, again));
-done:
-    cover_state_free(&cover);
-    cover_dual_free(&block->rest, &dual);
-    return status;
+    return fix_rest(block, &dual, again);
 }
 
 /* A cover of the rest to start the search from, as small as the best one if such a cover is
  * found. */
 static starg_status find_start(block_solve *block, cover_state *cover) {
-    starg_status status = STARG_OK;
-    STARG_TRY(find_first_cover(block->run, &block->rest, cover));
-    STARG_TRY(cover_local_search(block->run, block->best.count - block->forced.count, cover));
-    STARG_TRY(offer_cover(block, cover));
-done:
-    return status;
+    TRY(find_first_cover(block->run, &block->rest, cover));
+    TRY(cover_local_search(block->run, block->best.count - block->forced.count, cover));
+    return offer_cover(block, cover);
 }
 
 static starg_status branch_and_bound(block_solve *block) {
-    starg_status status = STARG_OK;
-    cover_state cover = {0};
+    SCOPED_BY(cover_state_free) cover_state cover = {0};
     size_t bound;
-    STARG_TRY(cover_state_create(&block->rest, &cover));
-    STARG_TRY(find_start(block, &cover));
+    TRY(cover_state_create(&block->rest, &cover));
+    TRY(find_start(block, &cover));
     if (is_closed(block))
-        goto done;
-    STARG_TRY(cover_ilp_solve(block->run, &block->rest, &cover, &bound));
-    STARG_TRY(offer_cover(block, &cover));
+        return STARG_OK;
+    TRY(cover_ilp_solve(block->run, &block->rest, &cover, &bound));
+    TRY(offer_cover(block, &cover));
     raise_bound(block, bound);
-done:
-    cover_state_free(&cover);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status run_rounds(block_solve *block) {
-    starg_status status = STARG_OK;
     bool again = true;
-    starg_progress_begin(block->run->context, "bound");
+    IN_STAGE(block->run->context, "bound");
     while (again) {
-        STARG_TRY(run_round(block, &again));
+        TRY(run_round(block, &again));
         again = again && !is_closed(block) && !is_brief(block);
     }
-done:
-    starg_progress_end(block->run->context);
-    return status;
+    return STARG_OK;
 }
 
 /* Takes the block in `block->rest`; returns its cover in `block->best`. */
@@ -245,21 +213,18 @@ done:
 }
 
 static starg_status append(starg_context *context, const cover_names *from, cover_names *to) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < from->count; i++)
-        STARG_PUSH(context, "cover", to, from->data[i]);
-done:
-    return status;
+        PUSH(context, "cover", to, from->data[i]);
+    return STARG_OK;
 }
 
 /* Extracts one block from the instance. */
 static starg_status cut_block(const cover_instance *instance, const uint32_t *block,
                               uint32_t number, cover_instance *out) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
-    uint64_t *rows = NULL, *columns = NULL;
-    STARG_NEW_ZERO(context, "reduce", rows, instance->column_words);
-    STARG_NEW_ZERO(context, "reduce", columns, instance->row_words);
+    SCOPED uint64_t *rows = NULL, *columns = NULL;
+    NEW_ZERO(context, "reduce", rows, instance->column_words);
+    NEW_ZERO(context, "reduce", columns, instance->row_words);
     for (size_t i = 0; i < instance->rows; i++) {
         if (block[i] != number)
             continue;
@@ -267,11 +232,7 @@ static starg_status cut_block(const cover_instance *instance, const uint32_t *bl
         for (size_t w = 0; w < instance->row_words; w++)
             columns[w] |= cover_row(instance, i)[w];
     }
-    STARG_TRY(cover_instance_select(instance, rows, columns, out));
-done:
-    starg_release(context, rows);
-    starg_release(context, columns);
-    return status;
+    return cover_instance_select(instance, rows, columns, out);
 }
 
 static starg_status solve_number(cover_run *run, const cover_instance *instance,
@@ -284,25 +245,21 @@ static starg_status solve_number(cover_run *run, const cover_instance *instance,
     answer->lower_bound += block.lower_bound;
 done:
     cover_instance_free(&block.rest);
-    STARG_ARRAY_FREE(run->context, &block.forced);
-    STARG_ARRAY_FREE(run->context, &block.best);
+    RELEASE(block.forced.data, block.best.data);
     return status;
 }
 
 starg_status cover_solve_full(cover_run *run, cover_instance *instance, cover_answer *answer) {
-    starg_status status = STARG_OK;
-    uint32_t *blocks = NULL;
+    SCOPED uint32_t *blocks = NULL;
     size_t count;
     bool feasible; /* always true: the problem omits columns that cannot be covered */
-    STARG_TRY(cover_reduce_full(run, instance, &answer->rows, run->prices, &feasible));
+    TRY(cover_reduce_full(run, instance, &answer->rows, run->prices, &feasible));
     answer->lower_bound = answer->rows.count;
-    STARG_NEW(run->context, "reduce", blocks, instance->rows);
-    STARG_TRY(cover_find_blocks(instance, blocks, &count));
+    NEW(run->context, "reduce", blocks, instance->rows);
+    TRY(cover_find_blocks(instance, blocks, &count));
     for (uint32_t number = 0; number < count; number++)
-        STARG_TRY(solve_number(run, instance, blocks, number, answer));
-done:
-    starg_release(run->context, blocks);
-    return status;
+        TRY(solve_number(run, instance, blocks, number, answer));
+    return STARG_OK;
 }
 
 starg_status cover_solve_greedy(cover_run *run, const cover_instance *instance,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Public function: checks the problem, builds its working form, solves it for its target and, if
  * max_rows rows cannot reach that, for the most weight. */
-#include "starguard/cover.h"
 
 #include "cover/greedy.h"
 #include "cover/reduce.h"
@@ -62,25 +61,18 @@ static starg_status check(starg_context *context, const starg_cover_problem *pro
 
 static starg_status solve_all(cover_run *run, const cover_instance *instance, bool exact,
                               cover_answer *answer) {
-    starg_status status = STARG_OK;
-    cover_instance rest = {.context = run->context};
+    SCOPED_BY(cover_instance_free) cover_instance rest = {.context = run->context};
     if (!exact)
         return cover_solve_greedy(run, instance, answer);
-    STARG_TRY(cover_instance_select(instance, NULL, NULL, &rest));
-    STARG_TRY(cover_solve_full(run, &rest, answer));
-done:
-    cover_instance_free(&rest);
-    return status;
+    TRY(cover_instance_select(instance, NULL, NULL, &rest));
+    return cover_solve_full(run, &rest, answer);
 }
 
 /* For a partial target or a limit, the instance loses its dominated rows. */
 static starg_status solve_part(cover_run *run, cover_instance *instance, uint64_t goal, bool exact,
                                cover_answer *answer) {
-    starg_status status = STARG_OK;
-    STARG_TRY(cover_reduce_partial(run, instance));
-    STARG_TRY(cover_solve_partial(run, instance, goal, exact, answer));
-done:
-    return status;
+    TRY(cover_reduce_partial(run, instance));
+    return cover_solve_partial(run, instance, goal, exact, answer);
 }
 
 /* The fewest rows for the goal, ignoring max_rows. */
@@ -116,29 +108,24 @@ done:
 /* Sorts the chosen rows by what each adds; drops rows that add nothing. */
 static starg_status order_rows(cover_run *run, const cover_instance *instance,
                                const cover_names *names, starg_cover *cover) {
-    starg_status status = STARG_OK;
     starg_context *context = run->context;
-    uint64_t *mask = NULL;
-    cover_instance chosen = {.context = context};
-    cover_state state = {0};
-    STARG_NEW_ZERO(context, "cover", mask, instance->column_words);
+    SCOPED uint64_t *mask = NULL;
+    SCOPED_BY(cover_instance_free) cover_instance chosen = {.context = context};
+    SCOPED_BY(cover_state_free) cover_state state = {0};
+    NEW_ZERO(context, "cover", mask, instance->column_words);
     for (size_t row = 0; row < instance->rows; row++)
         for (size_t i = 0; i < names->count; i++)
             if (instance->row_names[row] == names->data[i])
                 starg_bit_set(mask, row);
-    STARG_TRY(cover_instance_select(instance, mask, NULL, &chosen));
-    STARG_TRY(cover_state_create(&chosen, &state));
-    STARG_TRY(cover_greedy(run, &state, UINT64_MAX, chosen.rows));
-    STARG_NEW(context, "cover", cover->rows, state.count);
+    TRY(cover_instance_select(instance, mask, NULL, &chosen));
+    TRY(cover_state_create(&chosen, &state));
+    TRY(cover_greedy(run, &state, UINT64_MAX, chosen.rows));
+    NEW(context, "cover", cover->rows, state.count);
     for (size_t i = 0; i < state.count; i++)
         cover->rows[i] = chosen.row_names[state.rows[i]];
     cover->count = state.count;
     cover->weight = state.weight;
-done:
-    cover_state_free(&state);
-    cover_instance_free(&chosen);
-    starg_release(context, mask);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status finish(cover_run *run, const cover_instance *instance,
@@ -196,8 +183,7 @@ starg_status starg_cover_solve(starg_context *context, const starg_cover_problem
         STARG_TRY(solve_limit(&run, &instance, problem->max_rows, goal, exact, &answer, &most));
     STARG_TRY(finish(&run, &instance, &answer, goal, most, given, out));
 done:
-    starg_release(context, run.prices);
-    STARG_ARRAY_FREE(context, &answer.rows);
+    RELEASE(run.prices, answer.rows.data);
     cover_instance_free(&instance);
     return status;
 }
@@ -206,7 +192,5 @@ void starg_cover_free(starg_cover *cover) {
     if (cover == NULL)
         return;
     owned_cover *owned = (owned_cover *)cover;
-    starg_release(owned->context, cover->rows);
-    starg_release(owned->context, cover->prices);
-    starg_release(owned->context, owned);
+    RELEASE(cover->rows, cover->prices, owned);
 }

@@ -2,7 +2,6 @@
 #include "cover/dual.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Rows are scanned in strips of a cache line, restricted to columns with a nonzero multiplier:
  * after some steps most are zero. */
@@ -82,12 +81,11 @@ static int compare_rare(const void *a, const void *b) {
 /* Dual ascent: raises multipliers one by one, rare columns first, while all reduced costs stay at
  * least 0. Fast and weak. */
 static starg_status ascend(const cover_instance *instance, int64_t *multipliers) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
-    int64_t *left = NULL;
-    rare_column *order = NULL;
-    STARG_NEW(context, "bound", left, instance->rows);
-    STARG_NEW(context, "bound", order, instance->columns);
+    SCOPED int64_t *left = NULL;
+    SCOPED rare_column *order = NULL;
+    NEW(context, "bound", left, instance->rows);
+    NEW(context, "bound", order, instance->columns);
     for (size_t i = 0; i < instance->rows; i++)
         left[i] = COVER_ONE;
     for (size_t j = 0; j < instance->columns; j++)
@@ -96,10 +94,7 @@ static starg_status ascend(const cover_instance *instance, int64_t *multipliers)
     qsort(order, instance->columns, sizeof *order, compare_rare);
     for (size_t k = 0; k < instance->columns; k++)
         multipliers[order[k].column] = raise_column(instance, order[k].column, left);
-done:
-    starg_release(context, left);
-    starg_release(context, order);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_dual_create(const cover_instance *instance, cover_dual *out) {
@@ -112,13 +107,12 @@ starg_status cover_dual_create(const cover_instance *instance, cover_dual *out) 
     out->value = cover_dual_value(instance, out->multipliers, out->reduced);
 done:
     if (status != STARG_OK)
-        cover_dual_free(instance, out);
+        cover_dual_free(out);
     return status;
 }
 
-void cover_dual_free(const cover_instance *instance, cover_dual *dual) {
-    starg_release(instance->context, dual->multipliers);
-    starg_release(instance->context, dual->reduced);
+void cover_dual_free(cover_dual *dual) {
+    RELEASE(dual->multipliers, dual->reduced);
     *dual = (cover_dual){0};
 }
 

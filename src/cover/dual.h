@@ -6,8 +6,7 @@
  * is at most the size of every cover: a cover pays at least demand(j) u(j) for each column j.
  * Multipliers are stored as integer multiples of 2^-20, so L is evaluated exactly however u was
  * found, and L rounded up to a whole number of rows is a proven bound. */
-#ifndef STARG_COVER_DUAL_H
-#define STARG_COVER_DUAL_H
+#pragma once
 
 #include "cover/state.h"
 
@@ -35,7 +34,7 @@ typedef struct cover_dual {
 
 /* Starts from the multipliers of dual ascent. Errors: MEMORY. */
 starg_status cover_dual_create(const cover_instance *instance, cover_dual *out);
-void cover_dual_free(const cover_instance *instance, cover_dual *dual);
+void cover_dual_free(cover_dual *dual);
 
 /* Replaces the multipliers by others, with their reduced costs and value as from cover_dual_value,
  * if the value is larger. */
@@ -51,5 +50,3 @@ starg_status cover_lagrange(cover_run *run, const cover_instance *instance, cove
  * cover holds, sets in `take` the rows that all of them hold; true if there are any. */
 bool cover_dual_fix(const cover_instance *instance, const cover_dual *dual, size_t most,
                     uint64_t *keep, uint64_t *take);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Calls into CBC and Clp, which are C++: their exceptions must not pass through C code, and they
  * may run out of memory. */
-#ifndef STARG_COVER_EXCEPTIONS_H
-#define STARG_COVER_EXCEPTIONS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -20,6 +19,4 @@ bool cover_memory_is_low(void);
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif

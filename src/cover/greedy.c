@@ -37,12 +37,11 @@ static size_t make_heap(const cover_state *state, heap_entry *heap) {
 }
 
 starg_status cover_greedy(cover_run *run, cover_state *state, uint64_t goal, size_t limit) {
-    starg_status status = STARG_OK;
-    heap_entry *heap = NULL;
-    STARG_NEW(run->context, "cover", heap, state->instance->rows);
+    SCOPED heap_entry *heap = NULL;
+    NEW(run->context, "cover", heap, state->instance->rows);
     size_t count = make_heap(state, heap);
     while (state->weight < goal && state->count < limit && count != 0) {
-        STARG_TRY(starg_check_cancel(run->context, "cover"));
+        TRY(starg_check_cancel(run->context, "cover"));
         uint64_t fresh = cover_state_need(state, heap[0].row);
         if (fresh == heap[0].need) {
             if (fresh == 0)
@@ -55,9 +54,7 @@ starg_status cover_greedy(cover_run *run, cover_state *state, uint64_t goal, siz
         if (count != 0)
             sink(heap, count, 0);
     }
-done:
-    starg_release(run->context, heap);
-    return status;
+    return STARG_OK;
 }
 
 /* Position of the chosen row of least loss; ties go to the highest index. */
@@ -85,20 +82,17 @@ void cover_drop_needless(cover_state *state, uint64_t goal) {
 }
 
 starg_status cover_shrink(cover_run *run, cover_state *state, uint64_t goal) {
-    starg_status status = STARG_OK;
-    cover_state trial;
-    STARG_TRY(cover_state_create(state->instance, &trial));
+    SCOPED_BY(cover_state_free) cover_state trial = {0};
+    TRY(cover_state_create(state->instance, &trial));
     while (state->count > 1 && !cover_time_is_over(run)) {
         uint64_t loss;
         cover_state_copy(&trial, state);
         cover_state_remove(&trial, least_loss(&trial, &loss));
-        STARG_TRY(cover_swap(run, &trial, goal));
+        TRY(cover_swap(run, &trial, goal));
         if (trial.weight < goal)
             break;
         cover_drop_needless(&trial, goal);
         cover_state_copy(state, &trial);
     }
-done:
-    cover_state_free(&trial);
-    return status;
+    return STARG_OK;
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Heuristics: lazy greedy, removal of redundant rows, and swaps. All maximize the weight of covered
  * columns; a full cover has the total weight as goal. */
-#ifndef STARG_COVER_GREEDY_H
-#define STARG_COVER_GREEDY_H
+#pragma once
 
 #include "cover/state.h"
 
@@ -21,5 +20,3 @@ starg_status cover_swap(cover_run *run, cover_state *state, uint64_t goal);
 /* Repeatedly tries to reach `goal` with one row less: drops the row of least loss, then swaps.
  * Errors: MEMORY, CANCELLED. */
 starg_status cover_shrink(cover_run *run, cover_state *state, uint64_t goal);
-
-#endif

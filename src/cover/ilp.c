@@ -52,15 +52,9 @@ typedef struct model_data {
     int variables, constraints;
 } model_data;
 
-static void model_data_free(starg_context *context, model_data *data) {
-    starg_release(context, data->start);
-    starg_release(context, data->index);
-    starg_release(context, data->ones);
-    starg_release(context, data->lower);
-    starg_release(context, data->upper);
-    starg_release(context, data->demand);
-    starg_release(context, data->start_index);
-    starg_release(context, data->start_value);
+static void model_data_free(model_data *data) {
+    RELEASE(data->start, data->index, data->ones, data->lower, data->upper, data->demand,
+            data->start_index, data->start_value);
 }
 
 static void fill_model(const cover_instance *instance, model_data *data) {
@@ -81,29 +75,27 @@ static void fill_model(const cover_instance *instance, model_data *data) {
 
 /* *fits is false if the model has more entries than the library's index type can count. */
 static starg_status make_model(const cover_instance *instance, model_data *data, bool *fits) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
     size_t entries = starg_bit_count(instance->row_bits, instance->rows * instance->row_words);
     *data = (model_data){0};
     *fits = entries < INT_MAX && instance->rows < INT_MAX && instance->columns < INT_MAX;
     if (!*fits)
-        goto done;
+        return STARG_OK;
     size_t most = entries > instance->rows ? entries : instance->rows;
-    STARG_NEW(context, "ilp", data->start, instance->rows + 1);
-    STARG_NEW(context, "ilp", data->index, entries);
-    STARG_NEW(context, "ilp", data->ones, most);
-    STARG_NEW(context, "ilp", data->lower, instance->rows);
-    STARG_NEW(context, "ilp", data->upper, instance->rows);
-    STARG_NEW(context, "ilp", data->demand, instance->columns);
-    STARG_NEW(context, "ilp", data->start_index, instance->rows);
-    STARG_NEW(context, "ilp", data->start_value, instance->rows);
+    NEW(context, "ilp", data->start, instance->rows + 1);
+    NEW(context, "ilp", data->index, entries);
+    NEW(context, "ilp", data->ones, most);
+    NEW(context, "ilp", data->lower, instance->rows);
+    NEW(context, "ilp", data->upper, instance->rows);
+    NEW(context, "ilp", data->demand, instance->columns);
+    NEW(context, "ilp", data->start_index, instance->rows);
+    NEW(context, "ilp", data->start_value, instance->rows);
     data->variables = (int)instance->rows;
     data->constraints = (int)instance->columns;
     for (size_t e = 0; e < most; e++)
         data->ones[e] = 1;
     fill_model(instance, data);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Argument of the cut callback. */
@@ -256,7 +248,7 @@ static starg_status solve_part(part_search *search) {
     STARG_TRY(starg_check_cancel(run->context, "ilp"));
 done:
     cover_solver_unlock(held);
-    model_data_free(run->context, &data);
+    model_data_free(&data);
     cover_instance_free(&part);
     return status;
 }
@@ -272,18 +264,15 @@ static bool grow_part(part_search *search) {
 }
 
 static starg_status choose_first_part(part_search *search) {
-    starg_status status = STARG_OK;
     const cover_instance *instance = search->instance;
-    cover_relaxation relaxation = {0};
+    SCOPED_BY(cover_relaxation_free) cover_relaxation relaxation = {0};
     bool found;
-    STARG_TRY(cover_relax(search->run, instance, &relaxation, &found));
+    TRY(cover_relax(search->run, instance, &relaxation, &found));
     for (size_t j = 0; j < instance->columns; j++) {
         if (!found || relaxation.surplus[j] <= FIRST_SURPLUS)
             starg_bit_set(search->columns, j);
     }
-done:
-    cover_relaxation_free(instance, &relaxation);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_ilp_solve(cover_run *run, const cover_instance *instance, cover_state *best,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Branch and bound by the solver library. */
-#ifndef STARG_COVER_ILP_H
-#define STARG_COVER_ILP_H
+#pragma once
 
 #include "cover/state.h"
 
@@ -9,5 +8,3 @@
  * no cover has fewer rows; 0 if nothing was proven. Errors: MEMORY, CANCELLED. */
 starg_status cover_ilp_solve(cover_run *run, const cover_instance *instance, cover_state *best,
                              size_t *bound);
-
-#endif

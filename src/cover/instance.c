@@ -41,13 +41,8 @@ void cover_mask_fill(uint64_t *mask, size_t count) {
 }
 
 void cover_instance_free(cover_instance *instance) {
-    starg_release(instance->context, instance->row_bits);
-    starg_release(instance->context, instance->row_used);
-    starg_release(instance->context, instance->column_bits);
-    starg_release(instance->context, instance->weights);
-    starg_release(instance->context, instance->demands);
-    starg_release(instance->context, instance->row_names);
-    starg_release(instance->context, instance->column_names);
+    RELEASE(instance->row_bits, instance->row_used, instance->column_bits, instance->weights,
+            instance->demands, instance->row_names, instance->column_names);
     *instance = (cover_instance){.context = instance->context};
 }
 
@@ -80,15 +75,13 @@ done:
 /* Indices of the set bits of a mask of `count` bits (NULL: all). */
 static starg_status list_kept(starg_context *context, const uint64_t *mask, size_t count,
                               uint32_t **list, size_t *kept) {
-    starg_status status = STARG_OK;
     *kept = 0;
-    STARG_NEW(context, "cover", *list, count);
+    NEW(context, "cover", *list, count);
     for (size_t i = 0; i < count; i++) {
         if (mask == NULL || starg_bit_test(mask, i))
             (*list)[(*kept)++] = (uint32_t)i;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void copy_words(uint64_t *to, const uint64_t *from, size_t count) {
@@ -107,11 +100,10 @@ static void mark_used(cover_instance *instance) {
 /* The kept columns, of all rows. */
 static starg_status select_columns(const cover_instance *from, const uint64_t *columns,
                                    cover_instance *out) {
-    starg_status status = STARG_OK;
-    uint32_t *kept = NULL;
+    SCOPED uint32_t *kept = NULL;
     size_t count, words = from->column_words;
-    STARG_TRY(list_kept(from->context, columns, from->columns, &kept, &count));
-    STARG_TRY(shape(from->context, from->rows, count, out));
+    TRY(list_kept(from->context, columns, from->columns, &kept, &count));
+    TRY(shape(from->context, from->rows, count, out));
     for (size_t j = 0; j < count; j++) {
         copy_words(out->column_bits + j * words, cover_column(from, kept[j]), words);
         out->weights[j] = from->weights[kept[j]];
@@ -121,16 +113,13 @@ static starg_status select_columns(const cover_instance *from, const uint64_t *c
     }
     transpose(out->column_bits, count, from->rows, words, out->row_bits, out->row_words);
     memcpy(out->row_names, from->row_names, from->rows * sizeof *out->row_names);
-done:
-    starg_release(from->context, kept);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_instance_keep_rows(cover_instance *instance, const uint64_t *rows) {
-    starg_status status = STARG_OK;
-    uint32_t *kept = NULL;
+    SCOPED uint32_t *kept = NULL;
     size_t count, words = instance->row_words, used = instance->used_words;
-    STARG_TRY(list_kept(instance->context, rows, instance->rows, &kept, &count));
+    TRY(list_kept(instance->context, rows, instance->rows, &kept, &count));
     for (size_t i = 0; i < count; i++) {
         if (words != 0) {
             memmove(instance->row_bits + i * words, instance->row_bits + kept[i] * words,
@@ -144,9 +133,7 @@ starg_status cover_instance_keep_rows(cover_instance *instance, const uint64_t *
     instance->column_words = starg_bit_words(count);
     transpose(instance->row_bits, count, instance->columns, words, instance->column_bits,
               instance->column_words);
-done:
-    starg_release(instance->context, kept);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_instance_select(const cover_instance *from, const uint64_t *rows,
@@ -179,9 +166,7 @@ static size_t count_held(const starg_bits *bits) {
 static starg_status import(starg_context *context, const starg_cover_problem *problem,
                            cover_instance *out) {
     const starg_bits *bits = problem->rows;
-    starg_status status = shape(context, bits->rows, count_held(bits), out);
-    if (status != STARG_OK)
-        return status;
+    TRY(shape(context, bits->rows, count_held(bits), out));
     for (size_t i = 0; i < bits->rows; i++)
         copy_words(out->row_bits + i * out->row_words, starg_bits_row(bits, i), out->row_words);
     transpose(out->row_bits, out->rows, out->columns, out->row_words, out->column_bits,
@@ -192,7 +177,8 @@ static starg_status import(starg_context *context, const starg_cover_problem *pr
         size_t supply = starg_bit_count(cover_column(out, j), out->column_words);
         out->column_names[j] = (uint32_t)j;
         out->weights[j] = problem->weights ? problem->weights[j] : 1;
-        out->demands[j] = (uint32_t)(supply < problem->redundancy ? supply : problem->redundancy);
+        size_t need = problem->needs != NULL ? problem->needs[j] : problem->redundancy;
+        out->demands[j] = (uint32_t)(supply < need ? supply : need);
     }
     return STARG_OK;
 }
@@ -269,11 +255,10 @@ static void merge_run(cover_instance *instance, const hashed_column *run, size_t
 
 /* Marks one column of each set of identical ones, and sums their weights. */
 static starg_status merge_columns(cover_instance *instance, uint64_t *keep) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
-    hashed_column *order = NULL;
+    SCOPED hashed_column *order = NULL;
     size_t count = 0;
-    STARG_NEW(context, "cover", order, instance->columns);
+    NEW(context, "cover", order, instance->columns);
     for (size_t j = 0; j < instance->columns; j++) {
         if (instance->demands[j] == 0 || instance->weights[j] == 0)
             continue;
@@ -287,26 +272,19 @@ static starg_status merge_columns(cover_instance *instance, uint64_t *keep) {
             end++;
         merge_run(instance, order + begin, end - begin, keep);
     }
-done:
-    starg_release(context, order);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_instance_build(starg_context *context, const starg_cover_problem *problem,
                                   cover_instance *out, uint64_t *given) {
-    starg_status status = STARG_OK;
-    cover_instance all = {.context = context};
-    uint64_t *keep = NULL;
+    SCOPED_BY(cover_instance_free) cover_instance all = {.context = context};
+    SCOPED uint64_t *keep = NULL;
     *out = (cover_instance){.context = context};
-    STARG_TRY(import(context, problem, &all));
+    TRY(import(context, problem, &all));
     take_given(problem, &all, given);
-    STARG_NEW_ZERO(context, "cover", keep, all.row_words);
-    STARG_TRY(merge_columns(&all, keep));
+    NEW_ZERO(context, "cover", keep, all.row_words);
+    TRY(merge_columns(&all, keep));
     starg_release(context, all.row_bits); /* what follows takes the columns */
     all.row_bits = NULL;
-    STARG_TRY(cover_instance_select(&all, NULL, keep, out));
-done:
-    starg_release(context, keep);
-    cover_instance_free(&all);
-    return status;
+    return cover_instance_select(&all, NULL, keep, out);
 }

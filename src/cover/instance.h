@@ -6,11 +6,9 @@
  * with the same demand are covered together, so one column carries the sum of their weights. Both
  * hold in every mode. Given rows lower the demands of their columns and are then left without
  * columns. Cost: O(rows x columns / 64 + columns log columns). */
-#ifndef STARG_COVER_INSTANCE_H
-#define STARG_COVER_INSTANCE_H
+#pragma once
 
 #include "core/bits.h"
-#include "core/memory.h"
 #include "starguard/cover.h"
 
 /* Sums of products of weights and counts. */
@@ -86,5 +84,3 @@ void cover_instance_free(cover_instance *instance);
 
 /* Sets the first `count` bits of a mask and clears the rest of its last word. */
 void cover_mask_fill(uint64_t *mask, size_t count);
-
-#endif

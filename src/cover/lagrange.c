@@ -170,10 +170,6 @@ starg_status cover_lagrange(cover_run *run, const cover_instance *instance, cove
     STARG_TRY(iterate(run, &search));
 done:
     cover_state_free(&trial);
-    starg_release(context, search.point);
-    starg_release(context, search.slope);
-    starg_release(context, search.rounded);
-    starg_release(context, search.reduced);
-    starg_release(context, search.order);
+    RELEASE(search.point, search.slope, search.rounded, search.reduced, search.order);
     return status;
 }

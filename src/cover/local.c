@@ -173,12 +173,11 @@ static void record_cover(local_search *search, cover_state *best) {
 }
 
 static starg_status prepare(local_search *search, const cover_state *best) {
-    starg_status status = STARG_OK;
     const cover_instance *instance = search->instance;
-    STARG_TRY(cover_state_create(instance, &search->at));
-    STARG_NEW_ZERO(instance->context, "cover", search->score, instance->rows);
-    STARG_NEW(instance->context, "cover", search->weight, instance->columns);
-    STARG_NEW_ZERO(instance->context, "cover", search->moved, instance->rows);
+    TRY(cover_state_create(instance, &search->at));
+    NEW_ZERO(instance->context, "cover", search->score, instance->rows);
+    NEW(instance->context, "cover", search->weight, instance->columns);
+    NEW_ZERO(instance->context, "cover", search->moved, instance->rows);
     cover_state_copy(&search->at, best);
     for (size_t j = 0; j < instance->columns; j++) {
         search->weight[j] = 1;
@@ -187,8 +186,7 @@ static starg_status prepare(local_search *search, const cover_state *best) {
         if (search->at.held[j] <= instance->demands[j])
             shift_scores(search, j, true, 1);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status iterate(cover_run *run, local_search *search, size_t enough,
@@ -224,8 +222,6 @@ starg_status cover_local_search(cover_run *run, size_t enough, cover_state *best
     STARG_TRY(iterate(run, &search, enough, best));
 done:
     cover_state_free(&search.at);
-    starg_release(run->context, search.score);
-    starg_release(run->context, search.weight);
-    starg_release(run->context, search.moved);
+    RELEASE(search.score, search.weight, search.moved);
     return status;
 }

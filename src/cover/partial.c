@@ -13,123 +13,101 @@ static const double MOST_SEARCHED = 0x1p28;
 
 /* A good choice of few rows that reach the goal, by greedy, removal and swaps. */
 static starg_status find_first_choice(cover_run *run, cover_state *choice, uint64_t goal) {
-    starg_status status = STARG_OK;
-    STARG_TRY(cover_greedy(run, choice, goal, choice->instance->rows));
+    TRY(cover_greedy(run, choice, goal, choice->instance->rows));
     cover_drop_needless(choice, goal);
-    STARG_TRY(cover_shrink(run, choice, goal));
-done:
-    return status;
+    return cover_shrink(run, choice, goal);
 }
 
 /* Searches for `rows` rows that reach the goal; leaves `best` alone if there are none. */
 static starg_status try_rows(cover_run *run, const cover_instance *instance, size_t rows,
                              cover_weight_bound *bound, cover_state *best, bool *decided) {
-    starg_status status = STARG_OK;
-    cover_state found = {0};
+    SCOPED_BY(cover_state_free) cover_state found = {0};
     uint64_t goal = bound->goal;
-    STARG_TRY(cover_state_create(instance, &found));
+    TRY(cover_state_create(instance, &found));
     cover_weight_bound_restart(instance, bound, rows);
-    STARG_TRY(cover_weight_bound_relax(run, instance, false, goal - 1, bound));
+    TRY(cover_weight_bound_relax(run, instance, false, goal - 1, bound));
     *decided = bound->most < goal;
     if (*decided || cover_time_is_over(run))
-        goto done;
-    STARG_TRY(cover_search(run, instance, bound, goal - 1, goal, &found, decided));
+        return STARG_OK;
+    TRY(cover_search(run, instance, bound, goal - 1, goal, &found, decided));
     if (found.weight >= goal) {
         cover_state_copy(best, &found);
         *decided = true;
     }
-done:
-    cover_state_free(&found);
-    return status;
+    return STARG_OK;
 }
 
 /* Closes the gap between the bound and the choice from below. */
 static starg_status close_gap(cover_run *run, const cover_instance *instance,
                               cover_weight_bound *bound, cover_state *choice) {
-    starg_status status = STARG_OK;
     while (bound->least < choice->count && !cover_time_is_over(run)) {
         size_t rows = bound->least;
         bool decided;
-        STARG_TRY(try_rows(run, instance, rows, bound, choice, &decided));
+        TRY(try_rows(run, instance, rows, bound, choice, &decided));
         if (!decided)
             break;
         if (choice->count > rows && bound->least <= rows)
             bound->least = rows + 1;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_solve_partial(cover_run *run, const cover_instance *instance, uint64_t goal,
                                  bool exact, cover_answer *answer) {
-    starg_status status = STARG_OK;
-    cover_state choice = {0};
-    cover_weight_bound bound = {0};
-    STARG_TRY(cover_state_create(instance, &choice));
-    STARG_TRY(find_first_choice(run, &choice, goal));
-    STARG_TRY(cover_weight_bound_create(instance, choice.count - 1, goal, &bound));
-    STARG_TRY(cover_weight_bound_relax(run, instance, true, choice.count, &bound));
+    SCOPED_BY(cover_state_free) cover_state choice = {0};
+    SCOPED_BY(cover_weight_bound_free) cover_weight_bound bound = {0};
+    TRY(cover_state_create(instance, &choice));
+    TRY(find_first_choice(run, &choice, goal));
+    TRY(cover_weight_bound_create(instance, choice.count - 1, goal, &bound));
+    TRY(cover_weight_bound_relax(run, instance, true, choice.count, &bound));
     if (exact && (double)instance->rows * (double)instance->columns <= MOST_SEARCHED)
-        STARG_TRY(close_gap(run, instance, &bound, &choice));
+        TRY(close_gap(run, instance, &bound, &choice));
     answer->lower_bound = bound.least;
-    STARG_TRY(cover_state_names(&choice, &answer->rows));
-done:
-    cover_weight_bound_free(instance, &bound);
-    cover_state_free(&choice);
-    return status;
+    return cover_state_names(&choice, &answer->rows);
 }
 
 /* Raises the weight of the choice or lowers its upper bound until they meet. */
 static starg_status close_weight_gap(cover_run *run, const cover_instance *instance, uint64_t goal,
                                      cover_weight_bound *bound, cover_state *choice) {
-    starg_status status = STARG_OK;
     bool exhausted;
     if (bound->most <= choice->weight || cover_time_is_over(run))
-        goto done;
-    STARG_TRY(cover_search(run, instance, bound, 0, goal, choice, &exhausted));
+        return STARG_OK;
+    TRY(cover_search(run, instance, bound, 0, goal, choice, &exhausted));
     if (exhausted && choice->weight < goal)
         bound->most = choice->weight;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Lower bound on the rows for the weight reached, at most the goal. */
 static starg_status bound_rows(cover_run *run, const cover_instance *instance,
                                const cover_state *choice, uint64_t goal, size_t *least) {
-    starg_status status = STARG_OK;
-    cover_weight_bound bound = {0};
+    SCOPED_BY(cover_weight_bound_free) cover_weight_bound bound = {0};
     *least = 0;
     if (choice->count == 0)
-        goto done;
+        return STARG_OK;
     uint64_t reached = choice->weight < goal ? choice->weight : goal;
-    STARG_TRY(cover_weight_bound_create(instance, choice->count - 1, reached, &bound));
-    STARG_TRY(cover_weight_bound_relax(run, instance, true, choice->count, &bound));
+    TRY(cover_weight_bound_create(instance, choice->count - 1, reached, &bound));
+    TRY(cover_weight_bound_relax(run, instance, true, choice->count, &bound));
     *least = bound.least;
-done:
-    cover_weight_bound_free(instance, &bound);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_solve_limited(cover_run *run, const cover_instance *instance, size_t limit,
                                  uint64_t goal, bool exact, cover_answer *answer, uint64_t *most) {
-    starg_status status = STARG_OK;
-    cover_state choice = {0};
-    cover_weight_bound bound = {0};
-    STARG_TRY(cover_state_create(instance, &choice));
-    STARG_TRY(cover_greedy(run, &choice, instance->total, limit));
-    STARG_TRY(cover_swap(run, &choice, goal));
-    STARG_TRY(cover_weight_bound_create(instance, limit, goal, &bound));
+    SCOPED_BY(cover_state_free) cover_state choice = {0};
+    SCOPED_BY(cover_weight_bound_free) cover_weight_bound bound = {0};
+    TRY(cover_state_create(instance, &choice));
+    TRY(cover_greedy(run, &choice, instance->total, limit));
+    TRY(cover_swap(run, &choice, goal));
+    TRY(cover_weight_bound_create(instance, limit, goal, &bound));
     if (choice.weight < goal)
-        STARG_TRY(cover_weight_bound_relax(run, instance, false, choice.weight, &bound));
+        TRY(cover_weight_bound_relax(run, instance, false, choice.weight, &bound));
     if (exact && choice.weight < goal)
-        STARG_TRY(close_weight_gap(run, instance, goal, &bound, &choice));
+        TRY(close_weight_gap(run, instance, goal, &bound, &choice));
     cover_drop_needless(&choice, choice.weight < goal ? choice.weight : goal);
-    STARG_TRY(bound_rows(run, instance, &choice, goal, &answer->lower_bound));
-    STARG_TRY(cover_state_names(&choice, &answer->rows));
+    TRY(bound_rows(run, instance, &choice, goal, &answer->lower_bound));
+    TRY(cover_state_names(&choice, &answer->rows));
     answer->weight = choice.weight;
     *most = bound.most;
-done:
-    cover_weight_bound_free(instance, &bound);
-    cover_state_free(&choice);
-    return status;
+    return STARG_OK;
 }

@@ -61,15 +61,14 @@ static bool is_needless(const cover_instance *instance, const uint64_t *rows, si
 
 starg_status cover_drop_dominated_rows(cover_run *run, const cover_instance *instance,
                                        uint64_t *rows, size_t *dropped) {
-    starg_status status = STARG_OK;
-    size_t *supplies = NULL;
+    SCOPED size_t *supplies = NULL;
     *dropped = 0;
-    STARG_NEW(run->context, "reduce", supplies, instance->columns);
+    NEW(run->context, "reduce", supplies, instance->columns);
     for (size_t j = 0; j < instance->columns; j++)
         supplies[j] = supply(instance, j);
     /* backward, so that the first of identical rows stays */
     for (size_t i = instance->rows; i-- > 0;) {
-        STARG_TRY(starg_check_cancel(run->context, "reduce"));
+        TRY(starg_check_cancel(run->context, "reduce"));
         if (i % 64 == 0 && cover_time_is_over(run))
             break;
         size_t demand, rarest = 0;
@@ -79,9 +78,7 @@ starg_status cover_drop_dominated_rows(cover_run *run, const cover_instance *ins
         starg_bit_clear(rows, i);
         ++*dropped;
     }
-done:
-    starg_release(run->context, supplies);
-    return status;
+    return STARG_OK;
 }
 
 /* Data that column dominance tests before the bits of a column. */
@@ -92,11 +89,8 @@ typedef struct column_order {
     size_t *row_size;    /* per row: number of its columns */
 } column_order;
 
-static void column_order_free(starg_context *context, column_order *order) {
-    starg_release(context, order->by_supply);
-    starg_release(context, order->supply);
-    starg_release(context, order->signature);
-    starg_release(context, order->row_size);
+static void column_order_free(column_order *order) {
+    RELEASE(order->by_supply, order->supply, order->signature, order->row_size);
 }
 
 static uint64_t sign_column(const cover_instance *instance, size_t column) {
@@ -110,38 +104,32 @@ static uint64_t sign_column(const cover_instance *instance, size_t column) {
 
 /* Counting sort by supply; stable. */
 static starg_status sort_by_supply(const cover_instance *instance, column_order *order) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
-    size_t *start = NULL;
-    STARG_NEW_ZERO(context, "reduce", start, instance->rows + 2);
+    SCOPED size_t *start = NULL;
+    NEW_ZERO(context, "reduce", start, instance->rows + 2);
     for (size_t j = 0; j < instance->columns; j++)
         start[order->supply[j] + 1]++;
     for (size_t s = 0; s <= instance->rows; s++)
         start[s + 1] += start[s];
     for (size_t j = 0; j < instance->columns; j++)
         order->by_supply[start[order->supply[j]]++] = (uint32_t)j;
-done:
-    starg_release(context, start);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status column_order_make(const cover_instance *instance, column_order *order) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
     *order = (column_order){0};
-    STARG_NEW(context, "reduce", order->by_supply, instance->columns);
-    STARG_NEW(context, "reduce", order->supply, instance->columns);
-    STARG_NEW(context, "reduce", order->signature, instance->columns);
-    STARG_NEW(context, "reduce", order->row_size, instance->rows);
+    NEW(context, "reduce", order->by_supply, instance->columns);
+    NEW(context, "reduce", order->supply, instance->columns);
+    NEW(context, "reduce", order->signature, instance->columns);
+    NEW(context, "reduce", order->row_size, instance->rows);
     for (size_t j = 0; j < instance->columns; j++) {
         order->supply[j] = (uint32_t)supply(instance, j);
         order->signature[j] = sign_column(instance, j);
     }
     for (size_t i = 0; i < instance->rows; i++)
         order->row_size[i] = starg_bit_count(cover_row(instance, i), instance->row_words);
-    STARG_TRY(sort_by_supply(instance, order));
-done:
-    return status;
+    return sort_by_supply(instance, order);
 }
 
 static size_t smallest_row_of(const cover_instance *instance, const column_order *order,
@@ -184,23 +172,20 @@ static size_t drop_supersets(const cover_instance *instance, const column_order 
 
 starg_status cover_drop_dominated_columns(cover_run *run, const cover_instance *instance,
                                           uint64_t *columns, size_t *dropped) {
-    starg_status status = STARG_OK;
-    column_order order;
+    SCOPED_BY(column_order_free) column_order order = {0};
     *dropped = 0;
-    STARG_TRY(column_order_make(instance, &order));
+    TRY(column_order_make(instance, &order));
     for (size_t k = 0; k < instance->columns; k++) {
         size_t column = order.by_supply[k];
         if (!starg_bit_test(columns, column))
             continue;
-        STARG_TRY(starg_check_cancel(run->context, "reduce"));
+        TRY(starg_check_cancel(run->context, "reduce"));
         if (k % 64 == 0 && cover_time_is_over(run))
             break;
         starg_progress_step(run->context, k, instance->columns);
         *dropped += drop_supersets(instance, &order, column, columns);
     }
-done:
-    column_order_free(run->context, &order);
-    return status;
+    return STARG_OK;
 }
 
 /* Lowers the demands by the taken rows; clears the columns that are then covered. */
@@ -219,9 +204,7 @@ static void serve_columns(cover_instance *instance, const uint64_t *taken, uint6
 static starg_status replace_by_part(cover_instance *instance, const uint64_t *rows,
                                     const uint64_t *columns) {
     cover_instance part;
-    starg_status status = cover_instance_select(instance, rows, columns, &part);
-    if (status != STARG_OK)
-        return status;
+    TRY(cover_instance_select(instance, rows, columns, &part));
     cover_instance_free(instance);
     *instance = part;
     return STARG_OK;
@@ -229,31 +212,25 @@ static starg_status replace_by_part(cover_instance *instance, const uint64_t *ro
 
 starg_status cover_take_rows(cover_instance *instance, const uint64_t *taken, const uint64_t *keep,
                              cover_names *forced) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
-    uint64_t *rows = NULL, *columns = NULL;
-    STARG_NEW(context, "reduce", rows, instance->column_words);
-    STARG_NEW(context, "reduce", columns, instance->row_words);
+    SCOPED uint64_t *rows = NULL, *columns = NULL;
+    NEW(context, "reduce", rows, instance->column_words);
+    NEW(context, "reduce", columns, instance->row_words);
     cover_mask_fill(columns, instance->columns);
     cover_mask_fill(rows, instance->rows);
     for (size_t w = 0; w < instance->column_words; w++) {
         rows[w] &= ~taken[w] & (keep ? keep[w] : UINT64_MAX);
         STARG_FOR_BITS (bit, taken[w])
-            STARG_PUSH(context, "reduce", forced, instance->row_names[64 * w + bit]);
+            PUSH(context, "reduce", forced, instance->row_names[64 * w + bit]);
     }
     serve_columns(instance, taken, columns);
-    STARG_TRY(replace_by_part(instance, rows, columns));
-done:
-    starg_release(context, rows);
-    starg_release(context, columns);
-    return status;
+    return replace_by_part(instance, rows, columns);
 }
 
 /* Every essential row is paid by one of the columns that make it essential. */
 static starg_status price_essentials(const cover_instance *instance, double *prices) {
-    starg_status status = STARG_OK;
-    uint64_t *paid = NULL;
-    STARG_NEW_ZERO(instance->context, "reduce", paid, instance->column_words);
+    SCOPED uint64_t *paid = NULL;
+    NEW_ZERO(instance->context, "reduce", paid, instance->column_words);
     for (size_t j = 0; j < instance->columns; j++) {
         if (supply(instance, j) != instance->demands[j])
             continue;
@@ -264,59 +241,48 @@ static starg_status price_essentials(const cover_instance *instance, double *pri
                 prices[instance->column_names[j]] = 1;
         }
     }
-done:
-    starg_release(instance->context, paid);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_essentials(cover_instance *instance, cover_names *forced, double *prices,
                                     bool *changed) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
-    uint64_t *rows = NULL;
-    STARG_NEW_ZERO(context, "reduce", rows, instance->column_words);
+    SCOPED uint64_t *rows = NULL;
+    NEW_ZERO(context, "reduce", rows, instance->column_words);
     if (prices != NULL)
-        STARG_TRY(price_essentials(instance, prices));
+        TRY(price_essentials(instance, prices));
     if (cover_mark_essential(instance, rows) != 0) {
-        STARG_TRY(cover_take_rows(instance, rows, NULL, forced));
+        TRY(cover_take_rows(instance, rows, NULL, forced));
         *changed = true;
     }
-done:
-    starg_release(context, rows);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status apply_column_dominance(cover_run *run, cover_instance *instance,
                                            bool *changed) {
-    starg_status status = STARG_OK;
-    uint64_t *columns = NULL;
+    SCOPED uint64_t *columns = NULL;
     size_t dropped;
-    STARG_NEW(run->context, "reduce", columns, instance->row_words);
+    NEW(run->context, "reduce", columns, instance->row_words);
     cover_mask_fill(columns, instance->columns);
-    STARG_TRY(cover_drop_dominated_columns(run, instance, columns, &dropped));
+    TRY(cover_drop_dominated_columns(run, instance, columns, &dropped));
     if (dropped != 0) {
-        STARG_TRY(replace_by_part(instance, NULL, columns));
+        TRY(replace_by_part(instance, NULL, columns));
         *changed = true;
     }
-done:
-    starg_release(run->context, columns);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status apply_row_dominance(cover_run *run, cover_instance *instance, bool *changed) {
-    starg_status status = STARG_OK;
-    uint64_t *rows = NULL;
+    SCOPED uint64_t *rows = NULL;
     size_t dropped;
-    STARG_NEW(run->context, "reduce", rows, instance->column_words);
+    NEW(run->context, "reduce", rows, instance->column_words);
     cover_mask_fill(rows, instance->rows);
-    STARG_TRY(cover_drop_dominated_rows(run, instance, rows, &dropped));
+    TRY(cover_drop_dominated_rows(run, instance, rows, &dropped));
     if (dropped != 0) {
-        STARG_TRY(cover_instance_keep_rows(instance, rows));
+        TRY(cover_instance_keep_rows(instance, rows));
         *changed = true;
     }
-done:
-    starg_release(run->context, rows);
-    return status;
+    return STARG_OK;
 }
 
 static bool every_demand_can_be_met(const cover_instance *instance) {
@@ -329,20 +295,17 @@ static bool every_demand_can_be_met(const cover_instance *instance) {
 
 starg_status cover_reduce_full(cover_run *run, cover_instance *instance, cover_names *forced,
                                double *prices, bool *feasible) {
-    starg_status status = STARG_OK;
-    starg_progress_begin(run->context, "reduce");
+    IN_STAGE(run->context, "reduce");
     *feasible = every_demand_can_be_met(instance);
     for (bool changed = *feasible; changed;) {
         changed = false;
-        STARG_TRY(take_essentials(instance, forced, prices, &changed));
+        TRY(take_essentials(instance, forced, prices, &changed));
         if (cover_time_is_over(run))
             break;
-        STARG_TRY(apply_column_dominance(run, instance, &changed));
-        STARG_TRY(apply_row_dominance(run, instance, &changed));
+        TRY(apply_column_dominance(run, instance, &changed));
+        TRY(apply_row_dominance(run, instance, &changed));
     }
-done:
-    starg_progress_end(run->context);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_reduce_partial(cover_run *run, cover_instance *instance) {
@@ -407,7 +370,6 @@ starg_status cover_find_blocks(const cover_instance *instance, uint32_t *block, 
         walk_block(&walk, i);
     }
 done:
-    starg_release(context, walk.unseen);
-    starg_release(context, walk.queue);
+    RELEASE(walk.unseen, walk.queue);
     return status;
 }

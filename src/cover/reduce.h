@@ -18,8 +18,7 @@
  *     partial target or a limit on the rows couples them.
  *
  * Each rule is exact for any instance, so they can be applied in any order and combination. */
-#ifndef STARG_COVER_REDUCE_H
-#define STARG_COVER_REDUCE_H
+#pragma once
 
 #include "cover/instance.h"
 
@@ -52,5 +51,3 @@ starg_status cover_reduce_partial(cover_run *run, cover_instance *instance);
 /* (4) Numbers the blocks from 0 by their first rows: block[i] for each row. Every row must have a
  * column. Errors: MEMORY. */
 starg_status cover_find_blocks(const cover_instance *instance, uint32_t *block, size_t *count);
-
-#endif

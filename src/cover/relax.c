@@ -39,32 +39,26 @@ typedef struct relaxing {
     double *ones, *zeros;
 } relaxing;
 
-static void relaxing_free(starg_context *context, relaxing *relax) {
+static void relaxing_free(relaxing *relax) {
     if (relax->model != NULL)
         Clp_deleteModel(relax->model);
-    starg_release(context, relax->inside);
-    starg_release(context, relax->columns);
-    starg_release(context, relax->short_columns);
-    starg_release(context, relax->index);
-    starg_release(context, relax->ones);
-    starg_release(context, relax->zeros);
+    RELEASE(relax->inside, relax->columns, relax->short_columns, relax->index, relax->ones,
+            relax->zeros);
 }
 
 static starg_status relaxing_make(const cover_instance *instance, cover_relaxation *out,
                                   relaxing *relax) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
     *relax = (relaxing){.instance = instance, .out = out};
-    STARG_NEW_ZERO(context, "bound", relax->inside, instance->row_words);
-    STARG_NEW(context, "bound", relax->columns, instance->columns);
-    STARG_NEW(context, "bound", relax->short_columns, instance->columns);
-    STARG_NEW(context, "bound", relax->index, instance->rows);
-    STARG_NEW(context, "bound", relax->ones, instance->rows);
-    STARG_NEW_ZERO(context, "bound", relax->zeros, instance->rows);
+    NEW_ZERO(context, "bound", relax->inside, instance->row_words);
+    NEW(context, "bound", relax->columns, instance->columns);
+    NEW(context, "bound", relax->short_columns, instance->columns);
+    NEW(context, "bound", relax->index, instance->rows);
+    NEW(context, "bound", relax->ones, instance->rows);
+    NEW_ZERO(context, "bound", relax->zeros, instance->rows);
     for (size_t i = 0; i < instance->rows; i++)
         relax->ones[i] = 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void add_column(relaxing *relax, size_t column) {
@@ -203,16 +197,14 @@ starg_status cover_relax(cover_run *run, const cover_instance *instance, cover_r
     if (held && instance->columns != 0)
         STARG_TRY(run_clp_safely(run, &relax, found));
 done:
-    relaxing_free(context, &relax);
+    relaxing_free(&relax);
     cover_solver_unlock(held);
     if (status != STARG_OK)
-        cover_relaxation_free(instance, out);
+        cover_relaxation_free(out);
     return status;
 }
 
-void cover_relaxation_free(const cover_instance *instance, cover_relaxation *relaxation) {
-    starg_release(instance->context, relaxation->solution);
-    starg_release(instance->context, relaxation->surplus);
-    starg_release(instance->context, relaxation->multipliers);
+void cover_relaxation_free(cover_relaxation *relaxation) {
+    RELEASE(relaxation->solution, relaxation->surplus, relaxation->multipliers);
     *relaxation = (cover_relaxation){0};
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Linear relaxation of full covers. */
-#ifndef STARG_COVER_RELAX_H
-#define STARG_COVER_RELAX_H
+#pragma once
 
 #include "cover/dual.h"
 
@@ -16,6 +15,4 @@ typedef struct cover_relaxation {
  * violate columns, but the multipliers still give a bound. Errors: MEMORY, CANCELLED. */
 starg_status cover_relax(cover_run *run, const cover_instance *instance, cover_relaxation *out,
                          bool *found);
-void cover_relaxation_free(const cover_instance *instance, cover_relaxation *relaxation);
-
-#endif
+void cover_relaxation_free(cover_relaxation *relaxation);

@@ -142,9 +142,8 @@ done:
 starg_status cover_search(cover_run *run, const cover_instance *instance,
                           const cover_weight_bound *bound, uint64_t floor, uint64_t goal,
                           cover_state *best, bool *exhausted) {
-    starg_status status = STARG_OK;
-    cover_state at = {0};
-    cover_score *all = NULL;
+    SCOPED_BY(cover_state_free) cover_state at = {0};
+    SCOPED cover_score *all = NULL;
     search seek = {.run = run,
                    .instance = instance,
                    .bound = bound,
@@ -155,16 +154,12 @@ starg_status cover_search(cover_run *run, const cover_instance *instance,
                    .nodes_left = run->max_nodes,
                    .steps_left = (cover_wide)run->max_nodes * STEPS_PER_NODE};
     *exhausted = false;
-    starg_progress_begin(run->context, "ilp");
-    STARG_TRY(cover_state_create(instance, &at));
-    STARG_NEW(run->context, "ilp", all, instance->rows);
+    IN_STAGE(run->context, "ilp");
+    TRY(cover_state_create(instance, &at));
+    NEW(run->context, "ilp", all, instance->rows);
     for (size_t i = 0; i < instance->rows; i++)
         all[i] = (cover_score){0, (uint32_t)i};
-    STARG_TRY(explore(&seek, all, instance->rows));
+    TRY(explore(&seek, all, instance->rows));
     *exhausted = !seek.stopped;
-done:
-    starg_progress_end(run->context);
-    cover_state_free(&at);
-    starg_release(run->context, all);
-    return status;
+    return STARG_OK;
 }

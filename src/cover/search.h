@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Branch and bound for partial targets and limited rows: the most weight that K rows can cover.
  * Exact in integers. */
-#ifndef STARG_COVER_SEARCH_H
-#define STARG_COVER_SEARCH_H
+#pragma once
 
 #include "cover/weight_bound.h"
 
@@ -14,5 +13,3 @@
 starg_status cover_search(cover_run *run, const cover_instance *instance,
                           const cover_weight_bound *bound, uint64_t floor, uint64_t goal,
                           cover_state *best, bool *exhausted);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The solvers behind the public function: for full covers, and for a partial target or a limit on
  * the rows. */
-#ifndef STARG_COVER_SOLVE_H
-#define STARG_COVER_SOLVE_H
+#pragma once
 
 #include "cover/instance.h"
 
@@ -29,5 +28,3 @@ starg_status cover_solve_limited(cover_run *run, const cover_instance *instance,
 /* Greedy full cover, with the bound of a relaxed run. Errors: MEMORY, CANCELLED. */
 starg_status cover_solve_greedy(cover_run *run, const cover_instance *instance,
                                 cover_answer *answer);
-
-#endif

@@ -18,9 +18,7 @@ starg_status cover_solver_lock(cover_run *run, bool *held) {
     *held = false;
     call_once(&solver_lock_once, make_solver_lock);
     while (solver_lock_exists && !*held && !cover_time_is_over(run)) {
-        starg_status status = starg_check_cancel(run->context, "ilp");
-        if (status != STARG_OK)
-            return status;
+        TRY(starg_check_cancel(run->context, "ilp"));
         struct timespec until;
         timespec_get(&until, TIME_UTC);
         until.tv_nsec += 50000000;

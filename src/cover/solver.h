@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Lock and clock for the two users of the solver library. */
-#ifndef STARG_COVER_SOLVER_H
-#define STARG_COVER_SOLVER_H
+#pragma once
 
 #include <Clp_C_Interface.h>
 
@@ -23,5 +22,3 @@ double cover_seconds_left(const cover_run *run);
 /* Solves a linear program by Clp's dual simplex method, warm-started unless `first`; false if there
  * is no solution to read, e.g. because it was cut short. */
 bool cover_run_simplex(const cover_run *run, Clp_Simplex *model, bool first);
-
-#endif

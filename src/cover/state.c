@@ -21,13 +21,7 @@ done:
 void cover_state_free(cover_state *state) {
     if (state->instance == NULL)
         return;
-    starg_context *context = state->instance->context;
-    starg_release(context, state->held);
-    starg_release(context, state->open);
-    starg_release(context, state->last);
-    starg_release(context, state->exact);
-    starg_release(context, state->taken);
-    starg_release(context, state->rows);
+    RELEASE(state->held, state->open, state->last, state->exact, state->taken, state->rows);
     *state = (cover_state){0};
 }
 
@@ -118,11 +112,9 @@ uint64_t cover_weight_of(const cover_instance *instance, size_t row, const uint6
 }
 
 starg_status cover_state_names(const cover_state *state, cover_names *names) {
-    starg_status status = STARG_OK;
     starg_context *context = state->instance->context;
     names->count = 0;
     for (size_t i = 0; i < state->count; i++)
-        STARG_PUSH(context, "cover", names, state->instance->row_names[state->rows[i]]);
-done:
-    return status;
+        PUSH(context, "cover", names, state->instance->row_names[state->rows[i]]);
+    return STARG_OK;
 }

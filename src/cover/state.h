@@ -4,8 +4,7 @@
  * Invariants: held[j] is the number of chosen rows that hold column j; the masks say open: held <
  * demand, last: held == demand - 1 (one more row covers it), exact: held == demand (one row less
  * uncovers it). Adding or removing a row costs O(ones of the row). */
-#ifndef STARG_COVER_STATE_H
-#define STARG_COVER_STATE_H
+#pragma once
 
 #include "cover/instance.h"
 
@@ -49,5 +48,3 @@ static inline uint64_t cover_state_loss(const cover_state *state, size_t row) {
 
 /* Replaces `names` by the names of the chosen rows. Errors: MEMORY. */
 starg_status cover_state_names(const cover_state *state, cover_names *names);
-
-#endif

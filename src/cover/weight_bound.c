@@ -2,7 +2,6 @@
 #include "cover/weight_bound.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_SHIFT = 20 };
 
@@ -97,14 +96,11 @@ starg_status cover_weight_bound_create(const cover_instance *instance, size_t ro
     cover_weight_bound_restart(instance, out, rows);
 done:
     if (status != STARG_OK)
-        cover_weight_bound_free(instance, out);
+        cover_weight_bound_free(out);
     return status;
 }
 
-void cover_weight_bound_free(const cover_instance *instance, cover_weight_bound *bound) {
-    starg_release(instance->context, bound->multipliers);
-    starg_release(instance->context, bound->trial);
-    starg_release(instance->context, bound->word_sums);
-    starg_release(instance->context, bound->scores);
+void cover_weight_bound_free(cover_weight_bound *bound) {
+    RELEASE(bound->multipliers, bound->trial, bound->word_sums, bound->scores);
     *bound = (cover_weight_bound){0};
 }

@@ -7,8 +7,7 @@
  * a covered column pays demand(j) u(j) to its chosen rows and keeps the rest. So the smallest K
  * with U(K, u) >= T is a proven lower bound for covering the weight T. Weights and multipliers are
  * scaled by 2^shift, chosen so that the scaled weights sum to below 2^62. */
-#ifndef STARG_COVER_WEIGHT_BOUND_H
-#define STARG_COVER_WEIGHT_BOUND_H
+#pragma once
 
 #include "cover/state.h"
 
@@ -51,7 +50,7 @@ static inline uint64_t cover_near_multiplier(const cover_instance *instance,
  * heaviest rows. Errors: MEMORY. */
 starg_status cover_weight_bound_create(const cover_instance *instance, size_t rows, uint64_t goal,
                                        cover_weight_bound *out);
-void cover_weight_bound_free(const cover_instance *instance, cover_weight_bound *bound);
+void cover_weight_bound_free(cover_weight_bound *bound);
 
 /* Changes the number of rows; bounds for the goal stay. */
 void cover_weight_bound_restart(const cover_instance *instance, cover_weight_bound *bound,
@@ -65,5 +64,3 @@ void cover_weight_bound_take(const cover_instance *instance, cover_weight_bound 
  * failing solver or the time limit never worsens them. Errors: MEMORY, CANCELLED. */
 starg_status cover_weight_bound_relax(cover_run *run, const cover_instance *instance, bool by_goal,
                                       uint64_t enough, cover_weight_bound *bound);
-
-#endif

@@ -76,17 +76,11 @@ typedef struct relaxing {
     size_t room;
 } relaxing;
 
-static void relaxing_free(starg_context *context, relaxing *relax) {
+static void relaxing_free(relaxing *relax) {
     if (relax->model != NULL)
         Clp_deleteModel(relax->model);
-    starg_release(context, relax->inside);
-    starg_release(context, relax->kept);
-    starg_release(context, relax->columns);
-    starg_release(context, relax->cost);
-    starg_release(context, relax->held);
-    starg_release(context, relax->found);
-    starg_release(context, relax->index);
-    starg_release(context, relax->ones);
+    RELEASE(relax->inside, relax->kept, relax->columns, relax->cost, relax->held, relax->found,
+            relax->index, relax->ones);
 }
 
 /* Multipliers that decrease from full to 0 while h crosses the bend. */
@@ -149,23 +143,21 @@ static void choose_sides(relaxing *relax) {
 
 static starg_status relaxing_make(const cover_instance *instance, cover_weight_bound *bound,
                                   relaxing *relax) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
     *relax = (relaxing){.instance = instance, .bound = bound, .limit = bound->rows};
     relax->unit = (double)instance->total / (double)instance->columns;
     relax->room = instance->rows > BATCH_ENTRIES ? instance->rows : BATCH_ENTRIES;
-    STARG_NEW_ZERO(context, "bound", relax->inside, instance->row_words);
-    STARG_NEW_ZERO(context, "bound", relax->kept, instance->row_words);
-    STARG_NEW(context, "bound", relax->columns, instance->columns);
-    STARG_NEW_ZERO(context, "bound", relax->cost, instance->rows);
-    STARG_NEW_ZERO(context, "bound", relax->held, instance->columns);
-    STARG_NEW(context, "bound", relax->found, instance->columns);
-    STARG_NEW(context, "bound", relax->index, relax->room);
-    STARG_NEW(context, "bound", relax->ones, relax->room);
+    NEW_ZERO(context, "bound", relax->inside, instance->row_words);
+    NEW_ZERO(context, "bound", relax->kept, instance->row_words);
+    NEW(context, "bound", relax->columns, instance->columns);
+    NEW_ZERO(context, "bound", relax->cost, instance->rows);
+    NEW_ZERO(context, "bound", relax->held, instance->columns);
+    NEW(context, "bound", relax->found, instance->columns);
+    NEW(context, "bound", relax->index, relax->room);
+    NEW(context, "bound", relax->ones, relax->room);
     for (size_t e = 0; e < relax->room; e++)
         relax->ones[e] = 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The model with all rows and the limit but no column; false if it cannot be created. */
@@ -374,7 +366,7 @@ starg_status cover_weight_bound_relax(cover_run *run, const cover_instance *inst
     if (held && instance->columns != 0)
         STARG_TRY(run_clp_safely(run, &relax));
 done:
-    relaxing_free(run->context, &relax);
+    relaxing_free(&relax);
     cover_solver_unlock(held);
     starg_progress_end(run->context);
     return status;

@@ -9,7 +9,6 @@
 
 #include <math.h>
 
-#include "core/memory.h"
 #include "export/glb.h"
 #include "export/little.h"
 #include "mesh/single.h"
@@ -59,24 +58,19 @@ static float displacement(const animation *a, size_t frame, size_t i) {
 /* Frames are drawn as the first one and a displacement, both rounded. Their faces may have no area
  * between the ends, so that only the first one is compared as a surface. */
 static starg_status check_frame(starg_context *context, const animation *a, size_t frame) {
-    starg_status status = STARG_OK;
-    double *drawn = NULL;
-    starg_mesh *surface = NULL;
+    SCOPED double *drawn = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *surface = NULL;
     char name[32];
     const single_place place = {.stage = STAGE, .what = name, .remedy = "frames as OFF keep it"};
     snprintf(name, sizeof name, "frame %zu", frame);
-    STARG_NEW(context, STAGE, drawn, 3 * a->vertices);
-    STARG_TRY(starg_mesh_create(context, a->frames[frame], a->vertices, starg_mesh_faces(a->mesh),
-                                frame == 0 ? a->indices / 3 : 0, &surface));
+    NEW(context, STAGE, drawn, 3 * a->vertices);
+    TRY(starg_mesh_create(context, a->frames[frame], a->vertices, starg_mesh_faces(a->mesh),
+                          frame == 0 ? a->indices / 3 : 0, &surface));
     for (size_t i = 0; i < 3 * a->vertices; i++) {
         surface->vertices[i] -= a->center[i % 3];
         drawn[i] = (double)first_position(a, i) + (double)displacement(a, frame, i);
     }
-    status = single_compare(context, surface, drawn, &place);
-done:
-    starg_mesh_free(surface);
-    starg_release(context, drawn);
-    return status;
+    return single_compare(context, surface, drawn, &place);
 }
 
 static void find_box(animation *a) {

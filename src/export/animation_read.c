@@ -138,17 +138,15 @@ static starg_status find_primitive(reader *r) {
 }
 
 static starg_status read_faces(const reader *r, uint32_t **faces, size_t *count) {
-    starg_status status = STARG_OK;
     span indices = {0};
-    STARG_TRY(open_accessor(r, number(r->primitive, "indices", -1), 1, &indices));
+    TRY(open_accessor(r, number(r->primitive, "indices", -1), 1, &indices));
     if (indices.type == GL_FLOAT || indices.count == 0 || indices.count % 3 != 0)
         return reject(r, "its indices are not those of triangles");
-    STARG_NEW(r->context, STAGE, *faces, indices.count);
+    NEW(r->context, STAGE, *faces, indices.count);
     for (size_t i = 0; i < indices.count; i++)
         (*faces)[i] = load_index(&indices, i);
     *count = indices.count / 3;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status open_positions(const reader *r, const json_t *attributes, span *out) {
@@ -160,11 +158,10 @@ static starg_status open_positions(const reader *r, const json_t *attributes, sp
 
 /* Writes frame `index` to `points`; `first` are the positions of frame 0. */
 static starg_status read_points(const reader *r, const span *first, size_t index, double *points) {
-    starg_status status = STARG_OK;
     span target = {0};
     const json_t *targets = json_object_get(r->primitive, "targets");
     if (index > 0)
-        STARG_TRY(open_positions(r, json_array_get(targets, index - 1), &target));
+        TRY(open_positions(r, json_array_get(targets, index - 1), &target));
     if (index > 0 && target.count != first->count)
         return reject(r, "a target has another number of vertices");
     for (size_t i = 0; i < 3 * first->count; i++) {
@@ -172,8 +169,7 @@ static starg_status read_points(const reader *r, const span *first, size_t index
         if (index > 0)
             points[i] += load_float(target.at + 4 * i);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_frames(reader *r, starg_mesh ***out, size_t *frame_count) {
@@ -206,8 +202,7 @@ static starg_status read_frames(reader *r, starg_mesh ***out, size_t *frame_coun
     *out = frames;
     *frame_count = count;
 done:
-    starg_release(r->context, faces);
-    starg_release(r->context, points);
+    RELEASE(faces, points);
     if (status != STARG_OK && frames != NULL)
         starg_animation_free(r->context, frames, count);
     return status;
@@ -228,16 +223,12 @@ done:
 
 starg_status starg_animation_read(starg_context *context, const char *path, starg_mesh ***frames,
                                   size_t *count) {
-    starg_status status = STARG_OK;
-    char *bytes = NULL;
+    SCOPED char *bytes = NULL;
     size_t size;
     *frames = NULL;
     *count = 0;
-    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    STARG_TRY(starg_animation_read_memory(context, bytes, size, path, frames, count));
-done:
-    starg_release(context, bytes);
-    return status;
+    TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    return starg_animation_read_memory(context, bytes, size, path, frames, count);
 }
 
 void starg_animation_free(starg_context *context, starg_mesh **frames, size_t count) {

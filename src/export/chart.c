@@ -2,7 +2,6 @@
 /* Curves in the unit square as an SVG: axes with ticks at tenths, and a legend to the right. */
 #include <stdio.h>
 
-#include "core/file.h"
 #include "mesh/formats/io.h"
 #include "starguard/picture.h"
 
@@ -82,12 +81,11 @@ static void write_legend(FILE *stream, const starg_curve *curve, size_t index) {
 
 starg_status starg_chart_write(starg_context *context, const starg_curve *curves, size_t count,
                                const char *x_label, const char *y_label, const char *path) {
-    starg_status status = STARG_OK;
     starg_output output;
     size_t height = TOP + SIDE + BELOW, needed = TOP + 16 + LEGEND_STEP * count;
-    starg_c_locale locale = {0};
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(starg_output_open(context, STAGE, path, &output));
     FILE *stream = output.stream;
     fprintf(stream,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%zu\" "
@@ -102,8 +100,5 @@ starg_status starg_chart_write(starg_context *context, const starg_curve *curves
     for (size_t i = 0; i < count; i++)
         write_legend(stream, &curves[i], i);
     fputs("</svg>\n", stream);
-    status = starg_output_commit(&output);
-done:
-    starg_c_locale_leave(&locale);
-    return status;
+    return starg_output_commit(&output);
 }

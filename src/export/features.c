@@ -33,9 +33,8 @@ typedef struct surface {
 static starg_status collect_vertex_faces(starg_context *context, size_t vertex_count,
                                          const uint32_t *faces, size_t face_count,
                                          vertex_faces *about) {
-    starg_status status = STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, about->start, vertex_count + 2);
-    STARG_NEW(context, STAGE, about->list, 3 * face_count);
+    NEW_ZERO(context, STAGE, about->start, vertex_count + 2);
+    NEW(context, STAGE, about->list, 3 * face_count);
     /* start[v + 2] counts; then start[v + 1] is the next free place of v, finally its end */
     for (size_t i = 0; i < 3 * face_count; i++)
         about->start[faces[i] + 2]++;
@@ -43,8 +42,7 @@ static starg_status collect_vertex_faces(starg_context *context, size_t vertex_c
         about->start[v] += about->start[v - 1];
     for (size_t i = 0; i < 3 * face_count; i++)
         about->list[about->start[faces[i] + 1]++] = (uint32_t)(i / 3);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool same_side(const double *a, const double *b) {
@@ -91,16 +89,14 @@ static bool is_crease(const surface *s, size_t face, uint32_t a, uint32_t b) {
 
 static starg_status collect_creases(starg_context *context, const surface *s,
                                     starg_index_array *lines) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < 3 * s->face_count; i++) {
         uint32_t a = s->faces[i], b = s->faces[i % 3 == 2 ? i - 2 : i + 1];
         if (!is_crease(s, i / 3, a, b))
             continue;
-        STARG_PUSH(context, STAGE, lines, a);
-        STARG_PUSH(context, STAGE, lines, b);
+        PUSH(context, STAGE, lines, a);
+        PUSH(context, STAGE, lines, b);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The creases at a vertex. */
@@ -125,9 +121,8 @@ static bool goes_on(const double *vertices, const crease_end *ends, uint32_t v, 
 /* Drops creases that do not continue: on coarse smooth meshes they are noise. */
 static starg_status keep_long_creases(starg_context *context, const double *vertices,
                                       size_t vertex_count, starg_index_array *lines) {
-    starg_status status = STARG_OK;
-    crease_end *ends = NULL;
-    STARG_NEW_ZERO(context, STAGE, ends, vertex_count);
+    SCOPED crease_end *ends = NULL;
+    NEW_ZERO(context, STAGE, ends, vertex_count);
     for (size_t i = 0; i < lines->count; i++) {
         crease_end *end = &ends[lines->data[i]];
         if (end->count < 2)
@@ -143,9 +138,7 @@ static starg_status keep_long_creases(starg_context *context, const double *vert
         lines->data[kept++] = b;
     }
     lines->count = kept;
-done:
-    starg_release(context, ends);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_features_create(starg_context *context, const double *vertices,
@@ -166,16 +159,13 @@ starg_status starg_features_create(starg_context *context, const double *vertice
     STARG_TRY(collect_creases(context, &s, &out->lines));
     STARG_TRY(keep_long_creases(context, vertices, vertex_count, &out->lines));
 done:
-    starg_release(context, s.area_normals);
-    starg_release(context, s.about.start);
-    starg_release(context, s.about.list);
+    RELEASE(s.area_normals, s.about.start, s.about.list);
     if (status != STARG_OK)
-        starg_features_free(context, out);
+        starg_features_free(out);
     return status;
 }
 
-void starg_features_free(starg_context *context, starg_features *features) {
-    starg_release(context, features->normals);
-    STARG_ARRAY_FREE(context, &features->lines);
+void starg_features_free(starg_features *features) {
+    RELEASE(features->normals, features->lines.data);
     *features = (starg_features){0};
 }

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Extra data for a picture of a mesh: corner normals and feature lines. Decoration only: any mesh
  * is accepted. */
-#ifndef STARG_EXPORT_FEATURES_H
-#define STARG_EXPORT_FEATURES_H
+#pragma once
 
-#include <stdint.h>
-
-#include "core/context.h"
 #include "core/memory.h"
 
 typedef STARG_ARRAY(uint32_t) starg_index_array;
@@ -20,6 +16,4 @@ typedef struct starg_features {
 starg_status starg_features_create(starg_context *context, const double *vertices,
                                    size_t vertex_count, const uint32_t *faces, size_t face_count,
                                    starg_features *out);
-void starg_features_free(starg_context *context, starg_features *features);
-
-#endif
+void starg_features_free(starg_features *features);

@@ -25,22 +25,18 @@ static void put_head(FILE *stream, const char *text, size_t length, size_t bytes
 
 starg_status glb_write(starg_context *context, const char *stage, const char *path,
                        const json_t *json, size_t bytes, glb_numbers *put, const void *user) {
-    starg_status status = STARG_OK;
     starg_output output;
-    char *text = NULL;
+    SCOPED char *text = NULL;
     size_t length = json != NULL ? json_dumpb(json, NULL, 0, JSON_COMPACT) : 0;
     if (length == 0)
         return starg_fail_memory(context, stage);
     if (bytes > UINT32_MAX - 2 * HEADER - 2 * CHUNK_HEADER - length)
         return starg_fail(context, STARG_ERROR_MESH, stage,
                           "%zu bytes of numbers exceed the limit of this format", bytes);
-    STARG_NEW(context, stage, text, length);
+    NEW(context, stage, text, length);
     json_dumpb(json, text, length, JSON_COMPACT);
-    STARG_TRY(starg_output_open(context, stage, path, &output));
+    TRY(starg_output_open(context, stage, path, &output));
     put_head(output.stream, text, length, bytes);
     put(output.stream, user);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_release(context, text);
-    return status;
+    return starg_output_commit(&output);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The container of binary glTF 2.0: a header, a chunk of JSON, a chunk of numbers. */
-#ifndef STARG_EXPORT_GLB_H
-#define STARG_EXPORT_GLB_H
+#pragma once
 
 #include <jansson.h>
 #include <stdio.h>
@@ -26,5 +25,3 @@ typedef void glb_numbers(FILE *stream, const void *user);
  * Errors: MESH (over 4 GiB), WRITE, MEMORY. */
 starg_status glb_write(starg_context *context, const char *stage, const char *path,
                        const json_t *json, size_t bytes, glb_numbers *put, const void *user);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Text in pictures, drawn with strokes of its own. */
-#ifndef STARG_EXPORT_LETTERING_H
-#define STARG_EXPORT_LETTERING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,5 +25,3 @@ double starg_lettering_length(const starg_lettering *style, const char *text);
  * start. What is outside of the canvas is left out. */
 void starg_lettering_draw(const starg_canvas *canvas, const starg_lettering *style,
                           const char *text, double x, double y);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Little-endian numbers in binary files, on any machine. */
-#ifndef STARG_EXPORT_LITTLE_H
-#define STARG_EXPORT_LITTLE_H
+#pragma once
 
 #include <stdint.h>
 #include <stdio.h>
@@ -30,5 +29,3 @@ static inline void little_put_double(FILE *stream, double x) {
     memcpy(&word, &x, sizeof word);
     little_put_long(stream, word);
 }
-
-#endif

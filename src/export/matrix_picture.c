@@ -95,9 +95,8 @@ static void draw_names(const layout *l, const char *const *names, size_t rows, u
 
 starg_status starg_matrix_picture_write(starg_context *context, const double *values, size_t rows,
                                         const char *const *names, const char *path) {
-    starg_status status = STARG_OK;
-    double *sorted = NULL;
-    uint8_t *rgb = NULL;
+    SCOPED double *sorted = NULL;
+    SCOPED uint8_t *rgb = NULL;
     size_t entries = rows * rows;
     if (rows == 0 || rows > MOST_ROWS)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
@@ -108,22 +107,18 @@ starg_status starg_matrix_picture_write(starg_context *context, const double *va
             return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                               "row %zu, column %zu is not a number", i / rows, i % rows);
     const layout l = plan(names, rows);
-    STARG_NEW(context, STAGE, sorted, entries);
-    STARG_NEW(context, STAGE, rgb, 3 * l.width * l.width);
+    NEW(context, STAGE, sorted, entries);
+    NEW(context, STAGE, rgb, 3 * l.width * l.width);
     memcpy(sorted, values, entries * sizeof *sorted);
     qsort(sorted, entries, sizeof *sorted, by_value);
     memset(rgb, 255, 3 * l.width * l.width);
     for (size_t i = 0; i < entries; i++) {
         if (i % rows == 0)
-            STARG_TRY(starg_check_cancel(context, STAGE));
+            TRY(starg_check_cancel(context, STAGE));
         fill_cell(rgb, l.width, l.frame + i % rows * l.cell, l.frame + i / rows * l.cell, l.cell,
                   grey(sorted, entries, values[i]));
     }
     if (l.frame > 0)
         draw_names(&l, names, rows, rgb);
-    STARG_TRY(starg_png_write(context, path, rgb, l.width, l.width));
-done:
-    starg_release(context, sorted);
-    starg_release(context, rgb);
-    return status;
+    return starg_png_write(context, path, rgb, l.width, l.width);
 }

@@ -7,8 +7,6 @@
  * the output, and of sorting the faces of pieces. */
 #include "starguard/page.h"
 
-#include <math.h>
-
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
@@ -152,20 +150,17 @@ static starg_status check_shapes(starg_context *context, const starg_page *p) {
 }
 
 static starg_status check(starg_context *context, const book *b) {
-    starg_status status = STARG_OK;
     const starg_page *p = b->page;
     if (p->model == NULL && p->guards == NULL && p->pieces == NULL && p->map == NULL &&
         p->skeleton == NULL && p->frame_count == 0 && p->shape_count == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "the page has no content");
-    STARG_TRY(check_guards(context, p));
-    STARG_TRY(check_proof(context, p));
-    STARG_TRY(check_pieces(context, p, &b->surfaces));
-    STARG_TRY(check_map(context, p, &b->map_surfaces));
-    STARG_TRY(check_frames(context, p));
-    STARG_TRY(check_ends(context, p));
-    STARG_TRY(check_shapes(context, p));
-done:
-    return status;
+    TRY(check_guards(context, p));
+    TRY(check_proof(context, p));
+    TRY(check_pieces(context, p, &b->surfaces));
+    TRY(check_map(context, p, &b->map_surfaces));
+    TRY(check_frames(context, p));
+    TRY(check_ends(context, p));
+    return check_shapes(context, p);
 }
 
 /* ---- frame ---- */
@@ -263,6 +258,9 @@ static void put_surface(FILE *stream, const book *b, const starg_mesh *m, const 
 static void put_guards(FILE *stream, const book *b) {
     const starg_guards *g = b->page->guards;
     put_points(stream, "guard-points", STARG_PAGE_SINGLE, &b->frame, g->positions, g->count);
+    if (g->tour.point_count > 0)
+        put_points(stream, "guard-tour", STARG_PAGE_SINGLE, &b->frame, g->tour.points,
+                   g->tour.point_count);
     if (b->page->seen != NULL)
         put_bits(stream, "guard-seen", b->page->seen);
     if (b->page->proof != NULL)
@@ -432,6 +430,16 @@ static json_t *proof_json(book *b) {
                      (int)(proof->target == STARG_TARGET_VERTICES), "witnesses", list);
 }
 
+/* Pairs of work and guards. */
+static json_t *steps_json(book *b) {
+    const starg_guards *g = b->page->guards;
+    json_t *list = json_array();
+    for (size_t i = 0; i < g->step_count; i++)
+        append(b, list,
+               json_pack("[I, I]", (json_int_t)g->step_work[i], (json_int_t)g->step_guards[i]));
+    return list;
+}
+
 static json_t *guards_json(book *b) {
     const starg_guards *g = b->page->guards;
     const char *method =
@@ -449,6 +457,12 @@ static json_t *guards_json(book *b) {
         (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
     if (g->options.visibility.cone < 360)
         put(b, guards, "cone", json_real(g->options.visibility.cone));
+    if (g->options.visibility.patch > 0 && !g->space.outside && !g->space.soup)
+        put(b, guards, "hollow", json_true()); /* a room, more likely than a body */
+    if (g->tour.point_count > 0)
+        put(b, guards, "tour", json_real(g->tour.length));
+    if (g->step_count > 0)
+        put(b, guards, "search", steps_json(b));
     if (b->page->proof != NULL)
         put(b, guards, "proof", proof_json(b));
     if (b->command != NULL)
@@ -571,33 +585,26 @@ static json_t *describe(book *b) {
 /* ---- the page ---- */
 
 static starg_status copy_names(starg_context *context, book *b) {
-    starg_status status = STARG_OK;
     const starg_page *p = b->page;
     const char *title = p->title != NULL ? p->title : p->model_name;
-    STARG_TRY(starg_json_path(context, STAGE, title != NULL ? title : "starguard", &b->title));
-    STARG_TRY(starg_json_path(context, STAGE, p->model_name, &b->model_name));
-    STARG_TRY(starg_json_path(context, STAGE, p->command, &b->command));
-    STARG_TRY(starg_json_path(context, STAGE, p->pieces_command, &b->pieces_command));
-    STARG_TRY(starg_json_path(context, STAGE, p->table_command, &b->table_command));
-    STARG_NEW_ZERO(context, STAGE, b->names, p->shape_count);
+    TRY(starg_json_path(context, STAGE, title != NULL ? title : "starguard", &b->title));
+    TRY(starg_json_path(context, STAGE, p->model_name, &b->model_name));
+    TRY(starg_json_path(context, STAGE, p->command, &b->command));
+    TRY(starg_json_path(context, STAGE, p->pieces_command, &b->pieces_command));
+    TRY(starg_json_path(context, STAGE, p->table_command, &b->table_command));
+    NEW_ZERO(context, STAGE, b->names, p->shape_count);
     for (size_t i = 0; i < p->shape_count; i++)
-        STARG_TRY(starg_json_path(context, STAGE, p->shapes[i].name, &b->names[i]));
-done:
-    return status;
+        TRY(starg_json_path(context, STAGE, p->shapes[i].name, &b->names[i]));
+    return STARG_OK;
 }
 
-static void free_book(starg_context *context, book *b) {
+static void free_book(book *b) {
     for (size_t i = 0; b->names != NULL && i < b->page->shape_count; i++)
-        starg_release(context, b->names[i]);
-    starg_release(context, b->names);
-    starg_release(context, b->map_tetrahedra);
-    starg_release(context, b->title);
-    starg_release(context, b->model_name);
-    starg_release(context, b->command);
-    starg_release(context, b->pieces_command);
-    starg_release(context, b->table_command);
-    starg_piece_surfaces_free(context, &b->surfaces);
-    starg_piece_surfaces_free(context, &b->map_surfaces);
+        RELEASE(b->names[i]);
+    RELEASE(b->names, b->map_tetrahedra, b->title, b->model_name, b->command, b->pieces_command,
+            b->table_command);
+    starg_piece_surfaces_free(&b->surfaces);
+    starg_piece_surfaces_free(&b->map_surfaces);
 }
 
 /* False when memory is out; errors of the stream are found when it is committed. */
@@ -611,19 +618,17 @@ static bool put_page(FILE *stream, book *b) {
 }
 
 static starg_status take_map(starg_context *context, const starg_solid_map *map, book *b) {
-    starg_status status = STARG_OK;
     const starg_pieces_mesh pieces = {.vertex_count = map->vertex_count,
                                       .count = map->count,
                                       .vertices = map->vertices,
                                       .tetrahedra = map->tetrahedra,
                                       .labels = map->labels};
-    STARG_TRY(starg_piece_surfaces_create(context, &pieces, &b->map_surfaces));
-    STARG_NEW_ZERO(context, STAGE, b->map_tetrahedra, b->map_surfaces.piece_count);
+    TRY(starg_piece_surfaces_create(context, &pieces, &b->map_surfaces));
+    NEW_ZERO(context, STAGE, b->map_tetrahedra, b->map_surfaces.piece_count);
     for (size_t t = 0; t < map->count; t++)
         b->map_tetrahedra[map->labels[t]]++;
     find_image_frame(map, &b->image_frame);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_page_write(starg_context *context, const starg_page *page, const char *path) {
@@ -648,6 +653,6 @@ starg_status starg_page_write(starg_context *context, const starg_page *page, co
     STARG_TRY(starg_output_commit(&output));
 done:
     starg_output_discard(&output);
-    free_book(context, &b);
+    free_book(&b);
     return status;
 }

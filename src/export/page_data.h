@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Data blocks of a page: elements that a browser keeps and does not run. */
-#ifndef STARG_EXPORT_PAGE_DATA_H
-#define STARG_EXPORT_PAGE_DATA_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -29,5 +28,3 @@ void starg_page_block_close(starg_page_block *block);
 /* A block of JSON: ASCII, with whatever HTML could take for markup as escapes. Consumes `value`;
  * false when it could not be made (memory is out). */
 bool starg_page_json(FILE *stream, const char *name, json_t *value);
-
-#endif

@@ -6,12 +6,9 @@
  * O(faces x bands) for the cheap rejection of triangles, plus the samples covered. */
 #include "starguard/picture.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "export/features.h"
 #include "export/lettering.h"
 #include "export/png.h"
@@ -188,7 +185,6 @@ static bool is_free(const number *taken, size_t count, const number *n, double a
  * cover another is left out. */
 static starg_status draw_numbers(starg_context *context, const starg_picture_options *o,
                                  const starg_raster_scene *scene, uint8_t *rgb) {
-    starg_status status = STARG_OK;
     const starg_canvas canvas = {.rgb = rgb, .width = o->width, .height = o->height};
     const double height = fmax(7, 0.0135 * (double)o->height);
     const starg_lettering style = {.height = height, .ink = {28, 36, 48}, .halo = 0.28 * height};
@@ -196,9 +192,9 @@ static starg_status draw_numbers(starg_context *context, const starg_picture_opt
     snprintf(widest, sizeof widest, "%zu", o->point_count);
     const double across = starg_lettering_length(&style, widest), down = 1.4 * height;
     const double beside = 0.8 * scene->ball_radius / STARG_RASTER_SAMPLES + 0.3 * height;
-    number *numbers = NULL;
+    SCOPED number *numbers = NULL;
     size_t taken = 0;
-    STARG_NEW(context, STAGE, numbers, o->point_count);
+    NEW(context, STAGE, numbers, o->point_count);
     for (size_t i = 0; i < o->point_count; i++) {
         const double *p = scene->balls[i].center;
         numbers[i] =
@@ -214,9 +210,7 @@ static starg_status draw_numbers(starg_context *context, const starg_picture_opt
         snprintf(text, sizeof text, "%zu", n.index);
         starg_lettering_draw(&canvas, &style, text, n.x + beside, n.y - beside);
     }
-done:
-    starg_release(context, numbers);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- views of cameras ---- */
@@ -230,16 +224,14 @@ static void place_views(const scene_job *job, size_t sides, double *points) {
 /* Four of the rays, and the rim. */
 static starg_status join_views(starg_context *context, const scene_job *job, size_t sides,
                                size_t base, starg_features *features) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < job->guards * sides; i++) {
         size_t side = i % sides, apex = base + i / sides * (sides + 1);
         const size_t ends[4] = {apex + 1 + side, apex + 1 + (side + 1) % sides, apex,
                                 apex + 1 + side};
         for (size_t k = 0; k < (side % (sides / 4) == 0 ? 4 : 2); k++)
-            STARG_PUSH(context, STAGE, &features->lines, (uint32_t)ends[k]);
+            PUSH(context, STAGE, &features->lines, (uint32_t)ends[k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static scene_job job_of(const starg_mesh *mesh, const starg_guards *guards, starg_scene *scene) {
@@ -255,19 +247,18 @@ static scene_job job_of(const starg_mesh *mesh, const starg_guards *guards, star
 /* Draws into height rows of width x 3 bytes. */
 static starg_status draw(starg_context *context, const starg_mesh *mesh,
                          const starg_picture_options *o, uint8_t *rgb) {
-    starg_status status = STARG_OK;
-    starg_features features = {0};
-    double *positions = NULL, *centers = NULL;
-    starg_raster_ball *balls = NULL;
+    SCOPED_BY(starg_features_free) starg_features features = {0};
+    SCOPED double *positions = NULL, *centers = NULL;
+    SCOPED starg_raster_ball *balls = NULL;
     camera c;
     starg_scene scene_of_views;
     const scene_job job = job_of(mesh, o->views, &scene_of_views);
     size_t sides = scene_view_sides(&job), count = mesh->vertex_count;
     if (sides > 0)
         count += job.guards * (sides + 1);
-    STARG_NEW(context, STAGE, positions, 3 * count);
-    STARG_NEW(context, STAGE, centers, 3 * o->point_count);
-    STARG_NEW(context, STAGE, balls, o->point_count);
+    NEW(context, STAGE, positions, 3 * count);
+    NEW(context, STAGE, centers, 3 * o->point_count);
+    NEW(context, STAGE, balls, o->point_count);
 
     aim_camera(mesh, o, &c);
     memcpy(positions, mesh->vertices, 3 * mesh->vertex_count * sizeof *positions);
@@ -275,10 +266,10 @@ static starg_status draw(starg_context *context, const starg_mesh *mesh,
         place_views(&job, sides, positions + 3 * mesh->vertex_count);
     look(&c, positions, count, positions);
     look(&c, o->points, o->point_count, centers);
-    STARG_TRY(starg_features_create(context, positions, mesh->vertex_count, mesh->faces,
-                                    mesh->face_count, &features));
+    TRY(starg_features_create(context, positions, mesh->vertex_count, mesh->faces, mesh->face_count,
+                              &features));
     if (sides > 0)
-        STARG_TRY(join_views(context, &job, sides, mesh->vertex_count, &features));
+        TRY(join_views(context, &job, sides, mesh->vertex_count, &features));
     double line_radius = fmax(1.0, 0.0008 * STARG_RASTER_SAMPLES * (double)o->height);
     frame f = fit_frame(o, positions, count, centers, 2 * line_radius);
     to_samples(&f, positions, count);
@@ -299,15 +290,10 @@ static starg_status draw(starg_context *context, const starg_mesh *mesh,
                                 .balls = balls,
                                 .ball_count = o->point_count,
                                 .ball_radius = o->point_radius * f.scale};
-    STARG_TRY(starg_raster_draw(context, &scene, rgb));
+    TRY(starg_raster_draw(context, &scene, rgb));
     if (o->point_numbers)
-        STARG_TRY(draw_numbers(context, o, &scene, rgb));
-done:
-    starg_features_free(context, &features);
-    starg_release(context, positions);
-    starg_release(context, centers);
-    starg_release(context, balls);
-    return status;
+        TRY(draw_numbers(context, o, &scene, rgb));
+    return STARG_OK;
 }
 
 starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
@@ -318,20 +304,16 @@ starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
 starg_status starg_picture_encode(starg_context *context, const starg_mesh *mesh,
                                   const starg_picture_options *options, uint8_t **png,
                                   size_t *size) {
-    starg_status status = STARG_OK;
     starg_picture_options defaults;
-    uint8_t *rgb = NULL;
+    SCOPED uint8_t *rgb = NULL;
     *png = NULL;
     *size = 0;
     starg_picture_options_default(&defaults);
     const starg_picture_options *o = options ? options : &defaults;
-    STARG_TRY(check_options(context, o));
-    STARG_NEW(context, STAGE, rgb, 3 * o->width * o->height);
-    STARG_TRY(draw(context, mesh, o, rgb));
-    STARG_TRY(starg_png_encode(context, rgb, o->width, o->height, png, size));
-done:
-    starg_release(context, rgb);
-    return status;
+    TRY(check_options(context, o));
+    NEW(context, STAGE, rgb, 3 * o->width * o->height);
+    TRY(draw(context, mesh, o, rgb));
+    return starg_png_encode(context, rgb, o->width, o->height, png, size);
 }
 
 void starg_picture_bytes_free(starg_context *context, uint8_t *png) {
@@ -351,25 +333,20 @@ static starg_status check_sheet(starg_context *context, size_t rows, size_t colu
 starg_status starg_picture_sheet_write(starg_context *context, const starg_mesh *const *meshes,
                                        size_t rows, size_t columns,
                                        const starg_picture_options *options, const char *path) {
-    starg_status status = STARG_OK;
     starg_picture_options defaults;
-    uint8_t *tile = NULL, *sheet = NULL;
+    SCOPED uint8_t *tile = NULL, *sheet = NULL;
     starg_picture_options_default(&defaults);
     const starg_picture_options *o = options ? options : &defaults;
-    STARG_TRY(check_options(context, o));
-    STARG_TRY(check_sheet(context, rows, columns, o));
+    TRY(check_options(context, o));
+    TRY(check_sheet(context, rows, columns, o));
     size_t line = 3 * o->width, stride = line * columns;
-    STARG_NEW(context, STAGE, tile, line * o->height);
-    STARG_NEW(context, STAGE, sheet, stride * o->height * rows);
+    NEW(context, STAGE, tile, line * o->height);
+    NEW(context, STAGE, sheet, stride * o->height * rows);
     for (size_t i = 0; i < rows * columns; i++) {
         uint8_t *corner = sheet + i / columns * o->height * stride + i % columns * line;
-        STARG_TRY(draw(context, meshes[i], o, tile));
+        TRY(draw(context, meshes[i], o, tile));
         for (size_t y = 0; y < o->height; y++)
             memcpy(corner + y * stride, tile + y * line, line);
     }
-    STARG_TRY(starg_png_write(context, path, sheet, columns * o->width, rows * o->height));
-done:
-    starg_release(context, tile);
-    starg_release(context, sheet);
-    return status;
+    return starg_png_write(context, path, sheet, columns * o->width, rows * o->height);
 }

@@ -141,16 +141,13 @@ starg_status starg_piece_surfaces_create(starg_context *context, const starg_pie
     number_vertices(sides, count, mesh->vertex_count, numbers, out);
     place_faces(mesh, sides, count, numbers, out);
 done:
-    starg_release(context, sides);
-    starg_release(context, numbers);
+    RELEASE(sides, numbers);
     if (status != STARG_OK)
-        starg_piece_surfaces_free(context, out);
+        starg_piece_surfaces_free(out);
     return status;
 }
 
-void starg_piece_surfaces_free(starg_context *context, starg_piece_surfaces *surfaces) {
-    starg_release(context, surfaces->first_face);
-    starg_release(context, surfaces->faces);
-    starg_release(context, surfaces->vertices);
+void starg_piece_surfaces_free(starg_piece_surfaces *surfaces) {
+    RELEASE(surfaces->first_face, surfaces->faces, surfaces->vertices);
     *surfaces = (starg_piece_surfaces){0};
 }

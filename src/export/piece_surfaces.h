@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Surfaces of pieces of tetrahedra, for drawing. */
-#ifndef STARG_EXPORT_PIECE_SURFACES_H
-#define STARG_EXPORT_PIECE_SURFACES_H
+#pragma once
 
 #include "core/context.h"
 #include "starguard/verify.h"
@@ -17,6 +16,4 @@ typedef struct starg_piece_surfaces {
 /* Errors: ARGUMENT (an index or a label out of range), MEMORY, CANCELLED. */
 starg_status starg_piece_surfaces_create(starg_context *context, const starg_pieces_mesh *mesh,
                                          starg_piece_surfaces *out);
-void starg_piece_surfaces_free(starg_context *context, starg_piece_surfaces *surfaces);
-
-#endif
+void starg_piece_surfaces_free(starg_piece_surfaces *surfaces);

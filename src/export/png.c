@@ -104,35 +104,27 @@ static void store_file(uint8_t *at, size_t width, size_t height, const uint8_t *
 
 starg_status starg_png_encode(starg_context *context, const uint8_t *rgb, size_t width,
                               size_t height, uint8_t **png, size_t *size) {
-    starg_status status = STARG_OK;
-    uint8_t *filtered = NULL, *packed = NULL;
+    SCOPED uint8_t *filtered = NULL, *packed = NULL;
     size_t packed_size = 0, row = BYTES_PER_PIXEL * width;
     *png = NULL;
-    STARG_NEW(context, STAGE, filtered, height * (row + 1));
+    NEW(context, STAGE, filtered, height * (row + 1));
     for (size_t y = 0; y < height; y++)
         filter_row(rgb + y * row, y == 0 ? NULL : rgb + (y - 1) * row, row,
                    filtered + y * (row + 1));
-    STARG_TRY(deflate_block(context, filtered, height * (row + 1), &packed, &packed_size));
+    TRY(deflate_block(context, filtered, height * (row + 1), &packed, &packed_size));
     *size = sizeof SIGNATURE + 3 * CHUNK + HEADER + packed_size;
-    STARG_NEW(context, STAGE, *png, *size);
+    NEW(context, STAGE, *png, *size);
     store_file(*png, width, height, packed, packed_size);
-done:
-    starg_release(context, filtered);
-    starg_release(context, packed);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_png_write(starg_context *context, const char *path, const uint8_t *rgb,
                              size_t width, size_t height) {
-    starg_status status = STARG_OK;
-    uint8_t *png = NULL;
+    SCOPED uint8_t *png = NULL;
     size_t size = 0;
     starg_output output = {0};
-    STARG_TRY(starg_png_encode(context, rgb, width, height, &png, &size));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    TRY(starg_png_encode(context, rgb, width, height, &png, &size));
+    TRY(starg_output_open(context, STAGE, path, &output));
     fwrite(png, 1, size, output.stream);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_release(context, png);
-    return status;
+    return starg_output_commit(&output);
 }

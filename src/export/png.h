@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writes an image as a PNG file. */
-#ifndef STARG_EXPORT_PNG_H
-#define STARG_EXPORT_PNG_H
-
-#include <stdint.h>
+#pragma once
 
 #include "core/context.h"
 
@@ -15,5 +12,3 @@ starg_status starg_png_write(starg_context *context, const char *path, const uin
 /* Same into a new block. Errors: MEMORY. */
 starg_status starg_png_encode(starg_context *context, const uint8_t *rgb, size_t width,
                               size_t height, uint8_t **png, size_t *size);
-
-#endif

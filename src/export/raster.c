@@ -14,9 +14,6 @@
  * A band depends only on the scene: the same bytes for any number of threads. */
 #include "export/raster.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 
@@ -347,12 +344,11 @@ static starg_status draw_band(starg_context *context, void *shared, void *scratc
 }
 
 static void free_band(starg_context *context, void *scratch) {
+    (void)context;
     band *b = scratch;
     if (b == NULL)
         return;
-    starg_release(context, b->counts);
-    starg_release(context, b->fragments);
-    starg_release(context, b);
+    RELEASE(b->counts, b->fragments, b);
 }
 
 static starg_status make_band(starg_context *context, void *shared, void **scratch) {

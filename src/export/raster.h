@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Turns a projected scene into pixels. */
-#ifndef STARG_EXPORT_RASTER_H
-#define STARG_EXPORT_RASTER_H
-
-#include <stdint.h>
+#pragma once
 
 #include "core/context.h"
 
@@ -36,5 +33,3 @@ typedef struct starg_raster_scene {
 /* Draws into height x width x 3 bytes. Errors: MEMORY, CANCELLED. */
 starg_status starg_raster_draw(starg_context *context, const starg_raster_scene *scene,
                                uint8_t *rgb);
-
-#endif

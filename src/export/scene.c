@@ -10,7 +10,6 @@
 
 #include <math.h>
 
-#include "core/memory.h"
 #include "mesh/formats/io.h"
 #include "starguard/picture.h"
 
@@ -64,31 +63,26 @@ static starg_status check_skeleton(starg_context *context, const scene_job *job)
 }
 
 static starg_status check(starg_context *context, const scene_job *job) {
-    starg_status status = STARG_OK;
     if (job->model_vertices + job->guards + job->surfaces.vertex_count + job->nodes == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "nothing to write: no model, guards, pieces or skeleton");
-    STARG_TRY(check_guards(context, job->scene));
-    STARG_TRY(check_report(context, job));
-    STARG_TRY(check_skeleton(context, job));
-done:
-    return status;
+    TRY(check_guards(context, job->scene));
+    TRY(check_report(context, job));
+    return check_skeleton(context, job);
 }
 
 /* ---- what is made of the parts ---- */
 
 static starg_status find_viewers(starg_context *context, scene_job *job) {
-    starg_status status = STARG_OK;
     if (job->scene->seen == NULL)
         return STARG_OK;
-    STARG_NEW(context, STAGE, job->viewer, job->model_faces);
+    NEW(context, STAGE, job->viewer, job->model_faces);
     memset(job->viewer, 0xff, job->model_faces * sizeof *job->viewer);
     for (size_t g = job->guards; g-- > 0;)
         for (size_t f = 0; f < job->model_faces; f++)
             if (starg_bits_test(job->scene->seen, g, f))
                 job->viewer[f] = (int32_t)g;
-done:
-    return status;
+    return STARG_OK;
 }
 
 typedef struct box {
@@ -126,7 +120,6 @@ static void find_box(scene_job *job) {
 
 static starg_status prepare(starg_context *context, scene_job *job) {
     const starg_scene *s = job->scene;
-    starg_status status = STARG_OK;
     job->model_vertices = s->model != NULL ? starg_mesh_vertex_count(s->model) : 0;
     job->model_faces = s->model != NULL ? starg_mesh_face_count(s->model) : 0;
     job->obstacle_vertices = s->obstacles != NULL ? starg_mesh_vertex_count(s->obstacles) : 0;
@@ -135,12 +128,11 @@ static starg_status prepare(starg_context *context, scene_job *job) {
     job->nodes = s->skeleton != NULL ? s->skeleton->node_count : 0;
     job->edges = s->skeleton != NULL ? s->skeleton->edge_count : 0;
     if (s->pieces != NULL)
-        STARG_TRY(starg_piece_surfaces_create(context, s->pieces, &job->surfaces));
-    STARG_TRY(check(context, job));
-    STARG_TRY(find_viewers(context, job));
+        TRY(starg_piece_surfaces_create(context, s->pieces, &job->surfaces));
+    TRY(check(context, job));
+    TRY(find_viewers(context, job));
     find_box(job);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The surfaces of pieces hold the model's, and drawn at the same place neither is seen well. Data
@@ -222,7 +214,7 @@ starg_status starg_scene_write(starg_context *context, const starg_scene *scene,
     leave_out_covered(&job, format);
     STARG_TRY(write_as(context, &job, path, format));
 done:
-    starg_piece_surfaces_free(context, &job.surfaces);
+    starg_piece_surfaces_free(&job.surfaces);
     starg_release(context, job.viewer);
     return status;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the writers of scenes share: the parts, checked, and what is made of them once. */
-#ifndef STARG_EXPORT_SCENE_H
-#define STARG_EXPORT_SCENE_H
+#pragma once
 
 #include "export/piece_surfaces.h"
 #include "starguard/scene.h"
@@ -58,5 +57,3 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
 starg_status scene_write_vtu(starg_context *context, const scene_job *job, const char *path);
 starg_status scene_write_ply(starg_context *context, const scene_job *job, const char *path);
 starg_status scene_write_obj(starg_context *context, const scene_job *job, const char *path);
-
-#endif

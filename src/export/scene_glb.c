@@ -10,7 +10,6 @@
  * are put. Cost: that of the output. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "export/glb.h"
 #include "export/little.h"
 #include "export/scene.h"
@@ -128,31 +127,23 @@ static starg_status check_range(starg_context *context, const glb_scene *s) {
 /* Does single precision keep a part? `faces` may be of no view: points alone. */
 static starg_status check_part(starg_context *context, const glb_scene *s, view_kind points,
                                view_kind faces, const char *name) {
-    starg_status status = STARG_OK;
     const view *v = &s->views[points], *f = &s->views[faces];
     const single_place place = {.stage = STAGE, .what = name, .remedy = "write .vtu, .ply or .obj"};
-    double *all = NULL;
-    starg_mesh *part = NULL;
-    STARG_NEW(context, STAGE, all, 3 * v->count);
+    SCOPED double *all = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *part = NULL;
+    NEW(context, STAGE, all, 3 * v->count);
     for (size_t i = 0; i < v->count; i++)
         memcpy(all + 3 * i, v->reals + 3 * (v->through != NULL ? v->through[i] : i),
                3 * sizeof *all);
-    STARG_TRY(starg_mesh_create(context, all, v->count, f->words, f->count / 3, &part));
-    status = single_check(context, part, s->job->center, &place);
-done:
-    starg_mesh_free(part);
-    starg_release(context, all);
-    return status;
+    TRY(starg_mesh_create(context, all, v->count, f->words, f->count / 3, &part));
+    return single_check(context, part, s->job->center, &place);
 }
 
 static starg_status check_parts(starg_context *context, const glb_scene *s) {
-    starg_status status = STARG_OK;
-    STARG_TRY(check_part(context, s, VIEW_MODEL_POINTS, VIEW_MODEL_FACES, "the model"));
-    STARG_TRY(check_part(context, s, VIEW_OBSTACLE_POINTS, VIEW_OBSTACLE_FACES, "obstacles"));
-    STARG_TRY(check_part(context, s, VIEW_PIECE_POINTS, VIEW_PIECE_FACES, "pieces"));
-    STARG_TRY(check_part(context, s, VIEW_NODE_POINTS, VIEW_NONE, "the skeleton"));
-done:
-    return status;
+    TRY(check_part(context, s, VIEW_MODEL_POINTS, VIEW_MODEL_FACES, "the model"));
+    TRY(check_part(context, s, VIEW_OBSTACLE_POINTS, VIEW_OBSTACLE_FACES, "obstacles"));
+    TRY(check_part(context, s, VIEW_PIECE_POINTS, VIEW_PIECE_FACES, "pieces"));
+    return check_part(context, s, VIEW_NODE_POINTS, VIEW_NONE, "the skeleton");
 }
 
 /* ---- JSON ---- */

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as OBJ: an object for each part, whose vertices are numbered from 1 through the file. A
  * guard is a point element, the skeleton lines. */
-#include "core/file.h"
-#include "core/memory.h"
 #include "export/scene.h"
 #include "mesh/formats/io.h"
 
@@ -62,17 +60,13 @@ static void put_skeleton(FILE *stream, const scene_job *job, size_t base) {
 }
 
 starg_status scene_write_obj(starg_context *context, const scene_job *job, const char *path) {
-    starg_status status = STARG_OK;
     starg_output output;
-    starg_c_locale locale = {0};
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(starg_output_open(context, STAGE, path, &output));
     size_t base = put_model(output.stream, job, 1);
     base = put_pieces(output.stream, job, base);
     base = put_guards(output.stream, job, base);
     put_skeleton(output.stream, job, base);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_c_locale_leave(&locale);
-    return status;
+    return starg_output_commit(&output);
 }

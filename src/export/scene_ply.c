@@ -116,7 +116,6 @@ static void put_edges(FILE *stream, const ply_scene *s) {
 }
 
 starg_status scene_write_ply(starg_context *context, const scene_job *job, const char *path) {
-    starg_status status = STARG_OK;
     starg_output output;
     const starg_piece_surfaces *pieces = &job->surfaces;
     ply_scene s = {.job = job};
@@ -125,12 +124,10 @@ starg_status scene_write_ply(starg_context *context, const scene_job *job, const
     scene_ball_make(&s.ball);
     s.view_sides = scene_view_sides(job);
     s.view_corners = s.view_sides > 0 ? s.view_sides + 1 : 0;
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    TRY(starg_output_open(context, STAGE, path, &output));
     put_header(output.stream, &s);
     put_vertices(output.stream, &s);
     put_faces(output.stream, &s);
     put_edges(output.stream, &s);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    return status;
+    return starg_output_commit(&output);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What shows where a camera looks: the sides of its cone or pyramid, from the guard as far as its
  * range or, if that is far, a tenth of what is shown. */
-#include <math.h>
 
 #include "export/scene.h"
 #include "geometry/vec3.h"

@@ -233,17 +233,14 @@ static void put_xml(FILE *stream, const vtu_scene *s) {
 }
 
 starg_status scene_write_vtu(starg_context *context, const scene_job *job, const char *path) {
-    starg_status status = STARG_OK;
     starg_output output;
     const vtu_scene s = lay_out(job);
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    TRY(starg_output_open(context, STAGE, path, &output));
     put_xml(output.stream, &s);
     for (const vtu_array *array = ARRAYS; array < ARRAYS + ARRAY_COUNT; array++) {
         little_put_long(output.stream, array_bytes(&s, array));
         array->put(output.stream, &s);
     }
     fputs("\n</AppendedData>\n</VTKFile>\n", output.stream);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    return status;
+    return starg_output_commit(&output);
 }

@@ -7,9 +7,6 @@
  * more than its rounding error, so that it never loses a triangle. */
 #include "geometry/bvh.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -155,9 +152,7 @@ done:
 void bvh_free(bvh *tree) {
     if (tree == NULL)
         return;
-    starg_release(tree->context, tree->nodes);
-    starg_release(tree->context, tree->order);
-    starg_release(tree->context, tree);
+    RELEASE(tree->nodes, tree->order, tree);
 }
 
 bool bvh_query(const bvh *tree, bvh_box_test *may_meet, void *test_user, bvh_visit_rank *visit,
@@ -358,24 +353,25 @@ static slab_segment slab_prepare(const double p[3], const double q[3]) {
 }
 
 /* Does the box miss the segment along a flat axis? */
-static bool slab_misses_flat(const slab_segment *s, const bvh_box *box) {
+static inline bool slab_misses_flat(const slab_segment *s, const bvh_box *box, double pad) {
     for (int k = 0; k < 3; k++)
-        if (s->flat[k] && (box->lower[k] - s->origin[k] > fmax(s->extent[k], 0) ||
-                           box->upper[k] - s->origin[k] < fmin(s->extent[k], 0)))
+        if (s->flat[k] && (box->lower[k] - pad - s->origin[k] > fmax(s->extent[k], 0) ||
+                           box->upper[k] + pad - s->origin[k] < fmin(s->extent[k], 0)))
             return true;
     return false;
 }
 
-/* Conservative: true whenever the exact segment meets the box, which it enters at *at. Each bound
- * has at most three roundings, a relative error below 4 x 2^-53. */
-static inline bool slab_meets(const slab_segment *s, const bvh_box *box, double *at) {
+/* Conservative: true whenever the exact segment meets the box, larger by `pad` on all sides, which
+ * it enters at *at. Each bound has at most three roundings, a relative error below 4 x 2^-53; a pad
+ * is twice what is needed, which covers its own. */
+static inline bool slab_meets(const slab_segment *s, const bvh_box *box, double pad, double *at) {
     double enter = 0, leave = 1;
     *at = 0;
-    if (s->any_flat && slab_misses_flat(s, box))
+    if (s->any_flat && slab_misses_flat(s, box, pad))
         return false;
     for (int k = 0; k < 3; k++) {
-        double t0 = (box->lower[k] - s->origin[k]) * s->inverse[k];
-        double t1 = (box->upper[k] - s->origin[k]) * s->inverse[k];
+        double t0 = (box->lower[k] - pad - s->origin[k]) * s->inverse[k];
+        double t1 = (box->upper[k] + pad - s->origin[k]) * s->inverse[k];
         double near = t0 < t1 ? t0 : t1, far = t0 < t1 ? t1 : t0;
         if (s->flat[k])
             continue;
@@ -387,19 +383,20 @@ static inline bool slab_meets(const slab_segment *s, const bvh_box *box, double 
 }
 
 /* The nearer child first: most segments that are stopped are stopped near p. */
-bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
-                       void *user) {
+static inline __attribute__((always_inline)) bool walk_segment(const bvh *tree, const double p[3],
+                                                               const double q[3], double pad,
+                                                               bvh_visit_rank *visit, void *user) {
     const slab_segment segment = slab_prepare(p, q);
     const bvh_node *stack[STACK_SIZE];
     stack[0] = &tree->nodes[0];
     double at[2];
-    int depth = slab_meets(&segment, &tree->nodes[0].box, at);
+    int depth = slab_meets(&segment, &tree->nodes[0].box, pad, at);
     while (depth > 0) {
         const bvh_node *node = stack[--depth];
         if (node->count == 0 && tree->triangle_count > LEAF_SIZE) {
             const bvh_node *child = &tree->nodes[node->first];
-            bool meets[2] = {slab_meets(&segment, &child[0].box, &at[0]),
-                             slab_meets(&segment, &child[1].box, &at[1])};
+            bool meets[2] = {slab_meets(&segment, &child[0].box, pad, &at[0]),
+                             slab_meets(&segment, &child[1].box, pad, &at[1])};
             int near = at[1] < at[0];
             if (meets[1 - near])
                 stack[depth++] = &child[1 - near];
@@ -412,6 +409,16 @@ bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bv
                 return false;
     }
     return true;
+}
+
+bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
+                       void *user) {
+    return walk_segment(tree, p, q, 0, visit, user);
+}
+
+bool bvh_query_near_segment(const bvh *tree, const double p[3], const double q[3], double pad,
+                            bvh_visit_rank *visit, void *user) {
+    return walk_segment(tree, p, q, 2 * pad, visit, user);
 }
 
 /* The point of the segment a b nearest to p; returns its squared distance. */

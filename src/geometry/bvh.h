@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Bounding volume hierarchy over the triangles of a mesh. Box tests only compare coordinates and
  * lose nothing to rounding; predicates decide at the leaves. */
-#ifndef STARG_GEOMETRY_BVH_H
-#define STARG_GEOMETRY_BVH_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "core/context.h"
-#include "core/private.h"
+#include "core/memory.h"
 
 typedef struct bvh_box {
     double lower[3], upper[3];
@@ -42,6 +36,7 @@ typedef struct bvh {
 starg_status bvh_create(starg_context *context, const double *vertices, const uint32_t *faces,
                         size_t face_count, bvh **out) STARG_PRIVATE(bvh_create);
 void bvh_free(bvh *tree) STARG_PRIVATE(bvh_free);
+STARG_DROP(bvh, bvh)
 
 /* Calls visit with the position in `order` of every triangle in the leaves that pass may_meet,
  * until it returns false; returns false exactly if visit did. may_meet may reject a box only if no
@@ -86,6 +81,10 @@ int bvh_winding_behind(const bvh *tree, uint32_t triangle, int k);
 bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
                        void *user) STARG_PRIVATE(bvh_query_segment);
 
+/* The same for any segment that is within `pad` of this one in each coordinate. */
+bool bvh_query_near_segment(const bvh *tree, const double p[3], const double q[3], double pad,
+                            bvh_visit_rank *visit, void *user);
+
 /* Distance from p to the nearest triangle, rounded; infinity without triangles. */
 double bvh_distance(const bvh *tree, const double p[3]) STARG_PRIVATE(bvh_distance);
 
@@ -112,10 +111,8 @@ typedef struct winding_field {
 
 /* Errors: MEMORY. */
 starg_status winding_create(starg_context *context, const bvh *tree, winding_field *out);
-void winding_free(starg_context *context, winding_field *field);
+void winding_free(winding_field *field);
 
 /* Signed solid angle of all triangles seen from p over 4 pi: 1 inside a closed outward surface, 0
  * outside, fractional near holes. The approximation is off by about 0.01. */
 double winding_number(const winding_field *field, const double p[3]);
-
-#endif

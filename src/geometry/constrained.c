@@ -69,12 +69,10 @@ static int by_place(const void *x, const void *y) {
 }
 
 static starg_status add_site(triangulator *t, uint32_t vertex) {
-    starg_status status = STARG_OK;
     const double *q = t->points + 3 * (size_t)vertex;
     const site fresh = {{q[t->u], q[t->v]}, vertex};
-    STARG_PUSH(t->context, STAGE, &t->sites, fresh);
-done:
-    return status;
+    PUSH(t->context, STAGE, &t->sites, fresh);
+    return STARG_OK;
 }
 
 /* Vertices with their site numbers, ascending. */
@@ -85,14 +83,13 @@ static int by_first(const void *x, const void *y) {
 
 static starg_status find_sites(triangulator *t, const constrained_edge *edges, size_t edge_count,
                                const uint32_t *loose, size_t loose_count, bool *done) {
-    starg_status status = STARG_OK;
     size_t kept = 0;
     for (size_t i = 0; i < edge_count; i++) {
-        STARG_TRY(add_site(t, edges[i].from));
-        STARG_TRY(add_site(t, edges[i].to));
+        TRY(add_site(t, edges[i].from));
+        TRY(add_site(t, edges[i].to));
     }
     for (size_t i = 0; i < loose_count; i++)
-        STARG_TRY(add_site(t, loose[i]));
+        TRY(add_site(t, loose[i]));
     if (t->sites.count > 1)
         qsort(t->sites.data, t->sites.count, sizeof *t->sites.data, by_place);
     for (size_t i = 0; i < t->sites.count; i++) {
@@ -104,15 +101,14 @@ static starg_status find_sites(triangulator *t, const constrained_edge *edges, s
         t->sites.data[kept++] = *s;
     }
     t->sites.count = kept;
-    STARG_NEW(t->context, STAGE, t->by_vertex, 2 * kept);
+    NEW(t->context, STAGE, t->by_vertex, 2 * kept);
     for (size_t i = 0; i < kept; i++) {
         t->by_vertex[2 * i] = t->sites.data[i].vertex;
         t->by_vertex[2 * i + 1] = (uint32_t)i;
     }
     if (kept > 1)
         qsort(t->by_vertex, kept, 2 * sizeof *t->by_vertex, by_first);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static uint32_t site_of(const triangulator *t, uint32_t vertex) {
@@ -141,14 +137,12 @@ static void join(const triangulator *t, uint32_t a, int edge, uint32_t b, int ot
 }
 
 static starg_status add_triangle(triangulator *t, uint32_t a, uint32_t b, uint32_t c) {
-    starg_status status = STARG_OK;
     const constrained_triangle fresh = {.corners = {a, b, c}, .beyond = {NONE, NONE, NONE}};
     uint32_t number = (uint32_t)t->triangles->count;
-    STARG_PUSH(t->context, STAGE, t->triangles, fresh);
+    PUSH(t->context, STAGE, t->triangles, fresh);
     for (int k = 0; k < 3; k++)
         t->triangle_of[fresh.corners[k]] = number;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the hull ---- */
@@ -161,10 +155,9 @@ static void link_hull(triangulator *t, uint32_t a, uint32_t b, uint32_t triangle
 
 /* The first sites are collinear: makes a fan around the first site off their line. */
 static starg_status start_hull(triangulator *t, uint32_t apex) {
-    starg_status status = STARG_OK;
     bool left = turn(t, 0, 1, apex) > 0;
     for (uint32_t i = 0; i + 1 < apex; i++) {
-        STARG_TRY(add_triangle(t, left ? i : i + 1, left ? i + 1 : i, apex));
+        TRY(add_triangle(t, left ? i : i + 1, left ? i + 1 : i, apex));
         /* edges: along the line, then to the apex and from it */
         if (i > 0)
             join(t, i, left ? 2 : 1, i - 1, left ? 1 : 2);
@@ -176,13 +169,11 @@ static starg_status start_hull(triangulator *t, uint32_t apex) {
     uint32_t last = apex - 2;
     link_hull(t, left ? apex - 1 : apex, left ? apex : apex - 1, last, left ? 1 : 2);
     link_hull(t, left ? apex : 0, left ? 0 : apex, 0, left ? 2 : 1);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Joins a new site to the hull edges that it sees; they are adjacent to the last site inserted. */
 static starg_status extend_hull(triangulator *t, uint32_t fresh) {
-    starg_status status = STARG_OK;
     uint32_t from = fresh - 1, to = fresh - 1, first = (uint32_t)t->triangles->count;
     while (turn(t, t->before[from], from, fresh) < 0)
         from = t->before[from];
@@ -190,34 +181,31 @@ static starg_status extend_hull(triangulator *t, uint32_t fresh) {
         to = t->next[to];
     for (uint32_t s = from; s != to; s = t->next[s]) {
         uint32_t number = (uint32_t)t->triangles->count;
-        STARG_TRY(add_triangle(t, t->next[s], s, fresh));
+        TRY(add_triangle(t, t->next[s], s, fresh));
         join(t, number, 0, t->outer[s] / 4, (int)(t->outer[s] % 4));
         if (number > first)
             join(t, number, 1, number - 1, 2);
     }
     link_hull(t, from, fresh, first, 1);
     link_hull(t, fresh, to, (uint32_t)t->triangles->count - 1, 2);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status triangulate_sites(triangulator *t) {
-    starg_status status = STARG_OK;
     uint32_t count = (uint32_t)t->sites.count, apex = 2;
-    STARG_NEW(t->context, STAGE, t->next, count);
-    STARG_NEW(t->context, STAGE, t->before, count);
-    STARG_NEW(t->context, STAGE, t->outer, count);
-    STARG_NEW(t->context, STAGE, t->triangle_of, count);
+    NEW(t->context, STAGE, t->next, count);
+    NEW(t->context, STAGE, t->before, count);
+    NEW(t->context, STAGE, t->outer, count);
+    NEW(t->context, STAGE, t->triangle_of, count);
     while (apex < count && turn(t, 0, 1, apex) == 0)
         apex++;
     if (apex >= count)
-        goto done;
-    STARG_TRY(start_hull(t, apex));
+        return STARG_OK;
+    TRY(start_hull(t, apex));
     for (uint32_t s = apex + 1; s < count; s++)
-        STARG_TRY(extend_hull(t, s));
+        TRY(extend_hull(t, s));
     t->flips_left = (uint64_t)FLIPS_EACH * t->triangles->count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- flips ---- */
@@ -287,18 +275,15 @@ static bool is_obtuse(const triangulator *t, uint32_t a, uint32_t b, uint32_t c,
 }
 
 static starg_status push_edges(triangulator *t, uint32_t number) {
-    starg_status status = STARG_OK;
     for (uint32_t k = 0; k < 3; k++)
-        STARG_PUSH(t->context, STAGE, &t->stack, 4 * number + k);
-done:
-    return status;
+        PUSH(t->context, STAGE, &t->stack, 4 * number + k);
+    return STARG_OK;
 }
 
 static starg_status make_delaunay(triangulator *t) {
-    starg_status status = STARG_OK;
     t->stack.count = 0;
     for (uint32_t i = 0; i < t->triangles->count; i++)
-        STARG_TRY(push_edges(t, i));
+        TRY(push_edges(t, i));
     while (t->stack.count > 0 && t->flips_left > 0) {
         uint32_t entry = t->stack.data[--t->stack.count], number = entry / 4;
         int edge = (int)(entry % 4);
@@ -310,11 +295,10 @@ static starg_status make_delaunay(triangulator *t) {
             !flip(t, number, edge))
             continue;
         t->flips_left--;
-        STARG_TRY(push_edges(t, number));
-        STARG_TRY(push_edges(t, other));
+        TRY(push_edges(t, number));
+        TRY(push_edges(t, other));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- edges of the graph ---- */
@@ -370,12 +354,11 @@ static uint32_t find_way(const triangulator *t, uint32_t a, uint32_t b) {
 /* Lists the edges that cross segment a b. *clear is false when one of them belongs to the graph, or
  * a vertex lies on the segment. */
 static starg_status list_crossed(triangulator *t, uint32_t a, uint32_t b, bool *clear) {
-    starg_status status = STARG_OK;
     uint32_t number = find_way(t, a, b);
     t->crossed.count = 0;
     *clear = number != NONE;
     if (!*clear)
-        goto done;
+        return STARG_OK;
     int edge = (edge_from(at(t, number), a) + 1) % 3;
     for (;;) {
         const constrained_triangle *it = at(t, number);
@@ -383,8 +366,8 @@ static starg_status list_crossed(triangulator *t, uint32_t a, uint32_t b, bool *
         *clear = !it->fixed[edge] && it->beyond[edge] != NONE;
         if (!*clear)
             break;
-        STARG_PUSH(t->context, STAGE, &t->crossed, right);
-        STARG_PUSH(t->context, STAGE, &t->crossed, left);
+        PUSH(t->context, STAGE, &t->crossed, right);
+        PUSH(t->context, STAGE, &t->crossed, left);
         uint32_t far = opposite(t, it, edge);
         number = it->beyond[edge];
         int sign = far == b ? 0 : turn(t, a, b, far);
@@ -395,8 +378,7 @@ static starg_status list_crossed(triangulator *t, uint32_t a, uint32_t b, bool *
         /* continue through the edge whose endpoints lie on opposite sides of the segment */
         edge = edge_from(at(t, number), sign > 0 ? right : far);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_between(const triangulator *t, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
@@ -405,8 +387,7 @@ static bool is_between(const triangulator *t, uint32_t a, uint32_t b, uint32_t c
 
 /* Flips crossing edges until none is left. Some edge can always be flipped; the others wait. */
 static starg_status clear_way(triangulator *t, uint32_t a, uint32_t b, bool *done) {
-    starg_status status = STARG_OK;
-    STARG_TRY(list_crossed(t, a, b, done));
+    TRY(list_crossed(t, a, b, done));
     size_t waiting = 0;
     for (size_t i = 0; *done && i < t->crossed.count; i += 2) {
         uint32_t c = t->crossed.data[i], d = t->crossed.data[i + 1];
@@ -426,11 +407,10 @@ static starg_status clear_way(triangulator *t, uint32_t a, uint32_t b, bool *don
         } else {
             waiting += 2;
         }
-        STARG_PUSH(t->context, STAGE, &t->crossed, c);
-        STARG_PUSH(t->context, STAGE, &t->crossed, d);
+        PUSH(t->context, STAGE, &t->crossed, c);
+        PUSH(t->context, STAGE, &t->crossed, d);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void fix(const triangulator *t, uint32_t a, uint32_t b, int32_t turns) {
@@ -444,17 +424,15 @@ static void fix(const triangulator *t, uint32_t a, uint32_t b, int32_t turns) {
 }
 
 static starg_status add_edge(triangulator *t, const constrained_edge *edge, bool *done) {
-    starg_status status = STARG_OK;
     uint32_t a = site_of(t, edge->from), b = site_of(t, edge->to);
     *done = a != b;
     if (*done && find_edge(t, a, b) == NONE && find_edge(t, b, a) == NONE)
-        STARG_TRY(clear_way(t, a, b, done));
+        TRY(clear_way(t, a, b, done));
     if (!*done)
-        goto done;
+        return STARG_OK;
     fix(t, a, b, edge->turns);
     fix(t, b, a, -edge->turns);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* All vertices are collinear: the graph may have edges, but no interior. */
@@ -467,14 +445,12 @@ static bool is_flat_graph(const constrained_edge *edges, size_t count) {
 
 static starg_status add_edges(triangulator *t, const constrained_edge *edges, size_t count,
                               bool *done) {
-    starg_status status = STARG_OK;
-    STARG_TRY(make_delaunay(t));
+    TRY(make_delaunay(t));
     for (size_t i = 0; *done && i < count; i++)
-        STARG_TRY(add_edge(t, &edges[i], done));
+        TRY(add_edge(t, &edges[i], done));
     if (*done)
-        STARG_TRY(make_delaunay(t));
-done:
-    return status;
+        TRY(make_delaunay(t));
+    return STARG_OK;
 }
 
 starg_status constrained_triangulate(starg_context *context, const double *points, int u, int v,
@@ -498,13 +474,7 @@ starg_status constrained_triangulate(starg_context *context, const double *point
         *corner = t.sites.data[*corner].vertex;
     }
 done:
-    STARG_ARRAY_FREE(context, &t.sites);
-    STARG_ARRAY_FREE(context, &t.stack);
-    STARG_ARRAY_FREE(context, &t.crossed);
-    starg_release(context, t.by_vertex);
-    starg_release(context, t.next);
-    starg_release(context, t.before);
-    starg_release(context, t.outer);
-    starg_release(context, t.triangle_of);
+    RELEASE(t.sites.data, t.stack.data, t.crossed.data, t.by_vertex, t.next, t.before, t.outer,
+            t.triangle_of);
     return status;
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Constrained triangulation of a planar straight-line graph. */
-#ifndef STARG_GEOMETRY_CONSTRAINED_H
-#define STARG_GEOMETRY_CONSTRAINED_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "core/context.h"
 #include "core/memory.h"
 
 /* Marks the outside of a hull edge. */
@@ -38,5 +32,3 @@ starg_status constrained_triangulate(starg_context *context, const double *point
                                      const constrained_edge *edges, size_t edge_count,
                                      const uint32_t *loose, size_t loose_count,
                                      constrained_triangles *out, bool *done);
-
-#endif

@@ -16,7 +16,6 @@
 
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "core/rng.h"
 #include "geometry/predicates.h"
 
@@ -195,25 +194,22 @@ static bool is_corner(const builder *b, const cell *c, const double p[3]) {
 }
 
 static starg_status new_cell(builder *b, uint32_t *index) {
-    starg_status status = STARG_OK;
     if (b->free_cells != NOWHERE) {
         *index = b->free_cells;
         b->free_cells = b->cells.data[*index].next_free;
         return STARG_OK;
     }
     *index = (uint32_t)b->cells.count;
-    STARG_PUSH(b->context, "delaunay", &b->cells, ((cell){.mark = 0}));
-done:
-    return status;
+    PUSH(b->context, "delaunay", &b->cells, ((cell){.mark = 0}));
+    return STARG_OK;
 }
 
 /* Collects the cells in conflict with p, starting from `start`, and their border faces. */
 static starg_status find_zone(builder *b, uint32_t start, const double p[3]) {
-    starg_status status = STARG_OK;
     b->stamp += 2;
     b->zone.count = b->border.count = 0;
     b->cells.data[start].mark = b->stamp + 1;
-    STARG_PUSH(b->context, "delaunay", &b->zone, start);
+    PUSH(b->context, "delaunay", &b->zone, start);
     for (size_t i = 0; i < b->zone.count; i++) {
         uint32_t at = b->zone.data[i];
         for (uint32_t k = 0; k < 4; k++) {
@@ -223,14 +219,13 @@ static starg_status find_zone(builder *b, uint32_t start, const double p[3]) {
                 bool conflict = in_conflict(b, c, p);
                 c->mark = b->stamp + conflict;
                 if (conflict)
-                    STARG_PUSH(b->context, "delaunay", &b->zone, other);
+                    PUSH(b->context, "delaunay", &b->zone, other);
             }
             if (b->cells.data[other].mark == b->stamp)
-                STARG_PUSH(b->context, "delaunay", &b->border, ((border_face){at, k}));
+                PUSH(b->context, "delaunay", &b->border, ((border_face){at, k}));
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static uint64_t edge_key(uint32_t u, uint32_t v) {
@@ -239,7 +234,6 @@ static uint64_t edge_key(uint32_t u, uint32_t v) {
 
 /* Three edges per two border faces fill the table at most half. */
 static starg_status reserve_edges(builder *b) {
-    starg_status status = STARG_OK;
     size_t wanted = 4 * b->border.count;
     if (wanted <= b->edge_capacity)
         return STARG_OK;
@@ -249,10 +243,9 @@ static starg_status reserve_edges(builder *b) {
     starg_release(b->context, b->edges);
     b->edges = NULL;
     b->edge_capacity = 0;
-    STARG_NEW_ZERO(b->context, "delaunay", b->edges, capacity);
+    NEW_ZERO(b->context, "delaunay", b->edges, capacity);
     b->edge_capacity = capacity;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Joins face `side` of `index` with the new cell that has the same border edge, once it exists. */
@@ -283,9 +276,7 @@ static void note_change(builder *b, const uint32_t vertex[4], uint32_t index) {
 /* Makes the new cell on a border face: the old cell with its corner in the zone replaced by p. */
 static starg_status fill_face(builder *b, border_face face, uint32_t vertex) {
     uint32_t index;
-    starg_status status = new_cell(b, &index);
-    if (status != STARG_OK)
-        return status;
+    TRY(new_cell(b, &index));
     cell *c = &b->cells.data[index];
     const cell *old = &b->cells.data[face.cell];
     uint32_t outside = old->neighbour[face.side];
@@ -312,23 +303,21 @@ static starg_status fill_face(builder *b, border_face face, uint32_t vertex) {
 }
 
 static starg_status insert(builder *b, uint32_t vertex) {
-    starg_status status = STARG_OK;
     const double *p = point(b, vertex);
     uint32_t start = locate(b, p);
     if (is_corner(b, &b->cells.data[start], p))
         return STARG_OK;
-    STARG_TRY(find_zone(b, start, p));
-    STARG_TRY(reserve_edges(b));
+    TRY(find_zone(b, start, p));
+    TRY(reserve_edges(b));
     for (size_t i = 0; i < b->border.count; i++)
-        STARG_TRY(fill_face(b, b->border.data[i], vertex));
+        TRY(fill_face(b, b->border.data[i], vertex));
     for (size_t i = 0; i < b->zone.count; i++) {
         cell *c = &b->cells.data[b->zone.data[i]];
         c->vertex[0] = c->vertex[1] = NOWHERE; /* two ghosts: no cell */
         c->next_free = b->free_cells;
         b->free_cells = b->zone.data[i];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Finds four points, early in the order, that span a tetrahedron, and moves them to the front. */
@@ -364,9 +353,7 @@ static starg_status make_first(builder *b, const sort_key *order) {
         v[1] = swap;
     }
     for (int i = 0; i < 5; i++) {
-        starg_status status = new_cell(b, &index);
-        if (status != STARG_OK)
-            return status;
+        TRY(new_cell(b, &index));
     }
     cell *first = b->cells.data;
     memcpy(first->vertex, v, sizeof v);
@@ -418,10 +405,9 @@ static size_t number_cells(builder *b) {
 }
 
 static starg_status collect(builder *b, delaunay *result) {
-    starg_status status = STARG_OK;
     size_t count = number_cells(b);
-    STARG_NEW(b->context, "delaunay", result->tetrahedra, count);
-    STARG_NEW(b->context, "delaunay", result->neighbours, count);
+    NEW(b->context, "delaunay", result->tetrahedra, count);
+    NEW(b->context, "delaunay", result->neighbours, count);
     result->count = count;
     for (size_t i = 0; i < b->cells.count; i++) {
         const cell *c = &b->cells.data[i];
@@ -431,8 +417,7 @@ static starg_status collect(builder *b, delaunay *result) {
         for (int k = 0; k < 4; k++)
             result->neighbours[c->mark][k] = b->cells.data[c->neighbour[k]].mark;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Makes room for the data of each point. */
@@ -456,51 +441,43 @@ static starg_status reserve_points(builder *b, size_t count) {
 
 /* While all points are coplanar there are no cells; skipped points are never inserted. */
 starg_status delaunay_extend(delaunay_builder *b, const double *points, size_t count) {
-    starg_status status = STARG_OK;
-    sort_key *order = NULL;
+    SCOPED sort_key *order = NULL;
     size_t added = count - b->count, first = 0;
     b->points = points;
     b->star_of = NOWHERE;
-    STARG_TRY(reserve_points(b, count));
-    STARG_NEW(b->context, "delaunay", order, added);
+    TRY(reserve_points(b, count));
+    NEW(b->context, "delaunay", order, added);
     if (added > 0)
         order_points(points, b->count, added, b->context->seed, order);
     b->count = count;
     if (b->cells.count == 0) {
         if (!find_first_four(b, order, added))
-            goto done;
-        STARG_TRY(make_first(b, order));
+            return STARG_OK;
+        TRY(make_first(b, order));
         first = 4;
     }
-    STARG_TRY(insert_all(b, order, first, added));
-done:
-    starg_release(b->context, order);
-    return status;
+    return insert_all(b, order, first, added);
 }
 
 starg_status delaunay_begin(starg_context *context, const double *points, size_t count,
                             delaunay_builder **out) {
-    starg_status status = STARG_OK;
-    builder *b = NULL;
+    SCOPED_BY(delaunay_builder_drop) builder *b = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, "delaunay", b, 1);
+    NEW_ZERO(context, "delaunay", b, 1);
     b->context = context;
     b->free_cells = NOWHERE;
     b->rng = starg_rng_make(context->seed, 0xde1b, 0);
-    STARG_TRY(delaunay_extend(b, points, count));
+    TRY(delaunay_extend(b, points, count));
     *out = b;
     b = NULL;
-done:
-    delaunay_builder_free(b);
-    return status;
+    return STARG_OK;
 }
 
 starg_status delaunay_copy(const delaunay_builder *b, delaunay_builder **out) {
-    starg_status status = STARG_OK;
     starg_context *context = b->context;
-    builder *copy = NULL;
+    SCOPED_BY(delaunay_builder_drop) builder *copy = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, "delaunay", copy, 1);
+    NEW_ZERO(context, "delaunay", copy, 1);
     *copy = (builder){.context = context,
                       .count = b->count,
                       .free_cells = b->free_cells,
@@ -508,9 +485,9 @@ starg_status delaunay_copy(const delaunay_builder *b, delaunay_builder **out) {
                       .stamp = b->stamp,
                       .rng = b->rng,
                       .star_of = NOWHERE};
-    STARG_NEW(context, "delaunay", copy->incident, b->count);
-    STARG_NEW(context, "delaunay", copy->changed, b->count);
-    STARG_NEW(context, "delaunay", copy->cells.data, b->cells.capacity);
+    NEW(context, "delaunay", copy->incident, b->count);
+    NEW(context, "delaunay", copy->changed, b->count);
+    NEW(context, "delaunay", copy->cells.data, b->cells.capacity);
     copy->cells.count = b->cells.count;
     copy->cells.capacity = b->cells.capacity;
     if (b->count > 0) {
@@ -521,23 +498,14 @@ starg_status delaunay_copy(const delaunay_builder *b, delaunay_builder **out) {
         memcpy(copy->cells.data, b->cells.data, b->cells.count * sizeof *b->cells.data);
     *out = copy;
     copy = NULL;
-done:
-    delaunay_builder_free(copy);
-    return status;
+    return STARG_OK;
 }
 
 void delaunay_builder_free(delaunay_builder *b) {
     if (b == NULL)
         return;
-    STARG_ARRAY_FREE(b->context, &b->cells);
-    STARG_ARRAY_FREE(b->context, &b->zone);
-    STARG_ARRAY_FREE(b->context, &b->border);
-    STARG_ARRAY_FREE(b->context, &b->star);
-    starg_release(b->context, b->edges);
-    starg_release(b->context, b->incident);
-    starg_release(b->context, b->changed);
-    starg_release(b->context, b->corners);
-    starg_release(b->context, b);
+    RELEASE(b->cells.data, b->zone.data, b->border.data, b->star.data, b->edges, b->incident,
+            b->changed, b->corners, b);
 }
 
 bool delaunay_has_changed(const delaunay_builder *b, uint32_t point_index) {
@@ -567,7 +535,6 @@ static starg_status reserve_corners(builder *b) {
 
 /* Appends the other corners of a cell at a vertex, and adds its neighbours there to the star. */
 static starg_status leave_by_faces(builder *b, uint32_t index, uint32_t vertex) {
-    starg_status status = STARG_OK;
     const cell *c = &b->cells.data[index];
     uint32_t *out = b->corners[b->star_count];
     bool ghost = false;
@@ -580,28 +547,25 @@ static starg_status leave_by_faces(builder *b, uint32_t index, uint32_t vertex) 
         if (next->mark == b->stamp)
             continue;
         next->mark = b->stamp;
-        STARG_PUSH(b->context, "delaunay", &b->star, c->neighbour[k]);
+        PUSH(b->context, "delaunay", &b->star, c->neighbour[k]);
     }
     b->star_count += !ghost;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Collects all cells at a vertex, ghosts included, by walking across the faces at the vertex. */
 static starg_status find_star(builder *b, uint32_t vertex) {
-    starg_status status = STARG_OK;
     b->star.count = b->star_count = 0;
     b->stamp += 2;
     if (b->incident[vertex] == NOWHERE)
         return STARG_OK;
     b->cells.data[b->incident[vertex]].mark = b->stamp;
-    STARG_PUSH(b->context, "delaunay", &b->star, b->incident[vertex]);
+    PUSH(b->context, "delaunay", &b->star, b->incident[vertex]);
     for (size_t i = 0; i < b->star.count; i++) {
-        STARG_TRY(reserve_corners(b));
-        STARG_TRY(leave_by_faces(b, b->star.data[i], vertex));
+        TRY(reserve_corners(b));
+        TRY(leave_by_faces(b, b->star.data[i], vertex));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status delaunay_star(delaunay_builder *b, uint32_t point_index, uint32_t (**corners)[3],
@@ -619,35 +583,26 @@ done:
 }
 
 starg_status delaunay_finish(delaunay_builder *b, delaunay **out) {
-    starg_status status = STARG_OK;
-    delaunay *result = NULL;
+    SCOPED_BY(delaunay_drop) delaunay *result = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(b->context, "delaunay", result, 1);
+    NEW_ZERO(b->context, "delaunay", result, 1);
     result->context = b->context;
-    STARG_TRY(collect(b, result));
+    TRY(collect(b, result));
     *out = result;
     result = NULL;
-done:
-    delaunay_free(result);
-    return status;
+    return STARG_OK;
 }
 
 starg_status delaunay_create(starg_context *context, const double *points, size_t count,
                              delaunay **out) {
-    starg_status status = STARG_OK;
-    delaunay_builder *b = NULL;
+    SCOPED_BY(delaunay_builder_drop) delaunay_builder *b = NULL;
     *out = NULL;
-    STARG_TRY(delaunay_begin(context, points, count, &b));
-    STARG_TRY(delaunay_finish(b, out));
-done:
-    delaunay_builder_free(b);
-    return status;
+    TRY(delaunay_begin(context, points, count, &b));
+    return delaunay_finish(b, out);
 }
 
 void delaunay_free(delaunay *tetrahedra) {
     if (tetrahedra == NULL)
         return;
-    starg_release(tetrahedra->context, tetrahedra->tetrahedra);
-    starg_release(tetrahedra->context, tetrahedra->neighbours);
-    starg_release(tetrahedra->context, tetrahedra);
+    RELEASE(tetrahedra->tetrahedra, tetrahedra->neighbours, tetrahedra);
 }

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Delaunay tetrahedra of a set of points. */
-#ifndef STARG_GEOMETRY_DELAUNAY_H
-#define STARG_GEOMETRY_DELAUNAY_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "core/context.h"
+#include "core/memory.h"
 
 typedef struct delaunay {
     starg_context *context;
@@ -24,6 +19,7 @@ typedef struct delaunay {
 starg_status delaunay_create(starg_context *context, const double *points, size_t count,
                              delaunay **out);
 void delaunay_free(delaunay *tetrahedra);
+STARG_DROP(delaunay, delaunay)
 
 /* Same in steps, for callers that inspect the tetrahedra and add points. */
 typedef struct delaunay_builder delaunay_builder;
@@ -52,5 +48,4 @@ starg_status delaunay_copy(const delaunay_builder *builder, delaunay_builder **o
 /* Copies the tetrahedra out; do not extend the builder afterwards. */
 starg_status delaunay_finish(delaunay_builder *builder, delaunay **out);
 void delaunay_builder_free(delaunay_builder *builder);
-
-#endif
+STARG_DROP(delaunay_builder, delaunay_builder)

@@ -5,8 +5,7 @@
  * power (exact_scale) and evaluates its polynomial in integers: no overflow, no underflow, no
  * tolerance. Common trailing zero bits are divided out, so that lattice-like coordinates stay
  * short. Lives on the stack; allocates nothing. */
-#ifndef STARG_GEOMETRY_EXACT_H
-#define STARG_GEOMETRY_EXACT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -41,5 +40,3 @@ void exact_multiply(exact *out, const exact *a, const exact *b);
 void exact_minor(exact *out, const exact *a, const exact *b, const exact *c, const exact *d);
 /* out = determinant of three rows, expanded along the third column as in the filters. */
 void exact_determinant(exact *out, const exact a[3], const exact b[3], const exact c[3]);
-
-#endif

@@ -3,7 +3,6 @@
  * coordinates, rounding by long division. Cost: 0.1-2 us where the filter does not decide. */
 #include "geometry/exact_points.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "core/rng.h"
@@ -251,9 +250,7 @@ int exact_side(const exact_plane *plane, const exact_point *point) {
 /* ---- a set of points ---- */
 
 void exact_points_free(exact_points *set) {
-    STARG_ARRAY_FREE(set->context, &set->points);
-    STARG_ARRAY_FREE(set->context, &set->limbs);
-    starg_release(set->context, set->slots);
+    RELEASE(set->points.data, set->limbs.data, set->slots);
 }
 
 static void load(const exact_points *set, uint32_t number, int k, exact *out) {
@@ -306,10 +303,9 @@ static size_t home_slot(const double rounded[3], size_t slot_count) {
 }
 
 static starg_status grow_slots(exact_points *set) {
-    starg_status status = STARG_OK;
     size_t count = set->slot_count ? 2 * set->slot_count : FIRST_SLOTS;
     uint32_t *slots;
-    STARG_NEW_ZERO(set->context, STAGE, slots, count);
+    NEW_ZERO(set->context, STAGE, slots, count);
     for (uint32_t i = 0; i < set->points.count; i++) {
         size_t slot = home_slot(exact_points_rounded(set, i), count);
         while (slots[slot] != 0)
@@ -319,14 +315,12 @@ static starg_status grow_slots(exact_points *set) {
     starg_release(set->context, set->slots);
     set->slots = slots;
     set->slot_count = count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status exact_points_add(exact_points *set, const exact_point *point, uint32_t *number) {
-    starg_status status = STARG_OK;
     if (2 * (set->points.count + 1) > set->slot_count)
-        STARG_TRY(grow_slots(set));
+        TRY(grow_slots(set));
     size_t slot = home_slot(point->rounded, set->slot_count);
     for (; set->slots[slot] != 0; slot = (slot + 1) & (set->slot_count - 1)) {
         *number = set->slots[slot] - 1;
@@ -338,13 +332,12 @@ starg_status exact_points_add(exact_points *set, const exact_point *point, uint3
     for (int k = 0; k < 4; k++) {
         entry.count[k] = (int16_t)(point->x[k].sign * point->x[k].count);
         for (int i = 0; i < point->x[k].count; i++)
-            STARG_PUSH(set->context, STAGE, &set->limbs, point->x[k].limb[i]);
+            PUSH(set->context, STAGE, &set->limbs, point->x[k].limb[i]);
     }
     *number = (uint32_t)set->points.count;
-    STARG_PUSH(set->context, STAGE, &set->points, entry);
+    PUSH(set->context, STAGE, &set->points, entry);
     set->slots[slot] = *number + 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 int exact_points_turn(const exact_points *set, uint32_t a, uint32_t b, uint32_t c, int u, int v) {

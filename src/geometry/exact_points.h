@@ -11,8 +11,7 @@
  * degree 1 in the coordinates, the intersection of a line and a plane degree 4 / 3, that of three
  * planes 7 / 6, and the largest sign needed has degree 21. Coordinates of up to EXACT_POINT_BITS
  * bits fit. */
-#ifndef STARG_GEOMETRY_EXACT_POINTS_H
-#define STARG_GEOMETRY_EXACT_POINTS_H
+#pragma once
 
 #include "core/memory.h"
 #include "geometry/exact.h"
@@ -82,5 +81,3 @@ static inline const double *exact_points_rounded(const exact_points *set, uint32
 int exact_points_turn(const exact_points *set, uint32_t a, uint32_t b, uint32_t c, int u, int v);
 /* Sign of the difference a - b of coordinate k. */
 int exact_points_compare(const exact_points *set, uint32_t a, uint32_t b, int k);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Intersections of segments, triangles and points; all degenerate cases are decided exactly. */
-#ifndef STARG_GEOMETRY_INTERSECT_H
-#define STARG_GEOMETRY_INTERSECT_H
+#pragma once
 
 #include "core/private.h"
 
@@ -32,5 +31,3 @@ typedef enum triangle_contact {
  * vertices. Without shared corners, triangles without area are decided correctly too; with them the
  * result may be wrong. */
 triangle_contact triangles_contact(const double *const s[3], const double *const t[3], int shared);
-
-#endif

@@ -61,14 +61,12 @@ static void build(const kd_tree *tree, size_t low, size_t high, int axis) {
 
 starg_status kd_tree_create(starg_context *context, const double *points, size_t count,
                             int dimension, kd_tree *out) {
-    starg_status status = STARG_OK;
     *out = (kd_tree){.points = points, .count = count, .dimension = dimension};
-    STARG_NEW(context, "k-d tree", out->order, count);
+    NEW(context, "k-d tree", out->order, count);
     for (size_t i = 0; i < count; i++)
         out->order[i] = (uint32_t)i;
     build(out, 0, count, 0);
-done:
-    return status;
+    return STARG_OK;
 }
 
 void kd_tree_free(starg_context *context, kd_tree *tree) {

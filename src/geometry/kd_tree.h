@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* k-d tree for nearest neighbours, up to four coordinates. */
-#ifndef STARG_GEOMETRY_KD_TREE_H
-#define STARG_GEOMETRY_KD_TREE_H
-
-#include <stddef.h>
-#include <stdint.h>
+#pragma once
 
 #include "core/context.h"
-#include "core/private.h"
 
 enum { KD_TREE_MOST_DIMENSIONS = 4 };
 
@@ -27,5 +22,3 @@ void kd_tree_free(starg_context *context, kd_tree *tree) STARG_PRIVATE(kd_tree_f
  * distance. The tree must not be empty. */
 size_t kd_tree_nearest(const kd_tree *tree, const double *p, double *squared)
     STARG_PRIVATE(kd_tree_nearest);
-
-#endif

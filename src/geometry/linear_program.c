@@ -23,7 +23,6 @@
  * Cost: expected O(d! n); O(n) if `start` is right. */
 #include "geometry/linear_program.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/rng.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Small linear programs, and questions about half-spaces that they answer. */
-#ifndef STARG_GEOMETRY_LINEAR_PROGRAM_H
-#define STARG_GEOMETRY_LINEAR_PROGRAM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -93,5 +92,3 @@ bool largest_ball_add(largest_ball *ball, const double normal[3], double offset,
 void largest_ball_move(largest_ball *ball, int place, double offset, uint32_t name);
 
 #define LARGEST_BALL_DISTANCE 4.0
-
-#endif

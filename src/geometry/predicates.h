@@ -5,8 +5,7 @@
  * finite doubles below 1e100 in magnitude, subnormal ones included. A floating-point filter with a
  * proven error bound comes first [She97]; multi-limb integers (geometry/exact.h) decide the rest.
  * Pure functions; any thread. */
-#ifndef STARG_GEOMETRY_PREDICATES_H
-#define STARG_GEOMETRY_PREDICATES_H
+#pragma once
 
 #include "core/private.h"
 
@@ -56,5 +55,3 @@ bool stays_positive(const double *const from[4], const double *const to[4])
 
 /* True when a, b, c lie on one line (or coincide). */
 bool collinear(const double a[3], const double b[3], const double c[3]);
-
-#endif

@@ -18,7 +18,6 @@
 
 #include <math.h>
 
-#include "core/memory.h"
 #include "core/versions.h"
 
 enum { WIDTH = 8, LEAF = 4, MOST_STACK = 8 * 64 };
@@ -92,11 +91,10 @@ static void build(sight_tree *out, size_t at, const bvh_node *root) {
 
 starg_status sight_tree_create(starg_context *context, const bvh *tree, const bvh_box *all,
                                sight_tree **out) {
-    starg_status status = STARG_OK;
-    sight_tree *made = NULL;
+    SCOPED_BY(sight_tree_drop) sight_tree *made = NULL;
     double extent = 0;
     *out = NULL;
-    STARG_NEW_ZERO(context, "bvh", made, 1);
+    NEW_ZERO(context, "bvh", made, 1);
     made->context = context;
     made->tree = tree;
     for (int k = 0; k < 3; k++) {
@@ -105,21 +103,18 @@ starg_status sight_tree_create(starg_context *context, const bvh *tree, const bv
     }
     made->scale = 1 / extent;
     /* each node but the root replaces at least one inner node of the binary tree */
-    STARG_NEW(context, "bvh", made->nodes, tree->node_count / 2 + 1);
+    NEW(context, "bvh", made->nodes, tree->node_count / 2 + 1);
     made->node_count = 1;
     build(made, 0, &tree->nodes[0]);
     *out = made;
     made = NULL;
-done:
-    sight_tree_free(made);
-    return status;
+    return STARG_OK;
 }
 
 void sight_tree_free(sight_tree *tree) {
     if (tree == NULL)
         return;
-    starg_release(tree->context, tree->nodes);
-    starg_release(tree->context, tree);
+    RELEASE(tree->nodes, tree);
 }
 
 typedef struct ray {

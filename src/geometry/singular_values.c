@@ -5,8 +5,6 @@
  * whose largest value it is, where rounding spoils it less. */
 #include "geometry/singular_values.h"
 
-#include <math.h>
-
 #include "geometry/vec3.h"
 
 enum { SWEEPS = 12 };

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* How a linear map stretches space. */
-#ifndef STARG_GEOMETRY_SINGULAR_VALUES_H
-#define STARG_GEOMETRY_SINGULAR_VALUES_H
+#pragma once
 
 #include "core/private.h"
 
@@ -9,5 +8,3 @@
  * `to`: from[i] and to[i] are vectors, and det(from) is not 0. Rounded. */
 void singular_values(double from[3][3], double to[3][3], double out[3])
     STARG_PRIVATE(singular_values);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Vectors of three doubles. They decide no signs: see predicates.h. */
-#ifndef STARG_GEOMETRY_VEC3_H
-#define STARG_GEOMETRY_VEC3_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -77,5 +76,3 @@ static inline double vec3_triangle_area(const double a[3], const double b[3], co
     vec3_triangle_normal(a, b, c, n);
     return 0.5 * vec3_length(n);
 }
-
-#endif

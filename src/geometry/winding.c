@@ -11,9 +11,6 @@
  * Cost: O(n) to build, O(log n) per point. */
 #include "geometry/bvh.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "winding";
@@ -110,12 +107,12 @@ starg_status winding_create(starg_context *context, const bvh *tree, winding_fie
 done:
     starg_release(context, weights);
     if (status != STARG_OK)
-        winding_free(context, out);
+        winding_free(out);
     return status;
 }
 
-void winding_free(starg_context *context, winding_field *field) {
-    starg_release(context, field->moments);
+void winding_free(winding_field *field) {
+    RELEASE(field->moments);
     field->moments = NULL;
 }
 

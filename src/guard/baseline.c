@@ -33,15 +33,15 @@ typedef struct pairing {
     uint8_t *chosen;               /* by candidate: is it a guard? */
 } pairing;
 
-bool baseline_holds(const starg_mesh *mesh, size_t face, double cosine, const double p[3],
+bool baseline_holds(const starg_solid *solid, size_t patch, double cosine, const double p[3],
                     const double q[3]) {
-    const uint32_t *c = mesh->faces + 3 * face;
-    return compare_parallax(mesh->vertices + 3 * (size_t)c[0], mesh->vertices + 3 * (size_t)c[1],
-                            mesh->vertices + 3 * (size_t)c[2], p, q, cosine) <= 0;
+    return compare_parallax(solid_patch_corner(solid, patch, 0),
+                            solid_patch_corner(solid, patch, 1),
+                            solid_patch_corner(solid, patch, 2), p, q, cosine) <= 0;
 }
 
 static bool pairs(const pairing *own, size_t face, uint32_t a, uint32_t b) {
-    return baseline_holds(own->pool->solid->mesh, face, own->cosine, pool_point(own->pool, a),
+    return baseline_holds(own->pool->solid, face, own->cosine, pool_point(own->pool, a),
                           pool_point(own->pool, b));
 }
 
@@ -73,22 +73,18 @@ static bool is_paired(const pairing *own, size_t face, uint32_t without) {
 /* ---- adding guards ---- */
 
 static starg_status list_lacking(pairing *own) {
-    starg_status status = STARG_OK;
     for (size_t f = 0; f < own->pool->columns; f++)
         if (starg_bit_test(own->pool->coverable, f) && !is_paired(own, f, UINT32_MAX))
-            STARG_PUSH(own->problem->context, STAGE, &own->lacking, (uint32_t)f);
-done:
-    return status;
+            PUSH(own->problem->context, STAGE, &own->lacking, (uint32_t)f);
+    return STARG_OK;
 }
 
 static starg_status join(pairing *own, uint32_t candidate) {
-    starg_status status = STARG_OK;
     starg_context *context = own->problem->context;
-    STARG_PUSH(context, STAGE, &own->selection->chosen, candidate);
-    STARG_PUSH(context, STAGE, &own->selection->levels, own->selection->level);
+    PUSH(context, STAGE, &own->selection->chosen, candidate);
+    PUSH(context, STAGE, &own->selection->levels, own->selection->level);
     own->chosen[candidate] = 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static size_t step_of(const pairing *own) {
@@ -124,12 +120,11 @@ static bool find_pair(const pairing *own, size_t face, uint32_t pair[2]) {
 
 /* Adds two candidates for the first face that some two pair; gives up the faces before it. */
 static starg_status join_pair(pairing *own) {
-    starg_status status = STARG_OK;
     uint32_t pair[2];
     size_t given_up = 0;
     bool found = false;
     while (given_up < own->lacking.count && !found) {
-        STARG_TRY(starg_check_cancel(own->problem->context, STAGE));
+        TRY(starg_check_cancel(own->problem->context, STAGE));
         found = find_pair(own, own->lacking.data[given_up++], pair);
     }
     own->lacking.count -= given_up;
@@ -137,9 +132,8 @@ static starg_status join_pair(pairing *own) {
             own->lacking.count * sizeof *own->lacking.data);
     for (int i = 0; found && i < 2; i++)
         if (!own->chosen[pair[i]])
-            STARG_TRY(join(own, pair[i]));
-done:
-    return status;
+            TRY(join(own, pair[i]));
+    return STARG_OK;
 }
 
 static void drop_paired(pairing *own) {
@@ -151,19 +145,17 @@ static void drop_paired(pairing *own) {
 }
 
 static starg_status add(pairing *own) {
-    starg_status status = STARG_OK;
-    STARG_TRY(list_lacking(own));
+    TRY(list_lacking(own));
     while (own->lacking.count > 0) {
-        STARG_TRY(starg_check_cancel(own->problem->context, STAGE));
+        TRY(starg_check_cancel(own->problem->context, STAGE));
         uint32_t best = find_best(own);
         if (best != UINT32_MAX)
-            STARG_TRY(join(own, best));
+            TRY(join(own, best));
         else
-            STARG_TRY(join_pair(own));
+            TRY(join_pair(own));
         drop_paired(own);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- removing guards ---- */
@@ -211,20 +203,19 @@ static void order_by_sight(const pairing *own, uint32_t *order) {
 }
 
 static starg_status remove_needless(pairing *own) {
-    starg_status status = STARG_OK;
     starg_context *context = own->problem->context;
-    uint32_t *held = NULL, *available = NULL, *order = NULL;
+    SCOPED uint32_t *held = NULL, *available = NULL, *order = NULL;
     size_t count = own->selection->chosen.count;
-    STARG_NEW_ZERO(context, STAGE, held, own->pool->columns);
-    STARG_NEW_ZERO(context, STAGE, available, own->pool->columns);
-    STARG_NEW(context, STAGE, order, count);
+    NEW_ZERO(context, STAGE, held, own->pool->columns);
+    NEW_ZERO(context, STAGE, available, own->pool->columns);
+    NEW(context, STAGE, order, count);
     for (uint32_t c = 0; c < pool_count(own->pool); c++)
         count_rows(own->pool->rows, c, 1, available);
     for (size_t i = 0; i < count; i++)
         count_rows(own->pool->rows, own->selection->chosen.data[i], 1, held);
     order_by_sight(own, order);
     for (size_t i = 0; i < count; i++) {
-        STARG_TRY(starg_check_cancel(context, STAGE));
+        TRY(starg_check_cancel(context, STAGE));
         if (!can_leave(own, order[i], held, available))
             continue;
         count_rows(own->pool->rows, order[i], UINT32_MAX, held); /* one less */
@@ -232,11 +223,7 @@ static starg_status remove_needless(pairing *own) {
             if (own->selection->chosen.data[k] == order[i])
                 leave(own->selection, k);
     }
-done:
-    starg_release(context, held);
-    starg_release(context, available);
-    starg_release(context, order);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the call ---- */
@@ -258,8 +245,6 @@ starg_status baseline_guards(const guard_problem *problem, const guard_pool *poo
     STARG_TRY(add(&own));
     STARG_TRY(remove_needless(&own));
 done:
-    STARG_ARRAY_FREE(context, &own.lacking);
-    starg_release(context, own.gain);
-    starg_release(context, own.chosen);
+    RELEASE(own.lacking.data, own.gain, own.chosen);
     return status;
 }

@@ -4,8 +4,9 @@
 
 #include "guard/stages.h"
 
-/* Are p and q, as seen from the centroid of the face, at least the angle with this cosine apart? */
-bool baseline_holds(const starg_mesh *mesh, size_t face, double cosine, const double p[3],
+/* Are p and q, as seen from the centroid of the patch, at least the angle with this cosine apart?
+ */
+bool baseline_holds(const starg_solid *solid, size_t patch, double cosine, const double p[3],
                     const double q[3]);
 
 /* Adds candidates to a choice until two guards at least the baseline apart see each face, as far as

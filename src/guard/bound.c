@@ -75,27 +75,25 @@ typedef struct branching {
     uint64_t work;
 } branching;
 
-void branch_record_free(starg_context *context, branch_record *record) {
-    STARG_ARRAY_FREE(context, &record->nodes);
-    STARG_ARRAY_FREE(context, &record->numbers);
+void branch_record_free(branch_record *record) {
+    RELEASE(record->nodes.data);
+    RELEASE(record->numbers.data);
     *record = (branch_record){0};
 }
 
 static starg_status record_prices(const branching *b, const uint64_t *price) {
-    starg_status status = STARG_OK;
     branch_record *record = b->record;
     if (record == NULL)
         return STARG_OK;
     branch_node node = {UINT32_MAX, record->numbers.count, 0};
     for (size_t j = 0; j < MOST_WITNESSES; j++)
         if (price[j] > 0) {
-            STARG_PUSH(b->context, STAGE, &record->numbers, j);
-            STARG_PUSH(b->context, STAGE, &record->numbers, price[j]);
+            PUSH(b->context, STAGE, &record->numbers, j);
+            PUSH(b->context, STAGE, &record->numbers, price[j]);
         }
     node.count = record->numbers.count - node.first;
-    STARG_PUSH(b->context, STAGE, &record->nodes, node);
-done:
-    return status;
+    PUSH(b->context, STAGE, &record->nodes, node);
+    return STARG_OK;
 }
 
 /* The rows still available, restricted to the wanted witnesses, without rows that another
@@ -129,21 +127,20 @@ static witness_row cut_row(const witness_row *row, const witness_row *wanted) {
     return cut;
 }
 
-static void rest_free(starg_context *context, rest *r) {
-    starg_release(context, r->cut);
-    starg_release(context, r->rows);
-    starg_release(context, r->names);
+static void rest_free(rest *r) {
+    RELEASE(r->cut);
+    RELEASE(r->rows);
+    RELEASE(r->names);
 }
 
 /* Large rows come first, so that no row is contained in a later one. */
 static starg_status rest_make(const branching *b, const witness_row *wanted, rest *r) {
-    starg_status status = STARG_OK;
     size_t by_size[MOST_WITNESSES + 2] = {0}, hint = 0;
-    uint32_t *order = NULL;
-    STARG_NEW(b->context, STAGE, order, b->count);
-    STARG_NEW(b->context, STAGE, r->cut, b->count);
-    STARG_NEW(b->context, STAGE, r->rows, b->count);
-    STARG_NEW(b->context, STAGE, r->names, b->count);
+    SCOPED uint32_t *order = NULL;
+    NEW(b->context, STAGE, order, b->count);
+    NEW(b->context, STAGE, r->cut, b->count);
+    NEW(b->context, STAGE, r->rows, b->count);
+    NEW(b->context, STAGE, r->names, b->count);
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < b->count; i++) {
             witness_row cut = cut_row(b->rows[i], wanted);
@@ -164,9 +161,7 @@ static starg_status rest_make(const branching *b, const witness_row *wanted, res
         r->rows[r->count] = &r->cut[r->count];
         r->names[r->count++] = order[i];
     }
-done:
-    starg_release(b->context, order);
-    return status;
+    return STARG_OK;
 }
 
 /* The wanted witness in the fewest rows; *fewest: the number of those rows. */
@@ -186,34 +181,30 @@ static size_t rarest(const rest *r, const witness_row *wanted, size_t *fewest) {
 }
 
 static starg_status record_rows(const branching *b, const rest *r, size_t witness) {
-    starg_status status = STARG_OK;
     branch_record *record = b->record;
     if (record == NULL)
         return STARG_OK;
     branch_node node = {(uint32_t)witness, record->numbers.count, 0};
     for (size_t i = 0; i < r->count; i++)
         if (starg_bit_test(r->cut[i].bits, witness))
-            STARG_PUSH(b->context, STAGE, &record->numbers, r->names[i]);
+            PUSH(b->context, STAGE, &record->numbers, r->names[i]);
     node.count = record->numbers.count - node.first;
-    STARG_PUSH(b->context, STAGE, &record->nodes, node);
-done:
-    return status;
+    PUSH(b->context, STAGE, &record->nodes, node);
+    return STARG_OK;
 }
 
 static starg_status bound_by_own_prices(branching *b, const rest *r, const witness_row *wanted,
                                         size_t most, bool *proven) {
-    starg_status status = STARG_OK;
     witness_prices prices;
     whole_prices whole;
-    STARG_TRY(prices_find(b->context, r->rows, r->count, wanted, NULL, &prices));
+    TRY(prices_find(b->context, r->rows, r->count, wanted, NULL, &prices));
     b->work += prices.work;
     bound_round(&prices, NULL, &whole);
-    prices_free(b->context, &prices);
+    prices_free(&prices);
     *proven = bound_worth_of_all(&whole, 1) > most * worth_most(r->rows, r->count, &whole);
     if (*proven)
-        STARG_TRY(record_prices(b, whole.price));
-done:
-    return status;
+        TRY(record_prices(b, whole.price));
+    return STARG_OK;
 }
 
 static starg_status branch(branching *b, const witness_row *wanted, size_t most, bool *proven);
@@ -243,25 +234,22 @@ done:
 }
 
 static starg_status branch(branching *b, const witness_row *wanted, size_t most, bool *proven) {
-    starg_status status = STARG_OK;
-    rest r = {0};
+    SCOPED_BY(rest_free) rest r = {0};
     size_t fewest;
     bool any = row_count(wanted) > 0;
     *proven = any && most == 0;
     if (*proven || !any || b->nodes == 0)
         return STARG_OK;
     b->nodes--;
-    STARG_TRY(starg_check_cancel(b->context, STAGE));
-    STARG_TRY(rest_make(b, wanted, &r));
+    TRY(starg_check_cancel(b->context, STAGE));
+    TRY(rest_make(b, wanted, &r));
     b->work += b->count / 10 + r.count * r.count / 100;
     size_t witness = rarest(&r, wanted, &fewest);
     if (fewest > 0)
-        STARG_TRY(bound_by_own_prices(b, &r, wanted, most, proven));
+        TRY(bound_by_own_prices(b, &r, wanted, most, proven));
     if (!*proven)
-        STARG_TRY(branch_on(b, &r, witness, wanted, most, proven));
-done:
-    rest_free(b->context, &r);
-    return status;
+        TRY(branch_on(b, &r, witness, wanted, most, proven));
+    return STARG_OK;
 }
 
 starg_status bound_by_branching(starg_context *context, const witness_row *const *rows,

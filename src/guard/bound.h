@@ -43,7 +43,7 @@ typedef struct branch_record {
     STARG_ARRAY(uint64_t) numbers;
 } branch_record;
 
-void branch_record_free(starg_context *context, branch_record *record);
+void branch_record_free(branch_record *record);
 
 /* Proves, by branching on the rows that hold a witness, with prices of its own in each branch, that
  * no `most` rows cover all witnesses in `wanted`. *proven is false if `nodes` nodes do not suffice.

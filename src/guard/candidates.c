@@ -13,15 +13,13 @@ static const char STAGE[] = "candidates";
 starg_status candidates_push_pose(starg_context *context, candidate_points *points,
                                   const double p[3], const double direction[3],
                                   const double up[3]) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(context, STAGE, &points->data, p[k]);
+        PUSH(context, STAGE, &points->data, p[k]);
     for (int k = 0; k < 3 && direction != NULL; k++) {
-        STARG_PUSH(context, STAGE, &points->directions, direction[k]);
-        STARG_PUSH(context, STAGE, &points->ups, up != NULL ? up[k] : 0);
+        PUSH(context, STAGE, &points->directions, direction[k]);
+        PUSH(context, STAGE, &points->ups, up != NULL ? up[k] : 0);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
@@ -29,10 +27,20 @@ starg_status candidates_push(starg_context *context, candidate_points *points, c
     return candidates_push_pose(context, points, p, direction, NULL);
 }
 
-void candidates_free(starg_context *context, candidate_points *points) {
-    STARG_ARRAY_FREE(context, &points->data);
-    STARG_ARRAY_FREE(context, &points->directions);
-    STARG_ARRAY_FREE(context, &points->ups);
+starg_status candidates_append(starg_context *context, const candidate_points *from,
+                               candidate_points *out) {
+    bool directed = from->directions.count > 0;
+    for (size_t i = 0; i < candidates_count(from); i++)
+        TRY(candidates_push_pose(context, out, from->data.data + 3 * i,
+                                 directed ? from->directions.data + 3 * i : NULL,
+                                 directed ? from->ups.data + 3 * i : NULL));
+    return STARG_OK;
+}
+
+void candidates_free(candidate_points *points) {
+    RELEASE(points->data.data);
+    RELEASE(points->directions.data);
+    RELEASE(points->ups.data);
     *points = (candidate_points){0};
 }
 
@@ -43,20 +51,16 @@ bool candidates_allowed(const starg_solid *solid, const double p[3], double clea
 
 static starg_status medial_candidates(starg_context *context, const candidate_shape *shape,
                                       size_t wanted, candidate_points *points) {
-    starg_status status = STARG_OK;
-    medial_ball *balls = NULL;
-    double *scratch = NULL;
+    SCOPED medial_ball *balls = NULL;
+    SCOPED double *scratch = NULL;
     size_t count = 0, chosen = 0;
-    STARG_TRY(medial_balls(context, shape->proxy, shape->clearance, &balls, &count));
-    STARG_NEW(context, STAGE, scratch, count);
-    STARG_TRY(medial_thin(context, balls, count, wanted, scratch, &chosen));
+    TRY(medial_balls(context, shape->proxy, shape->clearance, &balls, &count));
+    NEW(context, STAGE, scratch, count);
+    TRY(medial_thin(context, balls, count, wanted, scratch, &chosen));
     for (size_t i = 0; i < chosen; i++)
         if (candidates_allowed(shape->solid, balls[i].centre, shape->clearance))
-            STARG_TRY(candidates_push(context, points, balls[i].centre, NULL));
-done:
-    starg_release(context, balls);
-    starg_release(context, scratch);
-    return status;
+            TRY(candidates_push(context, points, balls[i].centre, NULL));
+    return STARG_OK;
 }
 
 static starg_status skeletal_candidates(starg_context *context, const candidate_shape *shape,
@@ -108,7 +112,6 @@ static double coarse_enough(const starg_solid *solid, double step, double most) 
  * the box keeps points off axis-aligned walls. */
 static starg_status lattice_points(starg_context *context, const starg_solid *solid, double step,
                                    double clearance, candidate_points *points) {
-    starg_status status = STARG_OK;
     bvh_box all;
     solid_reach(solid, &all);
     const double *lower = all.lower;
@@ -117,18 +120,17 @@ static starg_status lattice_points(starg_context *context, const starg_solid *so
         cells[k] = (size_t)((all.upper[k] - lower[k]) / step) + 1;
     points->data.count = 0;
     for (size_t i = 0; i < 2 * cells[0]; i++) {
-        STARG_TRY(starg_check_cancel(context, STAGE));
+        TRY(starg_check_cancel(context, STAGE));
         for (size_t j = i % 2; j < 2 * cells[1]; j += 2)
             for (size_t k = i % 2; k < 2 * cells[2]; k += 2) {
                 const double p[3] = {lower[0] + step * (0.5 * (double)i + 0.3),
                                      lower[1] + step * (0.5 * (double)j + 0.3),
                                      lower[2] + step * (0.5 * (double)k + 0.3)};
                 if (candidates_allowed(solid, p, clearance))
-                    STARG_TRY(candidates_push(context, points, p, NULL));
+                    TRY(candidates_push(context, points, p, NULL));
             }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* For a scene, the volume of the box in which guards may stand. */
@@ -154,9 +156,7 @@ static starg_status interior_candidates(starg_context *context, const candidate_
     double step = cbrt(2 * free_volume(shape->solid) / (double)wanted);
     for (int round = 0; round < ROUNDS; round++) {
         double used = coarse_enough(shape->solid, step, most);
-        starg_status status = lattice_points(context, shape->solid, used, shape->clearance, points);
-        if (status != STARG_OK)
-            return status;
+        TRY(lattice_points(context, shape->solid, used, shape->clearance, points));
         size_t found = points->data.count / 3;
         if (10 * found >= 9 * wanted || used > step)
             break;
@@ -186,15 +186,30 @@ static starg_candidates source_in(const starg_solid *solid, starg_candidates wan
     return solid->scene && wanted == STARG_CANDIDATES_SKELETON ? STARG_CANDIDATES_MEDIAL : wanted;
 }
 
+/* In a small part of the free space there may be no centres and nodes. */
+static starg_status add_within(starg_context *context, const candidate_shape *shape, size_t wanted,
+                               candidate_points *points) {
+    const starg_solid *solid = shape->solid;
+    SCOPED_BY(candidates_free) candidate_points more = {0};
+    bool limited =
+        solid->scene && (solid->zones.count > 0 || solid->space.within[0] < solid->space.within[3]);
+    if (!limited || 4 * candidates_count(points) >= wanted)
+        return STARG_OK;
+    TRY(interior_candidates(context, shape, wanted, &more));
+    return candidates_append(context, &more, points);
+}
+
 static starg_status find(starg_context *context, const candidate_shape *shape,
                          starg_candidates source, size_t wanted, candidate_points *points) {
     if (shape->solid->over.count > 0 || shape->solid->mount.count > 0)
         return near_candidates(context, shape, wanted, points);
     source = source_in(shape->solid, source);
-    if (source == STARG_CANDIDATES_SKELETON)
-        return skeletal_candidates(context, shape, wanted, points);
-    if (source == STARG_CANDIDATES_MEDIAL)
-        return medial_candidates(context, shape, wanted, points);
+    if (source != STARG_CANDIDATES_INTERIOR) {
+        starg_status status = source == STARG_CANDIDATES_SKELETON
+                                  ? skeletal_candidates(context, shape, wanted, points)
+                                  : medial_candidates(context, shape, wanted, points);
+        return status == STARG_OK ? add_within(context, shape, wanted, points) : status;
+    }
     return interior_candidates(context, shape, wanted, points);
 }
 
@@ -209,23 +224,19 @@ starg_status candidates_find(starg_context *context, const candidate_shape *shap
 starg_status starg_candidate_points(starg_context *context, const starg_solid *solid,
                                     starg_candidates source, size_t wanted, double clearance,
                                     double **points, size_t *count) {
-    starg_status status = STARG_OK;
-    candidate_points found = {0};
-    starg_solid *proxy = NULL;
+    SCOPED_BY(candidates_free) candidate_points found = {0};
+    SCOPED_BY(starg_solid_drop) starg_solid *proxy = NULL;
     *points = NULL;
     *count = 0;
-    STARG_TRY(candidates_check(context, source, wanted, clearance));
+    TRY(candidates_check(context, source, wanted, clearance));
     if (proxy_wanted(solid))
-        STARG_TRY(proxy_make(context, solid, &proxy));
+        TRY(proxy_make(context, solid, &proxy));
     const candidate_shape shape = {solid, proxy ? proxy : solid, clearance};
-    STARG_TRY(candidates_find(context, &shape, source, wanted, &found));
+    TRY(candidates_find(context, &shape, source, wanted, &found));
     *points = found.data.data;
     *count = found.data.count / 3;
     found.data.data = NULL;
-done:
-    starg_solid_free(proxy);
-    candidates_free(context, &found);
-    return status;
+    return STARG_OK;
 }
 
 void starg_points_free(starg_context *context, double *points) {

@@ -15,6 +15,10 @@ typedef struct candidate_points {
     STARG_ARRAY(double) data, directions, ups;
 } candidate_points;
 
+/* Appends all points of `from`. Errors: MEMORY. */
+starg_status candidates_append(starg_context *context, const candidate_points *from,
+                               candidate_points *out);
+
 static inline size_t candidates_count(const candidate_points *points) {
     return points->data.count / 3;
 }
@@ -24,7 +28,7 @@ starg_status candidates_push_pose(starg_context *context, candidate_points *poin
                                   const double p[3], const double direction[3], const double up[3]);
 starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
                              const double direction[3]);
-void candidates_free(starg_context *context, candidate_points *points);
+void candidates_free(candidate_points *points);
 
 /* Points, each with a few directions whose views hold most of what the point sees; a large set of
  * points is thinned out (guard/directions.c). Errors: MEMORY, CANCELLED. */
@@ -58,28 +62,29 @@ starg_status near_candidates_before(starg_context *context, const candidate_shap
 starg_status candidates_find(starg_context *context, const candidate_shape *shape,
                              starg_candidates source, size_t wanted, candidate_points *points);
 
-/* Adds candidates for faces that no candidate sees (guard/augment.c): `unseen` marks these faces
- * (by index). Each appended point sees at least one of them; a face stays unseen only if none of
- * the points tried sees it. Handles a bounded number of faces per call: `pending` tells whether
+/* Adds candidates for patches that no candidate sees (guard/augment.c): `unseen` marks them (by
+ * index). Each appended point sees at least one of them; a patch stays unseen only if none of the
+ * points tried sees it. Handles a bounded number of patches per call: `pending` tells whether
  * more remain. */
 typedef struct augmentation {
     const starg_solid *solid;
     const starg_visibility_options *visibility;
     double clearance;
-    uint8_t *tried; /* per face: points were already tried */
+    uint8_t *tried; /* by patch: points were already tried */
 } augmentation;
 
-/* Tries all these faces at once. Those that some point sees are listed, with the deepest such point
- * of each, which is not added: `faces` has one face for each pose. Errors: MEMORY, CANCELLED, TIME.
+/* Tries all these patches at once. Those that some point sees are listed, with the deepest such
+ * point of each, which is not added: `patches` has one for each pose. Errors: MEMORY, CANCELLED,
+ * TIME.
  */
 typedef struct augmentation_finds {
     candidate_points poses;
-    STARG_ARRAY(uint32_t) faces;
+    STARG_ARRAY(uint32_t) patches;
 } augmentation_finds;
 
 starg_status augment_test(starg_context *context, const augmentation *augmentation,
                           const uint8_t *unseen, augmentation_finds *out);
-void augment_finds_free(starg_context *context, augmentation_finds *finds);
+void augment_finds_free(augmentation_finds *finds);
 
 starg_status augment_candidates(starg_context *context, const augmentation *augmentation,
                                 const uint8_t *unseen, candidate_points *points, bool *pending);

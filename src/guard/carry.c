@@ -64,14 +64,13 @@ static starg_status carry_cover(const guard_pool *pool, const column_weights *we
 
 static starg_status carry_others(const guard_pool *pool, const column_weights *weights,
                                  uint32_t *seen, uint8_t *carried) {
-    starg_status status = STARG_OK;
     const starg_bits *rows = pool->rows;
     const starg_guard_options *o = pool->options;
-    ranked *order = NULL;
-    uint32_t *none = NULL;
+    SCOPED ranked *order = NULL;
+    SCOPED uint32_t *none = NULL;
     uint64_t faint = (uint64_t)(FAINT * (1 - o->coverage) * (double)weights->total);
-    STARG_NEW(pool->context, STAGE, order, rows->rows);
-    STARG_NEW_ZERO(pool->context, STAGE, none, rows->columns);
+    NEW(pool->context, STAGE, order, rows->rows);
+    NEW_ZERO(pool->context, STAGE, none, rows->columns);
     for (size_t i = 0; i < rows->rows; i++)
         order[i] = (ranked){weigh(rows, i, weights, none, 1), i};
     qsort(order, rows->rows, sizeof *order, by_weight);
@@ -82,10 +81,7 @@ static starg_status carry_others(const guard_pool *pool, const column_weights *w
             note(rows, row, seen);
         }
     }
-done:
-    starg_release(pool->context, order);
-    starg_release(pool->context, none);
-    return status;
+    return STARG_OK;
 }
 
 static void keep_carried(const guard_pool *pool, const uint8_t *carried, candidate_points *points) {
@@ -100,28 +96,22 @@ static void keep_carried(const guard_pool *pool, const uint8_t *carried, candida
 
 starg_status carry_candidates(const guard_problem *problem, const starg_solid *level,
                               candidate_points *points) {
-    starg_status status = STARG_OK;
     starg_context *context = problem->context;
     starg_guard_options options = *problem->options;
-    guard_pool pool = {0};
-    column_weights weights = {0};
-    uint32_t *seen = NULL;
-    uint8_t *carried = NULL;
+    SCOPED_BY(pool_free) guard_pool pool = {0};
+    SCOPED_BY(column_weights_free) column_weights weights = {0};
+    SCOPED uint32_t *seen = NULL;
+    SCOPED uint8_t *carried = NULL;
     options.coverage += MORE * (1 - options.coverage);
-    STARG_TRY(pool_create(context, level, &options, &pool));
-    STARG_TRY(pool_add(&pool, points));
+    TRY(pool_create(context, level, &options, &pool));
+    TRY(pool_add(&pool, points));
     if (pool_count(&pool) == 0)
-        goto done;
-    STARG_TRY(column_weights_create(context, level, options.visibility.target, &weights));
-    STARG_NEW_ZERO(context, STAGE, seen, pool.columns);
-    STARG_NEW_ZERO(context, STAGE, carried, pool_count(&pool));
-    STARG_TRY(carry_cover(&pool, &weights, carried));
-    STARG_TRY(carry_others(&pool, &weights, seen, carried));
+        return STARG_OK;
+    TRY(column_weights_create(context, level, options.visibility.target, &weights));
+    NEW_ZERO(context, STAGE, seen, pool.columns);
+    NEW_ZERO(context, STAGE, carried, pool_count(&pool));
+    TRY(carry_cover(&pool, &weights, carried));
+    TRY(carry_others(&pool, &weights, seen, carried));
     keep_carried(&pool, carried, points);
-done:
-    starg_release(context, seen);
-    starg_release(context, carried);
-    column_weights_free(context, &weights);
-    pool_free(&pool);
-    return status;
+    return STARG_OK;
 }

@@ -40,7 +40,6 @@ typedef struct remote_tests {
 /* ---- rank 0 ---- */
 
 static starg_status pack(starg_context *context, const cell_tests *all, starg_bytes *out) {
-    starg_status status = STARG_OK;
     const search_scene *scene = all->scene;
     const job_head head = {.scene = scene->number,
                            .begins = context->shared_scene != scene->number,
@@ -49,14 +48,12 @@ static starg_status pack(starg_context *context, const cell_tests *all, starg_by
                            .first = all->first,
                            .tries = all->tries,
                            .clearance = scene->clearance};
-    STARG_TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
+    TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
     if (head.begins)
-        STARG_TRY(visibility_pack_scene(context, scene->solid, scene->view, 0, out));
-    STARG_TRY(starg_bytes_put(context, out, scene->witnesses.data, scene->witnesses.count,
-                              sizeof *scene->witnesses.data));
-    STARG_TRY(starg_bytes_put(context, out, all->tests, all->count, sizeof *all->tests));
-done:
-    return status;
+        TRY(visibility_pack_scene(context, scene->solid, scene->view, 0, out));
+    TRY(starg_bytes_put(context, out, scene->witnesses.data, scene->witnesses.count,
+                        sizeof *scene->witnesses.data));
+    return starg_bytes_put(context, out, all->tests, all->count, sizeof *all->tests);
 }
 
 static bool is_sound_answer(const cell_tests *all, const cell_answer *answer) {
@@ -87,59 +84,51 @@ static starg_status take(starg_context *context, void *shared, size_t first, siz
 }
 
 starg_status cell_tests_share(starg_context *context, cell_tests *tests) {
-    starg_status status = STARG_OK;
-    starg_bytes packed = {0};
+    SCOPED starg_bytes packed = {0};
     const starg_parallel_remote remote = {.work = RANKS_CELLS, .job = &packed, .take = take};
     if (context->ranks == NULL || tests->count < LEAST_SHARED || tests->scene->solid->scene)
         return cell_tests_run(context, tests, NULL);
-    STARG_TRY(pack(context, tests, &packed));
+    TRY(pack(context, tests, &packed));
     context->shared_scene = tests->scene->number;
-    STARG_TRY(cell_tests_run(context, tests, &remote));
-done:
-    STARG_ARRAY_FREE(context, &packed);
-    return status;
+    return cell_tests_run(context, tests, &remote);
 }
 
 /* ---- helpers ---- */
 
 static void end(starg_context *context, void *state) {
+    (void)context;
     remote_tests *job = state;
     if (job == NULL)
         return;
     search_scene_close(&job->scene);
     starg_solid_free(job->solid);
-    starg_release(context, job->tests);
-    starg_release(context, job);
+    RELEASE(job->tests, job);
 }
 
 static starg_status begin_scene(starg_context *context, const job_head *head,
                                 starg_bytes_reader *bytes, void **state) {
-    starg_status status = STARG_OK;
     remote_tests *job = NULL;
     end(context, *state);
     *state = NULL;
-    STARG_NEW_ZERO(context, STAGE, job, 1);
+    NEW_ZERO(context, STAGE, job, 1);
     *state = job;
-    STARG_TRY(visibility_unpack_scene(context, bytes, &job->solid, &job->view));
-    STARG_TRY(search_scene_open(context, job->solid, &job->view, head->clearance, &job->scene));
+    TRY(visibility_unpack_scene(context, bytes, &job->solid, &job->view));
+    TRY(search_scene_open(context, job->solid, &job->view, head->clearance, &job->scene));
     job->number = head->scene;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_witnesses(starg_context *context, remote_tests *job, size_t count,
                                    starg_bytes_reader *bytes) {
-    starg_status status = STARG_OK;
-    size_t columns = target_columns(job->solid->mesh, job->view.target);
+    size_t columns = target_columns(job->solid, job->view.target);
     job->scene.witnesses.count = 0;
     for (size_t i = 0; i < count; i++) {
         uint32_t column;
         if (!starg_bytes_take(bytes, &column, 1, sizeof column) || column >= columns)
             return STARG_ERROR_RANK;
-        STARG_PUSH(context, STAGE, &job->scene.witnesses, column);
+        PUSH(context, STAGE, &job->scene.witnesses, column);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_sound(const job_head *head, size_t left) {
@@ -148,39 +137,35 @@ static bool is_sound(const job_head *head, size_t left) {
 }
 
 static starg_status begin(starg_context *context, starg_bytes_reader *bytes, void **state) {
-    starg_status status = STARG_OK;
     job_head head;
     void *tests;
     if (!starg_bytes_take(bytes, &head, 1, sizeof head) || !is_sound(&head, bytes->left))
         return STARG_ERROR_RANK;
     if (head.begins)
-        STARG_TRY(begin_scene(context, &head, bytes, state));
+        TRY(begin_scene(context, &head, bytes, state));
     remote_tests *job = *state;
     if (job == NULL || job->number != head.scene)
         return STARG_ERROR_RANK;
-    STARG_TRY(take_witnesses(context, job, head.witnesses, bytes));
+    TRY(take_witnesses(context, job, head.witnesses, bytes));
     starg_release(context, job->tests);
     job->tests = NULL;
     job->count = 0;
-    STARG_TRY(starg_bytes_take_block(context, bytes, head.count, sizeof *job->tests, &tests));
+    TRY(starg_bytes_take_block(context, bytes, head.count, sizeof *job->tests, &tests));
     job->tests = tests;
     job->count = head.count;
     job->first = head.first;
     job->tries = (int)head.tries;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status reply_with(starg_context *context, const cell_tests *all, starg_bytes *reply) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < all->count; i++) {
         const cell_answer *answer = &all->answers[i];
-        STARG_TRY(starg_bytes_put(context, reply, answer, 1, sizeof *answer));
-        STARG_TRY(starg_bytes_put(context, reply, cell_tests_points(all, i), answer->point_count,
-                                  sizeof *all->points));
+        TRY(starg_bytes_put(context, reply, answer, 1, sizeof *answer));
+        TRY(starg_bytes_put(context, reply, cell_tests_points(all, i), answer->point_count,
+                            sizeof *all->points));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status run(starg_context *context, void *state, size_t first, size_t count,
@@ -199,8 +184,7 @@ static starg_status run(starg_context *context, void *state, size_t first, size_
     STARG_TRY(cell_tests_run(context, &all, NULL));
     STARG_TRY(reply_with(context, &all, reply));
 done:
-    starg_release(context, all.answers);
-    starg_release(context, all.points);
+    RELEASE(all.answers, all.points);
     return status;
 }
 

@@ -26,7 +26,6 @@ static double middle(const bvh_box *box, int k) {
 
 /* Halves the parts of cells until each leaf is for one. */
 static starg_status cut_by_parts(starg_context *context, search_cells *cells) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < cells->count; i++) {
         search_cell halves[2] = {cells->data[i], cells->data[i]};
         uint32_t parts = halves[0].end_part - halves[0].first_part;
@@ -35,15 +34,13 @@ static starg_status cut_by_parts(starg_context *context, search_cells *cells) {
         halves[0].end_part = halves[1].first_part = halves[0].first_part + parts / 2;
         cells->data[i].parted = true;
         cells->data[i].children = (uint32_t)cells->count;
-        STARG_PUSH(context, STAGE, cells, halves[0]);
-        STARG_PUSH(context, STAGE, cells, halves[1]);
+        PUSH(context, STAGE, cells, halves[0]);
+        PUSH(context, STAGE, cells, halves[1]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status cells_begin(const search_scene *scene, search_cells *cells) {
-    starg_status status = STARG_OK;
     bvh_box reach;
     solid_reach(scene->solid, &reach);
     const bvh_box *all = &reach;
@@ -62,10 +59,8 @@ starg_status cells_begin(const search_scene *scene, search_cells *cells) {
         if (upper >= all->upper[k])
             root.box.upper[k] = upper;
     }
-    STARG_PUSH(scene->context, STAGE, cells, root);
-    STARG_TRY(cut_by_parts(scene->context, cells));
-done:
-    return status;
+    PUSH(scene->context, STAGE, cells, root);
+    return cut_by_parts(scene->context, cells);
 }
 
 int cell_cut_axis(const bvh_box *box) {
@@ -150,27 +145,25 @@ static starg_status look_from_cells(search_scene *scene, search_cells *cells, co
         scene->work += all.answers[i].work + 1;
     }
 done:
-    starg_release(context, tests);
-    starg_release(context, all.answers);
+    RELEASE(tests, all.answers);
     return status;
 }
 
 /* One generation after the other. */
 starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) {
-    starg_status status = STARG_OK;
     starg_context *context = scene->context;
-    numbers list = {0}, parents = {0}, next = {0}, next_parents = {0};
+    SCOPED numbers list = {0}, parents = {0}, next = {0}, next_parents = {0};
     const witness_row among = search_scene_witnesses(scene, first);
-    STARG_PUSH(context, STAGE, &list, 0);
-    STARG_PUSH(context, STAGE, &parents, UINT32_MAX);
+    PUSH(context, STAGE, &list, 0);
+    PUSH(context, STAGE, &parents, UINT32_MAX);
     while (list.count > 0) {
-        STARG_TRY(look_from_cells(scene, cells, &list, &parents, &among));
+        TRY(look_from_cells(scene, cells, &list, &parents, &among));
         next.count = next_parents.count = 0;
         for (size_t i = 0; i < list.count; i++) {
             const search_cell *cell = &cells->data[list.data[i]];
             for (uint32_t k = 0; k < 2 && cell->children != 0 && sees_any(cell, &among); k++) {
-                STARG_PUSH(context, STAGE, &next, cell->children + k);
-                STARG_PUSH(context, STAGE, &next_parents, list.data[i]);
+                PUSH(context, STAGE, &next, cell->children + k);
+                PUSH(context, STAGE, &next_parents, list.data[i]);
             }
         }
         numbers done_list = list, done_parents = parents;
@@ -179,12 +172,7 @@ starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) 
         next = done_list;
         next_parents = done_parents;
     }
-done:
-    STARG_ARRAY_FREE(context, &list);
-    STARG_ARRAY_FREE(context, &parents);
-    STARG_ARRAY_FREE(context, &next);
-    STARG_ARRAY_FREE(context, &next_parents);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- splitting ---- */
@@ -192,7 +180,6 @@ done:
 /* The cuts become cells within the cell; the last one is what was tested. */
 static starg_status trim(starg_context *context, search_cells *cells, size_t number,
                          const cell_answer *answer) {
-    starg_status status = STARG_OK;
     for (int64_t i = 0; i < answer->cut_count; i++) {
         const box_cut *cut = &answer->cuts[i];
         search_cell parts[2] = {cells->data[number], cells->data[number]};
@@ -200,14 +187,13 @@ static starg_status trim(starg_context *context, search_cells *cells, size_t num
         parts[cut->above].open = (witness_row){{0}};
         if (i + 1 == answer->cut_count)
             parts[!cut->above].open = answer->open;
-        STARG_PUSH(context, STAGE, cells, parts[0]);
-        STARG_PUSH(context, STAGE, cells, parts[1]);
+        PUSH(context, STAGE, cells, parts[0]);
+        PUSH(context, STAGE, cells, parts[1]);
         cells->data[number].children = (uint32_t)(cells->count - 2);
         cells->data[number].trimmed = true;
         number = cells->count - 1 - cut->above;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
@@ -242,8 +228,6 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
     for (size_t i = 0; i < all.count; i++)
         STARG_TRY(trim(scene->context, cells, all.first + i, &all.answers[i]));
 done:
-    starg_release(context, tests);
-    starg_release(context, all.answers);
-    starg_release(context, all.points);
+    RELEASE(tests, all.answers, all.points);
     return status;
 }

@@ -26,10 +26,10 @@
 
 static const char STAGE[] = "certificate";
 
-void certificate_free(starg_context *context, guard_certificate *why) {
-    STARG_ARRAY_FREE(context, &why->proof.rows);
-    branch_record_free(context, &why->proof.branches);
-    starg_release(context, why->text);
+void certificate_free(guard_certificate *why) {
+    RELEASE(why->proof.rows.data);
+    branch_record_free(&why->proof.branches);
+    RELEASE(why->text);
     *why = (guard_certificate){0};
 }
 
@@ -46,19 +46,17 @@ void certificate_note_prices(guard_certificate *why, size_t bound, const whole_p
 starg_status certificate_note_rows(starg_context *context, guard_certificate *why, size_t bound,
                                    const witness_row *const *rows, size_t count,
                                    branch_record *branches) {
-    starg_status status = STARG_OK;
     if (why == NULL || bound <= why->proof.bound)
         return STARG_OK;
     bound_proof *proof = &why->proof;
     proof->bound = bound;
     proof->rows.count = 0;
     for (size_t i = 0; i < count; i++)
-        STARG_PUSH(context, STAGE, &proof->rows, *rows[i]);
-    branch_record_free(context, &proof->branches);
+        PUSH(context, STAGE, &proof->rows, *rows[i]);
+    branch_record_free(&proof->branches);
     proof->branches = *branches;
     *branches = (branch_record){0};
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the tree ---- */
@@ -155,23 +153,20 @@ typedef struct pair {
 } pair;
 
 static starg_status choose_cells(making *m) {
-    starg_status status = STARG_OK;
     starg_context *context = m->scene->context;
-    STARG_ARRAY(pair) stack = {0};
-    STARG_PUSH(context, STAGE, &stack, ((pair){0, UINT32_MAX}));
+    SCOPED STARG_ARRAY(pair) stack = {0};
+    PUSH(context, STAGE, &stack, ((pair){0, UINT32_MAX}));
     while (stack.count > 0) {
         pair next = stack.data[--stack.count];
         kept_cell kept = judge(m, next.number, next.around);
         uint32_t children = m->cells->data[next.number].children;
-        STARG_PUSH(context, STAGE, &m->kept, kept);
+        PUSH(context, STAGE, &m->kept, kept);
         if (kept.leaf)
             continue;
-        STARG_PUSH(context, STAGE, &stack, ((pair){children + 1, next.number}));
-        STARG_PUSH(context, STAGE, &stack, ((pair){children, next.number}));
+        PUSH(context, STAGE, &stack, ((pair){children + 1, next.number}));
+        PUSH(context, STAGE, &stack, ((pair){children, next.number}));
     }
-done:
-    STARG_ARRAY_FREE(context, &stack);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- reasons ---- */
@@ -235,7 +230,6 @@ static starg_status find_reasons(starg_context *context, void *shared, void *scr
 }
 
 static starg_status find_all_reasons(making *m) {
-    starg_status status = STARG_OK;
     starg_context *context = m->scene->context;
     size_t count = 0;
     for (size_t i = 0; i < m->kept.count; i++) {
@@ -244,7 +238,7 @@ static starg_status find_all_reasons(making *m) {
         m->kept.data[i].count = starg_bit_count(hidden.bits, WITNESS_WORDS);
         count += m->kept.data[i].count;
     }
-    STARG_NEW(context, STAGE, m->reasons, count);
+    NEW(context, STAGE, m->reasons, count);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = m->kept.count,
                                       .shared = m,
@@ -252,9 +246,7 @@ static starg_status find_all_reasons(making *m) {
                                       .make_scratch = cells_worker_make,
                                       .free_scratch = cells_worker_free,
                                       .silent = true};
-    STARG_TRY(starg_parallel_for(context, &loop));
-done:
-    return status;
+    return starg_parallel_for(context, &loop);
 }
 
 /* ---- the text ---- */
@@ -312,11 +304,12 @@ done:
 static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
                      const bvh_box *root, bool parted, size_t bound) {
     const starg_visibility_options *view = &options->visibility;
-    put_model(stream, parted ? 4 : 2, solid);
+    put_model(stream, solid->patches != NULL ? 5 : parted ? 4 : 2, solid);
     fprintf(stream, "target %s\nrange",
-            view->target == STARG_TARGET_VERTICES  ? "vertices"
-            : view->target == STARG_TARGET_CORNERS ? "corners"
-                                                   : "faces");
+            solid->patches != NULL                  ? "points"
+            : view->target == STARG_TARGET_VERTICES ? "vertices"
+            : view->target == STARG_TARGET_CORNERS  ? "corners"
+                                                    : "faces");
     if (isinf(view->range))
         fprintf(stream, " none");
     else
@@ -327,10 +320,31 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_o
     put_box(stream, root);
 }
 
+/* A point by its face, its weights by the vertices of this, and their binary logarithm. */
+static void put_point(FILE *stream, const starg_solid *solid, uint32_t patch) {
+    uint32_t face = solid->patches->face.data[patch], corner = solid->patches->corner.data[patch];
+    const uint32_t *vertex = solid->mesh->faces + 3 * (size_t)face;
+    const patch_point alone = {{corner, UINT32_MAX, UINT32_MAX}, {1, 0, 0}, 0};
+    const patch_point *point =
+        corner < solid->patches->vertex_count
+            ? &alone
+            : solid->patches->points.data + (corner - solid->patches->vertex_count);
+    fprintf(stream, "%u", face);
+    for (int k = 0; k < 3; k++) {
+        uint32_t weight = 0;
+        for (int i = 0; i < 3; i++)
+            weight = point->vertex[i] == vertex[k] ? point->weight[i] : weight;
+        fprintf(stream, " %u", weight);
+    }
+    fprintf(stream, " %d\n", point->depth);
+}
+
 /* A corner by its face and vertex. */
 static void put_witness(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
                         uint32_t column) {
-    if (options->visibility.target == STARG_TARGET_CORNERS)
+    if (solid->patches != NULL)
+        put_point(stream, solid, column);
+    else if (options->visibility.target == STARG_TARGET_CORNERS)
         fprintf(stream, "%u %u\n", column / 3, solid->mesh->faces[column]);
     else
         fprintf(stream, "%u\n", column);
@@ -360,7 +374,7 @@ static void put_rows(FILE *stream, const making *m) {
 static void put_reason(FILE *stream, const making *m, const stored_reason *r) {
     static const char letters[2][BOX_KINDS + 2] = {"??rnspfed", "??RNSPFE"};
     fprintf(stream, " %u%c", m->number[r->witness], letters[r->clipped][r->kind]);
-    if (r->vertex != BOX_NONE)
+    if (r->vertex < m->scene->solid->mesh->vertex_count) /* others are the witness itself */
         fprintf(stream, "%u", r->vertex);
     if (r->seed != BOX_NONE)
         fprintf(stream, ":%u", r->seed);
@@ -458,8 +472,7 @@ starg_status certificate_of_search(const search_scene *scene, const search_cells
     STARG_TRY(find_all_reasons(&m));
     STARG_TRY(write_text(scene->context, put_search, &m, &why->text, &why->size));
 done:
-    STARG_ARRAY_FREE(scene->context, &m.kept);
-    starg_release(scene->context, m.reasons);
+    RELEASE(m.kept.data, m.reasons);
     return status;
 }
 
@@ -490,11 +503,8 @@ starg_status certificate_of_one(starg_context *context, const starg_solid *solid
 
 starg_status starg_certificate_write(starg_context *context, const char *text, size_t size,
                                      const char *path) {
-    starg_status status = STARG_OK;
     starg_output output = {0};
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    TRY(starg_output_open(context, STAGE, path, &output));
     fwrite(text, 1, size, output.stream);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    return status;
+    return starg_output_commit(&output);
 }

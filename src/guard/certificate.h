@@ -21,7 +21,7 @@ typedef struct guard_certificate {
     size_t size;
 } guard_certificate;
 
-void certificate_free(starg_context *context, guard_certificate *why);
+void certificate_free(guard_certificate *why);
 
 /* Records the prices that proved `bound`, if it improves on the previous one. `why` may be NULL. */
 void certificate_note_prices(guard_certificate *why, size_t bound, const whole_prices *prices);

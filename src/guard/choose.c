@@ -10,8 +10,10 @@ static double whole_weight(const guard_pool *pool, const column_weights *weights
 }
 
 uint64_t choose_target(const guard_pool *pool, const column_weights *weights) {
-    double coverage = pool->options->coverage;
-    return coverage < 1 ? (uint64_t)ceil(coverage * whole_weight(pool, weights)) : UINT64_MAX;
+    double coverage = pool->options->coverage, kept = (double)weights->kept;
+    return coverage < 1
+               ? (uint64_t)fmax(0, ceil(coverage * (whole_weight(pool, weights) + kept)) - kept)
+               : UINT64_MAX;
 }
 
 starg_status choose_candidates(const guard_pool *pool, const column_weights *weights,
@@ -23,6 +25,7 @@ starg_status choose_candidates(const guard_pool *pool, const column_weights *wei
     starg_cover_options_default(&options);
     problem.rows = pool->rows;
     problem.redundancy = wanted->redundancy;
+    problem.needs = pool->solid->need;
     problem.given = how->given;
     problem.given_count = how->given_count;
     if (wanted->max_guards > 0)

@@ -7,6 +7,8 @@
 #include "guard/weights.h"
 #include "starguard/cover.h"
 
+STARG_DROP(starg_cover, starg_cover)
+
 /* What a stage asks of the cover. */
 typedef struct choice {
     starg_cover_method method;

@@ -21,19 +21,16 @@ static const double FIRST_DISTANCE = 1.0 / 64; /* of the diagonal */
 
 /* Bits of the columns that some candidate sees, but fewer than the redundancy. */
 static starg_status find_short(const guard_pool *pool, uint64_t *lacking, size_t *count) {
-    starg_status status = STARG_OK;
-    uint32_t *supply = NULL;
+    SCOPED uint32_t *supply = NULL;
     *count = 0;
     memset(lacking, 0, starg_bit_words(pool->columns) * sizeof *lacking);
-    STARG_TRY(pool_supply(pool, &supply));
+    TRY(pool_supply(pool, &supply));
     for (size_t j = 0; j < pool->columns; j++)
         if (supply[j] > 0 && supply[j] < pool->options->redundancy) {
             starg_bit_set(lacking, j);
             ++*count;
         }
-done:
-    starg_release(pool->context, supply);
-    return status;
+    return STARG_OK;
 }
 
 /* The candidate that sees the most of these columns, which are taken out; false: none sees any. */
@@ -55,40 +52,34 @@ static bool take_host(const guard_pool *pool, uint64_t *lacking, size_t *host) {
 
 static starg_status add_beside(const guard_pool *pool, size_t host, double distance, starg_rng *rng,
                                candidate_points *out) {
-    starg_status status = STARG_OK;
     for (uint32_t k = 1; k < pool->options->redundancy; k++) {
         double p[3];
         for (int i = 0; i < 3; i++)
             p[i] = pool_point(pool, host)[i] + distance * (2 * starg_rng_unit(rng) - 1);
         if (candidates_allowed(pool->solid, p, pool->options->clearance))
-            STARG_TRY(candidates_push_pose(pool->context, out, p, pool_direction(pool, host),
-                                           pool_up(pool, host)));
+            TRY(candidates_push_pose(pool->context, out, p, pool_direction(pool, host),
+                                     pool_up(pool, host)));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status pool_add_companions(guard_pool *pool) {
-    starg_status status = STARG_OK;
-    uint64_t *lacking = NULL;
-    candidate_points found = {0};
+    SCOPED uint64_t *lacking = NULL;
+    SCOPED_BY(candidates_free) candidate_points found = {0};
     size_t count = 0;
     double distance = FIRST_DISTANCE * pool->solid->check->diagonal;
-    STARG_NEW(pool->context, STAGE, lacking, starg_bit_words(pool->columns));
+    NEW(pool->context, STAGE, lacking, starg_bit_words(pool->columns));
     for (uint64_t round = 0; round < ROUNDS && !pool->time_limited; round++, distance /= 2) {
         starg_rng rng = starg_rng_make(pool->context->seed, RNG_STREAM, round);
         size_t host = 0;
-        STARG_TRY(find_short(pool, lacking, &count));
+        TRY(find_short(pool, lacking, &count));
         if (count == 0)
             break;
         found.data.count = found.directions.count = found.ups.count = 0;
         for (int hosts = 0; hosts < MOST_HOSTS && take_host(pool, lacking, &host); hosts++)
-            STARG_TRY(add_beside(pool, host, distance, &rng, &found));
+            TRY(add_beside(pool, host, distance, &rng, &found));
         if (found.data.count > 0)
-            STARG_TRY(pool_add(pool, &found));
+            TRY(pool_add(pool, &found));
     }
-done:
-    candidates_free(pool->context, &found);
-    starg_release(pool->context, lacking);
-    return status;
+    return STARG_OK;
 }

@@ -16,6 +16,6 @@ typedef struct corner_guards {
 /* `work` is starg_guard_options.prove_work. Errors: those of starg_guard. */
 starg_status corner_guards_find(starg_context *context, const starg_solid *solid, uint64_t work,
                                 bool certified, corner_guards *out);
-void corner_guards_free(starg_context *context, corner_guards *guards);
+void corner_guards_free(corner_guards *guards);
 
 #endif

@@ -47,6 +47,8 @@ static const double PI = 3.14159265358979323846, GAP = 0.02, LEAST_SHARE = 0.01,
 /* A face, or a vertex, as seen from a place. */
 typedef struct aim_item {
     double corner[3][3]; /* unit directions; all equal for a vertex */
+    double reach[3];     /* and how far each of them is */
+    double depth;        /* largest; INFINITY: any */
     double weight;
 } aim_item;
 
@@ -74,6 +76,8 @@ typedef struct aiming {
     const starg_bits *seen;
     const double *weights; /* by column */
     double frame[3][3];    /* right, up, ahead at yaw and pitch 0 */
+    double depth;          /* largest; INFINITY: any */
+    double pitch[2];       /* least and most */
     double *found;         /* by place: LOOKS directions */
     size_t *counts;
 } aiming;
@@ -91,11 +95,13 @@ typedef struct aim_view {
     double normal[4][3], least,
         loose; /* n . q of all items is at least this: held; possibly held nearby */
     int count;
+    double ahead[3], slack;
 } aim_view;
 
 static aim_view view_at(const aiming *a, const double direction[3], double slack) {
     const starg_visibility_options *o = a->view;
-    aim_view v = {.count = 1};
+    aim_view v = {.count = 1, .slack = slack};
+    vec3_copy(direction, v.ahead);
     vec3_copy(direction, v.normal[0]);
     if (o->fov[0] > 0) {
         v.count = 4;
@@ -119,6 +125,18 @@ static double depth_in(const aim_view *v, const aim_item *item) {
     return depth;
 }
 
+/* Is no corner too deep in the view? In one turned by the slack, possibly. */
+static bool is_near(const aim_view *v, const aim_item *item, double slack) {
+    bool near = true;
+    for (int k = 0; k < 3 && item->depth < INFINITY && near; k++) {
+        double cosine = fmax(-1, fmin(1, vec3_dot(v->ahead, item->corner[k])));
+        if (slack > 0)
+            cosine = cos(fmin(acos(cosine) + slack, PI));
+        near = item->reach[k] * cosine <= item->depth;
+    }
+    return near;
+}
+
 /* The bound of a rectangle; `left` receives the items that its views may hold. */
 static double look(const aiming *a, aim_scratch *w, const rectangle *r, const aim_list *among,
                    aim_list *left, double *in_middle) {
@@ -129,9 +147,9 @@ static double look(const aiming *a, aim_scratch *w, const rectangle *r, const ai
     for (size_t i = 0; i < among->count; i++) {
         const aim_item *item = &w->items[among->item[i]];
         double depth = depth_in(&v, item);
-        held += depth >= v.least ? item->weight : 0;
-        if (depth < v.loose)
+        if (depth < v.loose || !is_near(&v, item, v.slack))
             continue;
+        held += depth >= v.least && is_near(&v, item, 0) ? item->weight : 0;
         most += item->weight;
         left->item[left->count++] = among->item[i];
     }
@@ -201,13 +219,14 @@ static void search(const aiming *a, aim_scratch *w, const rectangle *r, int dept
 /* The best direction for the items of the first list, starting from rectangles of 45 degrees. */
 static void find_direction(const aiming *a, aim_scratch *w) {
     part parts[START_YAWS * START_PITCHES];
-    const double half_yaw = PI / START_YAWS, half_pitch = 0.5 * PI / START_PITCHES;
+    const double half_yaw = PI / START_YAWS,
+                 half_pitch = 0.5 * (a->pitch[1] - a->pitch[0]) / START_PITCHES;
     w->nodes = 0;
     w->best = 0;
     for (int i = 0; i < START_YAWS * START_PITCHES; i++) {
         int row = i / START_YAWS, column = i % START_YAWS;
         parts[i].at = (rectangle){(2 * column + 1) * half_yaw - PI,
-                                  (2 * row + 1) * half_pitch - 0.5 * PI, half_yaw, half_pitch};
+                                  a->pitch[0] + (2 * row + 1) * half_pitch, half_yaw, half_pitch};
         look_at_part(a, w, &w->lists[0], &w->lists[1], &parts[i]);
     }
     qsort(parts, START_YAWS * START_PITCHES, sizeof *parts, by_promise);
@@ -221,22 +240,26 @@ static void find_direction(const aiming *a, aim_scratch *w) {
 
 /* ---- a place ---- */
 
-static bool unit_towards(const double p[3], const double q[3], double out[3]) {
+static double unit_towards(const double p[3], const double q[3], double out[3]) {
     vec3_subtract(q, p, out);
     double length = vec3_length(out);
     for (int k = 0; k < 3 && length > 0; k++)
         out[k] /= length;
-    return length > 0;
+    return length;
 }
 
 static void set_item(const aiming *a, const double p[3], size_t column, aim_item *item) {
-    const starg_mesh *mesh = a->solid->mesh;
-    for (size_t k = 0; k < 3; k++) {
-        size_t vertex =
-            a->view->target == STARG_TARGET_VERTICES ? column : mesh->faces[3 * column + k];
-        unit_towards(p, mesh->vertices + 3 * vertex, item->corner[k]);
-    }
+    bool vertices = a->view->target == STARG_TARGET_VERTICES;
+    for (size_t k = 0; k < 3; k++)
+        item->reach[k] = unit_towards(p,
+                                      vertices ? a->solid->mesh->vertices + 3 * column
+                                               : solid_patch_corner(a->solid, column, k),
+                                      item->corner[k]);
     item->weight = a->weights[column];
+    item->depth = a->depth;
+    if (a->solid->density != NULL && a->view->target == STARG_TARGET_FACES)
+        item->depth =
+            starg_density_depth(a->view, a->solid->density[solid_patch_face(a->solid, column)]);
 }
 
 /* If there are too many, takes every k-th. */
@@ -257,7 +280,8 @@ static void drop_held(const aiming *a, aim_scratch *w) {
     aim_list *list = &w->lists[0];
     size_t kept = 0;
     for (size_t i = 0; i < list->count; i++)
-        if (depth_in(&v, &w->items[list->item[i]]) < v.least)
+        if (depth_in(&v, &w->items[list->item[i]]) < v.least ||
+            !is_near(&v, &w->items[list->item[i]], 0))
             list->item[kept++] = list->item[i];
     list->count = kept;
 }
@@ -310,20 +334,22 @@ static void make_frame(const starg_visibility_options *view, double frame[3][3])
     vec3_cross(frame[0], frame[1], frame[2]);
 }
 
+static void set_pitch(const starg_visibility_options *view, double pitch[2]) {
+    bool any = view->tilt[0] == STARG_TILT_ANY;
+    pitch[0] = any ? -0.5 * PI : view->tilt[0] * (PI / 180);
+    pitch[1] = any ? 0.5 * PI : view->tilt[1] * (PI / 180);
+}
+
 /* Faces have their weights, vertices weigh the same. */
 static starg_status weigh(starg_context *context, const starg_solid *solid,
                           const starg_visibility_options *view, double **out) {
-    starg_status status = STARG_OK;
-    column_weights weights = {0};
-    STARG_TRY(column_weights_create(context, solid, view->target, &weights));
-    size_t columns =
-        view->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count : solid->mesh->face_count;
-    STARG_NEW(context, STAGE, *out, columns);
+    SCOPED_BY(column_weights_free) column_weights weights = {0};
+    TRY(column_weights_create(context, solid, view->target, &weights));
+    size_t columns = target_columns(solid, view->target);
+    NEW(context, STAGE, *out, columns);
     for (size_t j = 0; j < columns; j++)
         (*out)[j] = (double)weights.weights[j];
-done:
-    column_weights_free(context, &weights);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status aim_batch(starg_context *context, aiming *a, size_t count,
@@ -333,7 +359,9 @@ static starg_status aim_batch(starg_context *context, aiming *a, size_t count,
     starg_bits *seen = NULL;
     uint8_t *finished = NULL;
     around.cone = 360;
-    around.fov[0] = around.fov[1] = 0;
+    around.fov[0] = around.fov[1] = around.resolution[0] = around.resolution[1] = 0;
+    around.density = 0;
+    around.tilt[0] = around.tilt[1] = STARG_TILT_ANY;
     STARG_NEW_ZERO(context, STAGE, finished, count);
     STARG_NEW_ZERO(context, STAGE, a->counts, count);
     STARG_NEW(context, STAGE, a->found, 3 * LOOKS * count);
@@ -353,23 +381,20 @@ static starg_status aim_batch(starg_context *context, aiming *a, size_t count,
                 candidates_push(context, out, a->points + 3 * i, a->found + 3 * (LOOKS * i + k)));
 done:
     starg_bits_free(seen);
-    starg_release(context, finished);
-    starg_release(context, a->counts);
-    starg_release(context, a->found);
+    RELEASE(finished, a->counts, a->found);
     return status;
 }
 
 /* How many places may have directions. */
 static size_t most_places(const starg_solid *solid, const starg_visibility_options *view) {
-    double rows = MOST_BITS / (double)target_columns(solid->mesh, view->target);
+    double rows = MOST_BITS / (double)target_columns(solid, view->target);
     return (size_t)fmax(1, fmin(rows, MOST) / LOOKS);
 }
 
 starg_status candidates_turn(starg_context *context, const starg_solid *solid,
                              const starg_visibility_options *view, const candidate_points *points,
                              candidate_points *out) {
-    starg_status status = STARG_OK;
-    double *weights = NULL, *places = NULL;
+    SCOPED double *weights = NULL, *places = NULL;
     size_t count = candidates_count(points), most = most_places(solid, view);
     size_t used = count < most ? count : most;
     aiming a = {.solid = solid, .view = view};
@@ -379,17 +404,16 @@ starg_status candidates_turn(starg_context *context, const starg_solid *solid,
                   "directions",
                   used, count, LOOKS);
     make_frame(view, a.frame);
-    STARG_TRY(weigh(context, solid, view, &weights));
+    a.depth = starg_density_depth(view, 0);
+    set_pitch(view, a.pitch);
+    TRY(weigh(context, solid, view, &weights));
     a.weights = weights;
-    STARG_NEW(context, STAGE, places, 3 * used);
+    NEW(context, STAGE, places, 3 * used);
     for (size_t i = 0; i < used; i++)
         vec3_copy(points->data.data + 3 * (i * count / used), places + 3 * i);
     for (size_t first = 0; first < used; first += BATCH) {
         a.points = places + 3 * first;
-        STARG_TRY(aim_batch(context, &a, used - first < BATCH ? used - first : BATCH, out));
+        TRY(aim_batch(context, &a, used - first < BATCH ? used - first : BATCH, out));
     }
-done:
-    starg_release(context, weights);
-    starg_release(context, places);
-    return status;
+    return STARG_OK;
 }

@@ -19,6 +19,8 @@
 #include "guard/carry.h"
 #include "guard/certificate.h"
 #include "guard/corners.h"
+#include "guard/keep.h"
+#include "guard/patched.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
 #include "guard/unseen.h"
@@ -49,10 +51,19 @@ static starg_status check_options(starg_context *context, const starg_guard_opti
     STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
-    if (o->baseline > 0 && (o->redundancy < 2 || guard_wants_part(o)))
+    if (o->visibility.tilt[0] != STARG_TILT_ANY && !sensor_is_directed(&o->visibility))
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "a tilt is of guards that look in one direction; give a field of view "
+                            "(fov) or a cone");
+    else if (o->baseline > 0 && (o->redundancy < 2 || guard_wants_part(o)))
         status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                             "a baseline is one of two guards or more, and of all that can be seen; "
                             "ask for a redundancy of 2, and for no part");
+    else if (o->visibility.target == STARG_TARGET_POINTS &&
+             (o->redundancy > 1 || guard_wants_part(o)))
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "points are seen once, and all of them: leave out the redundancy, the "
+                            "coverage and the limit of guards, or ask for faces");
     else if (o->baseline > 0 && o->visibility.target == STARG_TARGET_VERTICES)
         status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                             "a baseline is as seen from a face; the targets are vertices");
@@ -62,7 +73,6 @@ done:
 
 /* Leaves out given points where no guard may stand, with a notice. */
 static starg_status take_given(const guard_problem *problem, candidate_points *points) {
-    starg_status status = STARG_OK;
     const starg_guard_options *options = problem->options;
     bool looks = sensor_is_directed(&options->visibility) && options->directions != NULL;
     size_t dropped = 0;
@@ -76,18 +86,19 @@ static starg_status take_given(const guard_problem *problem, candidate_points *p
         bool usable = candidates_allowed(problem->solid, p, options->clearance);
         const double *d = looks ? options->directions + 3 * i : NULL;
         const double *up = looks && options->ups != NULL ? options->ups + 3 * i : NULL;
+        usable = usable && (d == NULL || starg_tilt_holds(&options->visibility, d));
         if (usable)
-            STARG_TRY(candidates_push_pose(problem->context, points, p, d, up));
+            TRY(candidates_push_pose(problem->context, points, p, d, up));
         dropped += !usable;
     }
     if (dropped > 0)
         starg_log(problem->context, STARG_LOG_WARNING,
-                  "ignoring %zu of %zu given candidates: not inside%s%s", dropped,
+                  "ignoring %zu of %zu given candidates: not inside%s%s%s", dropped,
                   options->point_count,
                   problem->solid->scene ? ", or not where guards may stand" : "",
+                  options->visibility.tilt[0] != STARG_TILT_ANY ? ", or beyond the tilt" : "",
                   options->clearance > 0 ? ", or nearer to the boundary than the clearance" : "");
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool needs_proxy(const guard_problem *problem) {
@@ -107,22 +118,28 @@ static starg_status make_levels(const guard_problem *problem, guard_detail *out)
 }
 
 static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
-    starg_status status = STARG_OK;
     bool proxy = needs_proxy(problem);
+    bool leveled = problem->options->method == STARG_GUARD_PILP &&
+                   problem->solid->patches == NULL && problem->solid->need == NULL;
     if (problem->solid->scene)
         return STARG_OK; /* obstacles and outsides have no levels of detail */
-    if (problem->options->method == STARG_GUARD_PILP || proxy)
-        STARG_TRY(make_levels(problem, out));
+    if (leveled || proxy)
+        TRY(make_levels(problem, out));
     if (proxy && out->levels != NULL)
-        STARG_TRY(proxy_of_levels(problem->context, problem->solid, out->levels, &out->proxy));
-done:
-    return status;
+        TRY(proxy_of_levels(problem->context, problem->solid, out->levels, &out->proxy));
+    if (!leveled) {
+        starg_levels_free(problem->context, out->levels); /* patches are of this surface */
+        out->levels = NULL;
+    }
+    return STARG_OK;
 }
 
 static starg_status find_first(const guard_problem *problem, const guard_detail *detail,
                                candidate_points *out) {
     const starg_guard_options *options = problem->options;
     const candidate_shape shape = guard_shape(problem, detail);
+    if (problem->carried != NULL)
+        return candidates_append(problem->context, problem->carried, out);
     if (options->candidates == STARG_CANDIDATES_GIVEN)
         return take_given(problem, out);
     return candidates_find(problem->context, &shape, options->candidates, options->candidate_count,
@@ -132,21 +149,30 @@ static starg_status find_first(const guard_problem *problem, const guard_detail 
 /* The candidates before augmentation, and what they see. */
 static starg_status find_candidates(const guard_problem *problem, const guard_detail *detail,
                                     guard_pool *out) {
-    starg_status status = STARG_OK;
-    candidate_points points = {0};
-    STARG_TRY(pool_create(problem->context, problem->solid, problem->options, out));
-    STARG_TRY(find_first(problem, detail, &points));
-    if (detail->proxy != NULL && !sensor_is_directed(&problem->options->visibility))
-        STARG_TRY(carry_candidates(problem, detail->proxy, &points));
-    STARG_TRY(pool_add(out, &points));
-done:
-    candidates_free(problem->context, &points);
-    return status;
+    SCOPED_BY(candidates_free) candidate_points points = {0};
+    TRY(pool_create(problem->context, problem->solid, problem->options, out));
+    TRY(find_first(problem, detail, &points));
+    if (problem->carried == NULL && detail->proxy != NULL &&
+        !sensor_is_directed(&problem->options->visibility))
+        TRY(carry_candidates(problem, detail->proxy, &points));
+    return pool_add(out, &points);
 }
 
 static bool is_limited(const starg_space_options *s) {
-    return s->within[0] < s->within[3] || s->standoff_most > 0 || s->standoff_least > 0 ||
-           s->cell > 0 || s->over_count > 0 || s->mount_count > 0;
+    return s->within[0] < s->within[3] || s->zone_count > 0 || s->standoff_most > 0 ||
+           s->standoff_least > 0 || s->cell > 0 || s->over_count > 0 || s->mount_count > 0;
+}
+
+static bool is_in_another_unit(const guard_problem *problem) {
+    return problem->options->visibility.range < problem->solid->check->diagonal / 1000;
+}
+
+static starg_status fail_unit(const guard_problem *problem, const char *what) {
+    return starg_fail(
+        problem->context, STARG_ERROR_MESH, STAGE,
+        "%s: the range is %g, but the model measures %g across; is the range given in "
+        "another unit than the model?",
+        what, problem->options->visibility.range, problem->solid->check->diagonal);
 }
 
 /* Candidates that see nothing prove nothing. Says which limits may be the reason. */
@@ -173,11 +199,8 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
     if (pool->time_limited)
         return starg_fail(problem->context, STARG_ERROR_TIME, STAGE,
                           "time limit reached before any candidate was evaluated; allow more time");
-    if (range < diagonal / 1000)
-        return starg_fail(problem->context, STARG_ERROR_MESH, STAGE,
-                          "no candidate sees any target: the range is %g, but the model measures "
-                          "%g across; is the range given in another unit than the model?",
-                          range, diagonal);
+    if (is_in_another_unit(problem))
+        return fail_unit(problem, "no candidate sees any target");
     for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
         if (limits[i].set)
             used += (size_t)snprintf(advice + used, sizeof advice - used, "%s%s",
@@ -186,62 +209,56 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
                       used > 0 ? advice : ": the solid is too thin for the candidates");
 }
 
-typedef STARG_ARRAY(uint32_t) face_list;
+typedef STARG_ARRAY(uint32_t) patch_list;
 
 static starg_status list_missing(const guard_problem *problem, const guard_pool *pool,
-                                 face_list *out) {
-    starg_status status = STARG_OK;
+                                 patch_list *out) {
+    const starg_solid *solid = problem->solid;
     out->count = 0;
-    for (uint32_t f = 0; f < starg_space_model_faces(problem->solid); f++)
-        if (solid_is_target(problem->solid, false, f) && !starg_bit_test(pool->coverable, f))
-            STARG_PUSH(problem->context, STAGE, out, f);
-done:
-    return status;
+    for (uint32_t j = 0; j < solid_first_patch(solid, starg_space_model_faces(solid)); j++)
+        if (solid_wants(solid, false, solid_patch_face(solid, j), j) &&
+            !starg_bit_test(pool->coverable, j))
+            PUSH(problem->context, STAGE, out, j);
+    return STARG_OK;
 }
 
 /* What remains is looked for in the whole free space: places nearest to the faces
  * that guards are bound to, then boxes. Faces that no place sees are told, and places that see
  * others become candidates. */
 static starg_status look_everywhere(const guard_problem *problem, guard_pool *pool) {
-    starg_status status = STARG_OK;
     const starg_guard_options *options = problem->options;
-    face_list missing = {0};
-    candidate_points places = {0};
+    SCOPED patch_list missing = {0};
+    SCOPED_BY(candidates_free) candidate_points places = {0};
     if (options->visibility.target != STARG_TARGET_FACES || pool->curtailed || pool->time_limited ||
-        options->candidates == STARG_CANDIDATES_GIVEN)
+        options->candidates == STARG_CANDIDATES_GIVEN || problem->hurried)
         return STARG_OK;
-    STARG_TRY(list_missing(problem, pool, &missing));
+    TRY(list_missing(problem, pool, &missing));
     const candidate_shape shape = {problem->solid, problem->solid, options->clearance};
-    STARG_TRY(
-        near_candidates_before(problem->context, &shape, missing.data, missing.count, &places));
+    TRY(near_candidates_before(problem->context, &shape, missing.data, missing.count, &places));
     if (candidates_count(&places) > 0) {
-        STARG_TRY(pool_add(pool, &places));
-        STARG_TRY(list_missing(problem, pool, &missing));
+        TRY(pool_add(pool, &places));
+        TRY(list_missing(problem, pool, &missing));
     }
     places.data.count = 0;
     if (missing.count == 0)
-        goto done;
-    STARG_TRY(unseen_prove(problem->context, problem->solid, options, missing.data, missing.count,
-                           EVERYWHERE, &pool->unseen, &places));
+        return STARG_OK;
+    TRY(unseen_prove(problem->context, problem->solid, options, missing.data, missing.count,
+                     EVERYWHERE, &pool->unseen, &places));
     if (candidates_count(&places) > 0)
-        STARG_TRY(pool_add(pool, &places));
-done:
-    STARG_ARRAY_FREE(problem->context, &missing);
-    candidates_free(problem->context, &places);
-    return status;
+        TRY(pool_add(pool, &places));
+    return STARG_OK;
 }
 
 static starg_status find_pool(const guard_problem *problem, const guard_detail *detail,
                               guard_pool *out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(find_candidates(problem, detail, out));
-    STARG_TRY(pool_augment(out, &problem->weights));
-    STARG_TRY(look_everywhere(problem, out));
+    TRY(find_candidates(problem, detail, out));
+    TRY(pool_augment(out, &problem->weights));
+    TRY(look_everywhere(problem, out));
     out->time_limited = out->time_limited || (detail->time_limited && pool_count(out) == 0);
-    if (starg_bit_count(out->coverable, starg_bit_words(out->columns)) == 0)
-        status = fail_unseen(problem, out);
-done:
-    return status;
+    if (problem->kept == NULL &&
+        starg_bit_count(out->coverable, starg_bit_words(out->columns)) == 0)
+        return fail_unseen(problem, out);
+    return STARG_OK;
 }
 
 static int level_of(const guard_selection *selection, uint32_t candidate, int otherwise) {
@@ -253,57 +270,49 @@ static int level_of(const guard_selection *selection, uint32_t candidate, int ot
 
 starg_status selection_of_cover(starg_context *context, const starg_cover *cover,
                                 const guard_selection *before, int level, guard_selection *out) {
-    starg_status status = STARG_OK;
     *out = (guard_selection){.level = level,
                              .lower_bound = cover->lower_bound,
                              .weight_bound = cover->weight_bound,
                              .time_limited = before->time_limited || cover->time_limited};
     for (size_t i = 0; i < cover->count; i++) {
-        STARG_PUSH(context, STAGE, &out->chosen, cover->rows[i]);
-        STARG_PUSH(context, STAGE, &out->levels, level_of(before, cover->rows[i], level));
+        PUSH(context, STAGE, &out->chosen, cover->rows[i]);
+        PUSH(context, STAGE, &out->levels, level_of(before, cover->rows[i], level));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status selection_copy(starg_context *context, const guard_selection *from,
                             guard_selection *out) {
-    starg_status status = STARG_OK;
     *out = (guard_selection){.level = from->level,
                              .lower_bound = from->lower_bound,
                              .weight_bound = from->weight_bound,
                              .time_limited = from->time_limited};
     for (size_t i = 0; i < from->chosen.count; i++) {
-        STARG_PUSH(context, STAGE, &out->chosen, from->chosen.data[i]);
-        STARG_PUSH(context, STAGE, &out->levels, from->levels.data[i]);
+        PUSH(context, STAGE, &out->chosen, from->chosen.data[i]);
+        PUSH(context, STAGE, &out->levels, from->levels.data[i]);
     }
     for (size_t i = 0; i < from->kept.count; i++)
-        STARG_PUSH(context, STAGE, &out->kept, from->kept.data[i]);
-done:
-    return status;
+        PUSH(context, STAGE, &out->kept, from->kept.data[i]);
+    return STARG_OK;
 }
 
-void selection_free(starg_context *context, guard_selection *selection) {
-    STARG_ARRAY_FREE(context, &selection->chosen);
-    STARG_ARRAY_FREE(context, &selection->levels);
-    STARG_ARRAY_FREE(context, &selection->kept);
+void selection_free(guard_selection *selection) {
+    RELEASE(selection->chosen.data);
+    RELEASE(selection->levels.data);
+    RELEASE(selection->kept.data);
 }
 
 /* One cover problem over the model as it is. */
 static starg_status choose_at_once(const guard_problem *problem, const guard_pool *pool,
                                    bool time_limited, guard_selection *out) {
-    starg_status status = STARG_OK;
-    starg_cover *cover = NULL;
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
     bool greedy =
         problem->options->method == STARG_GUARD_GREEDY && !chooses_exactly(problem->options);
     const guard_selection none = {.time_limited = time_limited};
     const choice how = {.method = greedy ? STARG_COVER_GREEDY : STARG_COVER_ILP,
                         .max_nodes = problem->options->max_nodes};
-    STARG_TRY(choose_candidates(pool, &problem->weights, &how, &cover));
-    STARG_TRY(selection_of_cover(problem->context, cover, &none, 0, out));
-done:
-    starg_cover_free(cover);
-    return status;
+    TRY(choose_candidates(pool, &problem->weights, &how, &cover));
+    return selection_of_cover(problem->context, cover, &none, 0, out);
 }
 
 /* Without levels, the first choice is that of the whole problem, with its bounds. */
@@ -314,27 +323,23 @@ static bool was_whole(const guard_detail *detail, const guard_selection *first) 
 /* Solving the whole problem again, for the bounds, takes seconds: not after the time limit. */
 static starg_status choose_by_levels(const guard_problem *problem, const guard_detail *detail,
                                      guard_outcome *out) {
-    starg_status status = STARG_OK;
-    guard_selection first = {0};
-    STARG_TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
+    SCOPED_BY(selection_free) guard_selection first = {0};
+    TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
     bool late = first.lower_bound > 0 && starg_time_is_over(problem->context);
     if (late || was_whole(detail, &first) || guard_refines(problem->options)) {
         out->selection = first;
         out->selection.time_limited = first.time_limited || late;
         first = (guard_selection){0};
     } else
-        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
-    STARG_TRY(record_level(&out->pool, &out->selection, &out->records));
-done:
-    selection_free(problem->context, &first);
-    return status;
+        TRY(bound_guards(problem, &out->pool, &first, &out->selection));
+    return record_level(&out->pool, &out->selection, &out->records);
 }
 
 /* Could a single point suffice that is not a candidate? */
 static bool may_be_star(const guard_problem *problem) {
     const starg_guard_options *o = problem->options;
     bool free = (o->prove && !chooses_exactly(o)) || guard_refines(o);
-    return free && !problem->solid->scene && o->redundancy == 1 &&
+    return free && !problem->solid->scene && problem->kept == NULL && o->redundancy == 1 &&
            !sensor_is_directed(&o->visibility);
 }
 
@@ -353,47 +358,43 @@ static bool sees_everything(const guard_pool *pool) {
 
 /* A star-shaped solid: a point of its kernel sees everything, so one guard is optimal. */
 static starg_status find_star_guard(const guard_problem *problem, guard_outcome *out, bool *found) {
-    starg_status status = STARG_OK;
-    candidate_points points = {0};
+    SCOPED_BY(candidates_free) candidate_points points = {0};
     starg_kernel_result kernel;
     guard_pool *pool = &out->pool;
     *found = false;
-    STARG_TRY(starg_kernel(problem->context, problem->solid->mesh, NULL, &kernel));
+    TRY(starg_kernel(problem->context, problem->solid->mesh, NULL, &kernel));
     if (kernel.verdict != STARG_KERNEL_INTERIOR ||
         !candidates_allowed(problem->solid, kernel.guard, problem->options->clearance))
         return STARG_OK;
-    STARG_TRY(pool_create(problem->context, problem->solid, problem->options, pool));
-    STARG_TRY(candidates_push(problem->context, &points, kernel.guard, NULL));
-    STARG_TRY(pool_add(pool, &points));
+    TRY(pool_create(problem->context, problem->solid, problem->options, pool));
+    TRY(candidates_push(problem->context, &points, kernel.guard, NULL));
+    TRY(pool_add(pool, &points));
     *found = sees_everything(pool);
     if (*found) {
-        STARG_PUSH(problem->context, STAGE, &out->selection.chosen, 0);
-        STARG_PUSH(problem->context, STAGE, &out->selection.levels, 0);
+        PUSH(problem->context, STAGE, &out->selection.chosen, 0);
+        PUSH(problem->context, STAGE, &out->selection.levels, 0);
         out->selection.lower_bound = out->search.bound = 1;
         out->selection.weight_bound = problem->weights.total;
         if (problem->options->max_guards > 0)
             out->search.weight_bound = problem->weights.total;
     } else
         pool_free(pool);
-done:
-    candidates_free(problem->context, &points);
-    return status;
+    return STARG_OK;
 }
 
 /* A certificate says why the bound of the search holds, so it has to come to that by itself. */
 static starg_status begin_bound(const guard_problem *problem, guard_outcome *out) {
-    starg_status status = STARG_OK;
     size_t bound = 0;
     if (problem->certificate == NULL && out->selection.chosen.count > 0)
-        STARG_TRY(bound_by_parts(problem, &out->pool, &bound));
+        TRY(bound_by_parts(problem, &out->pool, &bound));
     if (bound > 1 || bound == out->selection.chosen.count)
         out->search.bound = bound;
-done:
-    return status;
+    if (bound > out->selection.lower_bound)
+        out->selection.lower_bound = bound; /* it holds for candidates, too */
+    return STARG_OK;
 }
 
-/* Everything from the solid to the choice. */
-static starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
+starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
     starg_status status = STARG_OK;
     guard_detail detail = {0};
     bool found = false;
@@ -403,6 +404,9 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
         return STARG_OK;
     STARG_TRY(find_detail(problem, &detail));
     STARG_TRY(find_pool(problem, &detail, &out->pool));
+    if (problem->kept != NULL &&
+        starg_bit_count(out->pool.coverable, starg_bit_words(out->pool.columns)) == 0)
+        goto done; /* what those that stay do not see, nobody sees */
     if (problem->options->method == STARG_GUARD_PILP && !chooses_exactly(problem->options))
         STARG_TRY(choose_by_levels(problem, &detail, out));
     else
@@ -420,9 +424,11 @@ done:
     return status;
 }
 
-static void outcome_free(starg_context *context, guard_outcome *outcome) {
+void outcome_free(starg_context *context, guard_outcome *outcome) {
     records_free(context, &outcome->records);
-    selection_free(context, &outcome->selection);
+    selection_free(&outcome->selection);
+    RELEASE(outcome->worth.seen, outcome->worth.bound, outcome->tour.points, outcome->tour.stops,
+            outcome->tour.blocked, outcome->search.steps);
     pool_free(&outcome->pool);
 }
 
@@ -436,7 +442,7 @@ static starg_status certify_one(const guard_problem *problem, const guard_outcom
          j++)
         if (starg_bits_test(pool->rows, outcome->selection.chosen.data[0], j))
             witness = j;
-    return certificate_of_one(problem->context, problem->solid, problem->options, witness,
+    return certificate_of_one(problem->context, pool->solid, problem->options, witness,
                               problem->certificate);
 }
 
@@ -460,6 +466,40 @@ static void warn_of_shells(const guard_problem *problem, const starg_guards *gua
                   count, count == 1 ? "guard stands" : "guards stand", first);
 }
 
+/* Beside guards that stay: of a solid whose needs are what these leave. The pool outlives it, so
+ * its solid becomes that of the problem, and what the guards that stay see is coverable. */
+static starg_status find_others(guard_problem *problem, kept_guards *kept, guard_outcome *out) {
+    starg_status status = STARG_OK;
+    starg_context *context = problem->context;
+    starg_solid open = *problem->solid;
+    starg_guard_options used = *problem->options;
+    guard_problem rest = *problem;
+    rest.weights = (column_weights){0};
+    STARG_TRY(keep_find(problem, kept));
+    STARG_TRY(keep_check(problem, kept));
+    problem->kept = rest.kept = kept;
+    open.need = kept->need;
+    rest.solid = &open;
+    rest.options = &used;
+    used.redundancy = kept->times > 0 ? kept->times : 1;
+    used.refine = used.refine && kept->even;
+    STARG_TRY(column_weights_create(context, &open, used.visibility.target, &rest.weights));
+    rest.weights.kept = kept->weight;
+    if (kept->open > 0) {
+        STARG_TRY(find_guards(&rest, out));
+        STARG_TRY(curve_find(&rest, out));
+    } else
+        STARG_TRY(pool_create(context, &open, &used, &out->pool));
+    out->pool.solid = problem->solid;
+    out->pool.options = problem->options;
+    for (size_t i = 0; kept->rows != NULL && i < kept->rows->rows; i++)
+        for (size_t w = 0; w < starg_bit_words(out->pool.columns); w++)
+            out->pool.coverable[w] |= starg_bits_row(kept->rows, i)[w];
+done:
+    column_weights_free(&rest.weights);
+    return status;
+}
+
 static starg_status guard_solid(starg_context *context, const starg_solid *solid,
                                 const starg_guard_options *options, guard_certificate *why,
                                 starg_guards **out) {
@@ -469,23 +509,76 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     starg_guard_options used = options ? *options : defaults;
     guard_problem problem = {
         .context = context, .solid = solid, .options = &used, .certificate = why};
-    guard_outcome outcome = {0};
+    guard_outcome of_faces = {0}, *outcome = &of_faces;
+    point_round rounds[2] = {0}, *of_points = NULL;
+    kept_guards kept = {0};
+    patched_solid patched = {0};
+    bool points = used.visibility.target == STARG_TARGET_POINTS;
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
     STARG_TRY(check_options(context, &used));
+    if (points) { /* as targets of the search they are the patches of a solid */
+        used.visibility.target = STARG_TARGET_FACES;
+        if (is_in_another_unit(&problem)) {
+            status = fail_unit(&problem, "nobody sees every point of a face");
+            goto done;
+        }
+    }
+    STARG_TRY(patched_solid_make(context, solid, &used.visibility, &patched));
+    if (points)
+        used.visibility.patch = STARG_PATCH_OFF;
+    else
+        problem.solid = solid = &patched.solid;
     STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
-    STARG_TRY(find_guards(&problem, &outcome));
-    STARG_TRY(baseline_guards(&problem, &outcome.pool, &outcome.selection));
-    STARG_TRY(certify_one(&problem, &outcome));
-    STARG_TRY(report_guards(&problem, &outcome, out));
+    if (points && (used.keep_count > 0 || solid->times != NULL)) {
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "points are seen once, by guards that are all to be found: guards that "
+                            "stay (keep) and needs of faces (require) go with faces");
+        goto done;
+    }
+    if (points && solid->clear != NULL) {
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "every point is proven to be seen in front of what blocks; leave out "
+                            "the clear faces, or ask for faces");
+        goto done;
+    }
+    if (keep_applies(&problem))
+        STARG_TRY(find_others(&problem, &kept, &of_faces));
+    else
+        STARG_TRY(points ? find_guards_of_points(&problem, patched.patches, rounds, &of_points)
+                         : find_guards(&problem, &of_faces));
+    if (points) {
+        outcome = &of_points->outcome;
+        if (outcome->selection.chosen.count > 0 && !of_points->any) {
+            status = fail_unseen(&problem, &outcome->pool); /* nothing but points on edges */
+            goto done;
+        }
+    }
+    if (problem.kept == NULL && !points)
+        STARG_TRY(curve_find(&problem, outcome));
+    STARG_TRY(baseline_guards(&problem, &outcome->pool, &outcome->selection));
+    STARG_TRY(certify_one(&problem, outcome));
+    STARG_TRY(tour_find(&problem, outcome));
+    if (points && used.order) { /* others are the first to see a part */
+        point_coverage_free(&of_points->coverage);
+        STARG_TRY(find_coverage(&problem, outcome, &of_points->coverage));
+    }
+    STARG_TRY(report_guards(&problem, outcome, points ? &of_points->coverage : NULL, out));
+    if (points)
+        (*out)->options.visibility.target = STARG_TARGET_POINTS;
     if (options != NULL) { /* as asked for: files name them only then */
         (*out)->options.max_nodes = options->max_nodes;
         (*out)->options.candidate_count = options->candidate_count;
+        (*out)->options.refine = options->refine;
     }
     warn_of_shells(&problem, *out);
 done:
-    outcome_free(context, &outcome);
-    column_weights_free(context, &problem.weights);
+    outcome_free(context, &of_faces);
+    keep_free(&kept);
+    point_round_free(context, &rounds[0]);
+    point_round_free(context, &rounds[1]);
+    patched_solid_free(&patched);
+    column_weights_free(&problem.weights);
     return status;
 }
 
@@ -498,9 +591,14 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
                                    const starg_guard_options *options, starg_guards **out,
                                    char **text, size_t *size) {
     guard_certificate why = {0};
+    starg_guard_options used;
     *out = NULL;
     *text = NULL;
     *size = 0;
+    if (options != NULL && options->visibility.patch > 0)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate is not written for faces in parts; leave the faces whole, "
+                          "or ask for every point");
     if (options != NULL && guard_wants_part(options))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate is only written where everything is to be seen; ask for a "
@@ -513,13 +611,15 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate says why a bound for guards anywhere holds, which is not "
                           "asked for; ask for a proof (prove)");
-    starg_status status = guard_solid(context, solid, options, &why, out);
+    used = *options;
+    used.visibility.patch = STARG_PATCH_OFF;
+    starg_status status = guard_solid(context, solid, &used, &why, out);
     if (status == STARG_OK) {
         *text = why.text;
         *size = why.size;
         why.text = NULL;
     }
-    certificate_free(context, &why);
+    certificate_free(&why);
     return status;
 }
 
@@ -527,9 +627,8 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
 
 static starg_status take_corner_guards(const guard_problem *problem, const guard_outcome *outcome,
                                        corner_guards *out) {
-    starg_status status = STARG_OK;
     const guard_selection *selection = &outcome->selection;
-    STARG_NEW(problem->context, STAGE, out->positions, 3 * selection->chosen.count);
+    NEW(problem->context, STAGE, out->positions, 3 * selection->chosen.count);
     out->count = selection->chosen.count;
     out->bound = outcome->search.bound;
     for (size_t i = 0; i < out->count; i++)
@@ -540,8 +639,7 @@ static starg_status take_corner_guards(const guard_problem *problem, const guard
         out->size = problem->certificate->size;
         problem->certificate->text = NULL;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status corner_guards_find(starg_context *context, const starg_solid *solid, uint64_t work,
@@ -567,16 +665,16 @@ starg_status corner_guards_find(starg_context *context, const starg_solid *solid
     STARG_TRY(take_corner_guards(&problem, &outcome, out));
 done:
     outcome_free(context, &outcome);
-    column_weights_free(context, &problem.weights);
-    certificate_free(context, &why);
+    column_weights_free(&problem.weights);
+    certificate_free(&why);
     if (status != STARG_OK)
-        corner_guards_free(context, out);
+        corner_guards_free(out);
     return status;
 }
 
-void corner_guards_free(starg_context *context, corner_guards *guards) {
-    starg_release(context, guards->positions);
-    starg_release(context, guards->certificate);
+void corner_guards_free(corner_guards *guards) {
+    RELEASE(guards->positions);
+    RELEASE(guards->certificate);
     *guards = (corner_guards){0};
 }
 
@@ -615,11 +713,11 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
     STARG_TRY(find_candidates(&problem, &(guard_detail){0}, &outcome.pool));
     STARG_TRY(choose_all(&problem, &outcome.pool, &outcome.selection));
-    STARG_TRY(report_guards(&problem, &outcome, out));
+    STARG_TRY(report_guards(&problem, &outcome, NULL, out));
 done:
     starg_time_end(context, former);
     outcome_free(context, &outcome);
-    column_weights_free(context, &problem.weights);
+    column_weights_free(&problem.weights);
     return status;
 }
 
@@ -637,20 +735,15 @@ void starg_guards_free(starg_context *context, starg_guards *guards) {
     for (size_t i = 0; guards->obstacles != NULL && i < guards->obstacle_count; i++)
         starg_release(context, guards->obstacles[i].file);
     starg_release(context, guards->obstacles);
-    starg_release(context, guards->space.over);
-    starg_release(context, guards->space.mount);
-    starg_release(context, guards->targets);
-    starg_release(context, guards->importance);
-    starg_release(context, guards->file);
-    starg_release(context, guards->positions);
-    starg_release(context, guards->directions);
-    starg_release(context, guards->ups);
-    starg_release(context, guards->seen_faces);
-    starg_release(context, guards->levels);
-    starg_release(context, guards->curve_faces);
-    starg_release(context, guards->curve_area);
-    starg_release(context, guards->uncovered);
-    starg_release(context, guards->uncovered_vertices);
-    starg_release(context, guards->redundant_faces);
-    starg_release(context, guards);
+    for (size_t i = 0; guards->zones != NULL && i < guards->zone_count; i++)
+        starg_release(context, guards->zones[i].file);
+    RELEASE(guards->zones, guards->needs, guards->space.over, guards->space.mount,
+            guards->space.clear, guards->targets, guards->importance, guards->file,
+            guards->positions, guards->directions, guards->ups, guards->seen_faces, guards->kept,
+            guards->levels, guards->curve_faces, guards->curve_area, guards->worth_seen,
+            guards->worth_bound);
+    starg_bits_free(guards->rows);
+    RELEASE(guards->uncovered, guards->partial, guards->partial_share, guards->uncovered_vertices,
+            guards->redundant_faces, guards->tour.points, guards->tour.stops, guards->tour.blocked,
+            guards->step_work, guards->step_guards, guards);
 }

@@ -20,9 +20,14 @@ static bool has_levels(const void *record) {
     return ((const starg_guard_options *)record)->method == STARG_GUARD_PILP;
 }
 
+static bool has_patches(const void *record) {
+    return ((const starg_guard_options *)record)->visibility.patch != STARG_PATCH_OFF;
+}
+
 static const starg_field OPTIONS[] = {
     {.key = "method",
      .option = "method",
+     .group = "search",
      .kind = STARG_FIELD_CHOICE,
      OPTION(method),
      .words = METHODS,
@@ -42,6 +47,7 @@ static const starg_field OPTIONS[] = {
              "lattice, or at given points."},
     {.key = "count",
      .option = "count",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      .flags = STARG_FIELD_NULLABLE,
      OPTION(candidate_count),
@@ -57,6 +63,8 @@ static const starg_field OPTIONS[] = {
     VISIBILITY_FACE_RULE_FIELD(starg_guard_options, visibility.face_rule),
     {.key = "coverage",
      .option = "coverage",
+     .group = "targets",
+     .brief = "a part of the area is enough, such as 0.95",
      .kind = STARG_FIELD_REAL,
      .flags = STARG_FIELD_ABOVE,
      OPTION(coverage),
@@ -67,20 +75,29 @@ static const starg_field OPTIONS[] = {
              "above 0 and at most 1."},
     {.key = "max_guards",
      .option = "max-guards",
+     .group = "number",
+     .brief = "the best that K guards can do",
      .kind = STARG_FIELD_COUNT,
      OPTION(max_guards),
      .most = UINT32_MAX,
      .value = "K",
      .help = "Use at most K guards and maximize the covered area.",
      .default_text = "no limit"},
+    VISIBILITY_PATCH_FIELD(starg_guard_options, visibility.patch, has_patches),
     VISIBILITY_RANGE_FIELD(starg_guard_options, visibility.range),
     VISIBILITY_NEAR_FIELD(starg_guard_options, visibility.near),
     VISIBILITY_INCIDENCE_FIELD(starg_guard_options, visibility.incidence),
     VISIBILITY_CONE_FIELD(starg_guard_options, visibility.cone, "cone"),
     VISIBILITY_FOV_FIELD(starg_guard_options, visibility.fov, "fov"),
     VISIBILITY_UP_FIELD(starg_guard_options, visibility.up, "up"),
+    VISIBILITY_TILT_FIELD(starg_guard_options, visibility.tilt, "tilt"),
+    VISIBILITY_RESOLUTION_FIELD(starg_guard_options, visibility.resolution),
+    VISIBILITY_DENSITY_FIELD(starg_guard_options, visibility.density),
+    VISIBILITY_UNIT_FIELD(starg_guard_options, visibility.unit),
     {.key = "redundancy",
      .option = "redundancy",
+     .group = "number",
+     .brief = "each face seen by K guards",
      .kind = STARG_FIELD_COUNT,
      OPTION(redundancy),
      .least = 1,
@@ -90,6 +107,7 @@ static const starg_field OPTIONS[] = {
      .help = "Cover each face by K guards, or by as many candidates as see it."},
     {.key = "baseline",
      .option = "baseline",
+     .group = "number",
      .kind = STARG_FIELD_REAL,
      .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
      OPTION(baseline),
@@ -97,15 +115,33 @@ static const starg_field OPTIONS[] = {
      .value = "DEGREES",
      .help = "--redundancy: two of them at least so far apart, as seen from the middle of the "
              "face, where candidates allow."},
+    {.key = "kept",
+     .kind = STARG_FIELD_COUNT,
+     USUALLY_NOT,
+     OPTION(keep_count),
+     .most = UINT32_MAX,
+     .help = "Number of guards that were given to stay."},
     {.key = "clearance",
      .option = "clearance",
+     .group = "places",
+     .brief = "distance of guards from the boundary",
      .kind = STARG_FIELD_REAL,
      OPTION(clearance),
      .high = 1e100,
      .value = "D",
      .help = "Minimum distance of guards from the boundary, in model units."},
+    {.key = "order",
+     .option = "order",
+     .group = "output",
+     .brief = "guards in the order of a short tour",
+     .kind = STARG_FIELD_FLAG,
+     USUALLY_NOT,
+     OPTION(order),
+     .help = "Put the guards in the order of a short tour, and give the way through them, which "
+             "meets no face."},
     {.key = "max_nodes",
      .option = "max-nodes",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      USUALLY_NOT,
      OPTION(max_nodes),
@@ -116,6 +152,7 @@ static const starg_field OPTIONS[] = {
      .default_text = "100,000 for ilp, 30 for each level of pilp"},
     {.key = "coarsest",
      .option = "coarsest",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      .flags = STARG_FIELD_OPTIONAL,
      OPTION(coarsest),
@@ -127,6 +164,7 @@ static const starg_field OPTIONS[] = {
      .help = "pilp: number of vertices of the coarsest level."},
     {.key = "step",
      .option = "step",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_NULLABLE,
      OPTION(step),
@@ -141,6 +179,7 @@ static const starg_field OPTIONS[] = {
                      "each level has a quarter of the next finer one"},
     {.key = "significance",
      .option = "significance",
+     .group = "search",
      .kind = STARG_FIELD_REAL,
      .flags = STARG_FIELD_OPTIONAL,
      OPTION(significance),
@@ -151,6 +190,7 @@ static const starg_field OPTIONS[] = {
      .help = "pilp: discard guards that see less than this fraction of a level's area."},
     {.key = "refine",
      .option = "no-refine",
+     .group = "search",
      .kind = STARG_FIELD_FLAG,
      .flags = STARG_FIELD_OPTIONAL,
      OPTION(refine),
@@ -159,6 +199,8 @@ static const starg_field OPTIONS[] = {
      .help = "pilp: skip refinement, the search for fewer guards beside the candidates."},
     {.key = "effort",
      .option = "effort",
+     .group = "search",
+     .brief = "how long it searches",
      .kind = STARG_FIELD_COUNT,
      .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
      OPTION(effort),
@@ -172,6 +214,7 @@ static const starg_field OPTIONS[] = {
          "many units of work, about a microsecond each."},
     {.key = "refine_lines",
      .option = "refine-lines",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      USUALLY_NOT,
      OPTION(refine_lines),
@@ -184,6 +227,8 @@ static const starg_field OPTIONS[] = {
                      "200,000"},
     {.key = "prove",
      .option = "prove",
+     .group = "number",
+     .brief = "the fewest, wherever they stand, with a proof",
      .kind = STARG_FIELD_FLAG,
      USUALLY_NOT,
      OPTION(prove),
@@ -192,6 +237,7 @@ static const starg_field OPTIONS[] = {
              "from a file the fewest of these are chosen."},
     {.key = "prove_work",
      .option = "prove-work",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      USUALLY_NOT,
      OPTION(prove_work),
@@ -238,12 +284,36 @@ static bool targets_vertices(const void *record) {
     return of(record)->options.visibility.target == STARG_TARGET_VERTICES;
 }
 
+static bool sees_patches(const void *record) {
+    return of(record)->options.visibility.patch > 0;
+}
+
+static bool targets_points(const void *record) {
+    return of(record)->options.visibility.target == STARG_TARGET_POINTS;
+}
+
+static bool has_partial(const void *record) {
+    return sees_patches(record) || targets_points(record);
+}
+
 static bool has_area_bound(const void *record) {
     return of(record)->options.max_guards > 0;
 }
 
 static bool is_bounded_everywhere(const void *record) {
     return of(record)->lower_bound_everywhere > 0;
+}
+
+static bool has_needs(const void *record) {
+    return of(record)->need_count > 0;
+}
+
+static bool has_kept(const void *record) {
+    return of(record)->options.keep_count > 0;
+}
+
+static bool has_tour(const void *record) {
+    return of(record)->options.order && of(record)->count > of(record)->options.keep_count;
 }
 
 static const starg_field MODEL[] = {
@@ -295,6 +365,12 @@ static const starg_field GUARDS[] = {
      .applies = has_ups,
      .help = "With a field of view: what is up in it; its vertical axis is as near to this as the "
              "direction allows."},
+    {.key = "kept",
+     .kind = STARG_FIELD_FLAG,
+     .offset = offsetof(starg_guards, kept),
+     .size = sizeof(bool),
+     .applies = has_kept,
+     .help = "It was given to stay (keep)."},
 };
 static const starg_fields GUARDS_TABLE = {.columns = true, .name = "guards", FIELD_ROWS(GUARDS)};
 
@@ -343,6 +419,21 @@ static const starg_field CURVE[] = {
 static const starg_fields CURVE_TABLE = {
     .columns = true, .name = "curve", .form = STARG_FORM_TUPLE, FIELD_ROWS(CURVE)};
 
+static const starg_field STEPS[] = {
+    {.key = "work",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, step_work),
+     .size = sizeof(uint64_t),
+     .most = UINT64_MAX >> 1},
+    {.key = "guards",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, step_guards),
+     .size = sizeof(size_t),
+     .most = UINT32_MAX},
+};
+static const starg_fields STEPS_TABLE = {
+    .columns = true, .name = "search", .form = STARG_FORM_TUPLE, FIELD_ROWS(STEPS)};
+
 static const starg_field REDUNDANT[] = {
     {.key = "faces",
      .kind = STARG_FIELD_COUNT,
@@ -352,6 +443,73 @@ static const starg_field REDUNDANT[] = {
 };
 static const starg_fields REDUNDANT_TABLE = {
     .columns = true, .name = "redundant_faces", .form = STARG_FORM_BARE, FIELD_ROWS(REDUNDANT)};
+
+static const starg_field PARTIAL[] = {
+    {.key = "face",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, partial),
+     .size = sizeof(uint32_t),
+     .most = UINT32_MAX},
+    {.key = "share",
+     .kind = STARG_FIELD_REAL,
+     .offset = offsetof(starg_guards, partial_share),
+     .size = sizeof(double),
+     .high = 1},
+};
+static const starg_fields PARTIAL_TABLE = {
+    .columns = true, .name = "partial", .form = STARG_FORM_TUPLE, FIELD_ROWS(PARTIAL)};
+
+static const starg_field POINTS[] = {
+    {.key = "seen",
+     .kind = STARG_FIELD_REAL,
+     RESULT(points_seen),
+     .high = 1,
+     .help = "Share of the area of which every point is proven to be seen."},
+    {.key = "open",
+     .kind = STARG_FIELD_REAL,
+     RESULT(points_open),
+     .high = 1,
+     .help = "Share that is not decided."},
+    {.key = "complete",
+     .kind = STARG_FIELD_FLAG,
+     RESULT(points_complete),
+     .help = "Every point of the targets is proven to be seen."},
+};
+static const starg_fields POINTS_TABLE = {.name = "points", FIELD_ROWS(POINTS)};
+
+static const starg_field TOUR_POINTS[] = {
+    {.key = "points", .kind = STARG_FIELD_POINT, RESULT(tour.points)}};
+static const starg_fields TOUR_POINTS_TABLE = {
+    .columns = true, .name = "points", .form = STARG_FORM_BARE, FIELD_ROWS(TOUR_POINTS)};
+
+static const starg_field TOUR[] = {
+    {.key = "length",
+     .kind = STARG_FIELD_REAL,
+     RESULT(tour.length),
+     .high = 1e101,
+     .help = "Length of the way from the first guard that does not stay to the last one."},
+    {.key = "points",
+     .kind = STARG_FIELD_LIST,
+     .of = &TOUR_POINTS_TABLE,
+     LENGTH(starg_guards, tour.point_count),
+     .help = "The way: positions of guards, and where it bends between them. Its segments meet no "
+             "face, but for blocked legs."},
+    {.key = "stops",
+     .kind = STARG_FIELD_INDICES,
+     RESULT(tour.stops),
+     LENGTH(starg_guards, tour.stop_count),
+     .limit = offsetof(starg_guards, tour.point_count),
+     .help = "Which of the points are guards, in their order."},
+    {.key = "blocked",
+     .kind = STARG_FIELD_INDICES,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(tour.blocked),
+     LENGTH(starg_guards, tour.blocked_count),
+     .limit = offsetof(starg_guards, tour.stop_count),
+     .help = "Legs, from a stop to the next one, for which no free way was found; they are "
+             "straight."},
+};
+static const starg_fields TOUR_TABLE = {.name = "tour", FIELD_ROWS(TOUR)};
 
 static const starg_field COVERAGE[] = {
     {.key = "faces",
@@ -374,7 +532,21 @@ static const starg_field COVERAGE[] = {
      RESULT(uncovered),
      LENGTH(starg_guards, uncovered_count),
      .limit = offsetof(starg_guards, face_count),
-     .help = "Faces that no guard sees, ascending."},
+     .help = "Faces of which no guard sees some part or all, ascending."},
+    {.key = "partial",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     .of = &PARTIAL_TABLE,
+     .applies = has_partial,
+     LENGTH(starg_guards, partial_count),
+     .help = "With patches: those of them of which guards see a part, and the seen share of the "
+             "area of each."},
+    {.key = "points",
+     .kind = STARG_FIELD_RECORD,
+     .flags = STARG_FIELD_OPTIONAL,
+     .of = &POINTS_TABLE,
+     .applies = targets_points,
+     .help = "With target points: what is proven of every point."},
     {.key = "baseline_faces",
      .kind = STARG_FIELD_COUNT,
      RESULT(baseline_faces),
@@ -388,6 +560,12 @@ static const starg_field COVERAGE[] = {
      LENGTH(starg_guards, redundant_count),
      .help = "With redundancy above 1: numbers of faces that at least 1, 2, ... and redundancy "
              "guards see."},
+    {.key = "met_needs",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(met_needs),
+     .most = UINT32_MAX,
+     .applies = has_needs,
+     .help = "With needs: number of those faces that as many guards see as they need."},
     {.key = "curve",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_MATCHING,
@@ -454,6 +632,62 @@ static const starg_field OBSTACLES[] = {
 };
 static const starg_fields OBSTACLES_TABLE = {
     .name = "obstacles", .size = sizeof(starg_guard_obstacle), FIELD_ROWS(OBSTACLES)};
+
+static bool is_mesh(const void *record) {
+    return ((const starg_guard_zone *)record)->face_count > 0;
+}
+
+static const starg_field ZONES[] = {
+    {.key = "excludes",
+     .kind = STARG_FIELD_FLAG,
+     FIELD_MEMBER(starg_guard_zone, excludes),
+     .help = "Guards may not stand in it."},
+    {.key = "box",
+     .kind = STARG_FIELD_NUMBERS,
+     FIELD_MEMBER(starg_guard_zone, box),
+     .length = 6,
+     .low = -1e100,
+     .high = 1e100,
+     .help = "Lower and upper corner; of a mesh, those of a box that holds it."},
+    {.key = "vertices",
+     .kind = STARG_FIELD_COUNT,
+     USUALLY_NOT,
+     FIELD_MEMBER(starg_guard_zone, vertex_count),
+     .most = UINT32_MAX,
+     .help = "Of a mesh, their number."},
+    {.key = "faces",
+     .kind = STARG_FIELD_COUNT,
+     USUALLY_NOT,
+     FIELD_MEMBER(starg_guard_zone, face_count),
+     .most = UINT32_MAX,
+     .help = "Of a mesh, their number."},
+    {.key = "file",
+     .kind = STARG_FIELD_TEXT,
+     .flags = STARG_FIELD_OPTIONAL,
+     FIELD_MEMBER(starg_guard_zone, file),
+     .applies = is_mesh,
+     .help = "Of a mesh its path as given."},
+};
+static const starg_fields ZONES_TABLE = {
+    .name = "zones", .size = sizeof(starg_guard_zone), FIELD_ROWS(ZONES)};
+
+static const starg_field NEEDS[] = {
+    {.key = "face",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_face_need, face),
+     .most = UINT32_MAX},
+    {.key = "times",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_face_need, times),
+     .most = BOUND_MOST_TIMES},
+    {.key = "density",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_face_need, density),
+     .words = visibility_density_words,
+     .high = 1e100},
+};
+static const starg_fields NEEDS_TABLE = {
+    .name = "needs", .size = sizeof(starg_face_need), .form = STARG_FORM_TUPLE, FIELD_ROWS(NEEDS)};
 
 static const starg_field TARGETS[] = {
     {.key = "face",
@@ -562,6 +796,13 @@ static const starg_field SCENE[] = {
      RESULT(space.mount_distance),
      .high = 1e100,
      .help = "At most so far from them."},
+    {.key = "clear",
+     .kind = STARG_FIELD_INDICES,
+     USUALLY_NOT,
+     RESULT(space.clear),
+     LENGTH(starg_guards, space.clear_count),
+     .limit = offsetof(starg_guards, face_count),
+     .help = "Faces of the model that block no view and need not be seen, ascending."},
     {.key = "obstacles",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_OPTIONAL,
@@ -569,6 +810,24 @@ static const starg_field SCENE[] = {
      .of = &OBSTACLES_TABLE,
      LENGTH(starg_guards, obstacle_count),
      .help = "What stands in the way and need not be seen."},
+    {.key = "zones",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(zones),
+     .of = &ZONES_TABLE,
+     LENGTH(starg_guards, zone_count),
+     .help = "Guards stand in one of those that do not exclude, if there are any, and in none of "
+             "the others; within is then a box that holds the first."},
+    {.key = "needs",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(needs),
+     .of = &NEEDS_TABLE,
+     LENGTH(starg_guards, need_count),
+     .help =
+         "Faces that need more or less than others, ascending: by how many guards each must be "
+         "seen (0: as others), and with how many pixels for each unit of length, or the name of "
+         "such a density (0: as others)."},
     {.key = "targets",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_OPTIONAL,
@@ -618,7 +877,19 @@ static const starg_field FILE_ROWS[] = {
      .of = &LEVELS_TABLE,
      LENGTH(starg_guards, level_count),
      .help = "With method pilp: the levels of detail before refinement, coarsest first."},
+    {.key = "tour",
+     .kind = STARG_FIELD_RECORD,
+     .of = &TOUR_TABLE,
+     .applies = has_tour,
+     .help = "With order: a short way through the guards."},
     {.key = "coverage", .kind = STARG_FIELD_RECORD, .of = &COVERAGE_TABLE, .help = "The coverage."},
+    {.key = "search",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     .of = &STEPS_TABLE,
+     LENGTH(starg_guards, step_count),
+     .help = "Numbers of guards that the search had found after so much work, in about "
+             "microseconds; it began with the first of them."},
     {.key = "candidates",
      .kind = STARG_FIELD_COUNT,
      RESULT(candidate_count),

@@ -16,19 +16,29 @@ static bool put(FILE *stream, const void *result, const char *model_file) {
     return record_put(stream, &guards_file_fields, &shown, 0);
 }
 
+static starg_status keep_name(starg_context *context, const char *name, char **file) {
+    size_t size = strlen(name) + 1;
+    char *copy = NULL;
+    NEW(context, STAGE, copy, size);
+    memcpy(copy, name, size);
+    starg_release(context, *file);
+    *file = copy;
+    return STARG_OK;
+}
+
 starg_status starg_guards_name_obstacles(starg_context *context, starg_guards *guards,
                                          const char *const *files) {
-    starg_status status = STARG_OK;
-    for (size_t i = 0; i < guards->obstacle_count; i++) {
-        size_t size = strlen(files[i]) + 1;
-        char *copy = NULL;
-        STARG_NEW(context, STAGE, copy, size);
-        memcpy(copy, files[i], size);
-        starg_release(context, guards->obstacles[i].file);
-        guards->obstacles[i].file = copy;
-    }
-done:
-    return status;
+    for (size_t i = 0; i < guards->obstacle_count; i++)
+        TRY(keep_name(context, files[i], &guards->obstacles[i].file));
+    return STARG_OK;
+}
+
+starg_status starg_guards_name_zones(starg_context *context, starg_guards *guards,
+                                     const char *const *files) {
+    for (size_t i = 0; i < guards->zone_count; i++)
+        if (guards->zones[i].face_count > 0)
+            TRY(keep_name(context, files[i], &guards->zones[i].file));
+    return STARG_OK;
 }
 
 starg_status starg_guards_write(starg_context *context, const starg_guards *guards,
@@ -47,6 +57,27 @@ static starg_status check_targets(starg_context *context, const char *name, cons
         if (g->targets[i] >= g->face_count || (i > 0 && g->targets[i] <= g->targets[i - 1]))
             return record_reject(context, name, &guards_file_fields, "targets",
                                  "ascending faces of the model");
+    return STARG_OK;
+}
+
+static starg_status check_needs(starg_context *context, const char *name, const starg_guards *g) {
+    for (size_t i = 0; i < g->need_count; i++)
+        if (g->needs[i].face >= g->face_count ||
+            (i > 0 && g->needs[i].face <= g->needs[i - 1].face))
+            return record_reject(context, name, &guards_file_fields, "needs",
+                                 "ascending faces of the model");
+    return STARG_OK;
+}
+
+static starg_status check_tour(starg_context *context, const char *name, const starg_guards *g) {
+    const starg_tour *t = &g->tour;
+    bool fits = t->point_count == 0 || (t->stop_count > 0 && t->stops[0] == 0 &&
+                                        t->stops[t->stop_count - 1] + 1 == t->point_count);
+    for (size_t i = 1; i < t->stop_count; i++)
+        fits = fits && t->stops[i - 1] < t->stops[i];
+    if (!fits)
+        return record_reject(context, name, &guards_file_fields, "stops",
+                             "ascending numbers from the first point to the last");
     return STARG_OK;
 }
 
@@ -69,6 +100,8 @@ starg_status starg_guards_read_memory(starg_context *context, const void *bytes,
     STARG_TRY(record_read(context, name, root, &guards_file_fields, guards));
     STARG_TRY(check_levels(context, name, guards));
     STARG_TRY(check_targets(context, name, guards));
+    STARG_TRY(check_needs(context, name, guards));
+    STARG_TRY(check_tour(context, name, guards));
     *out = guards;
 done:
     json_decref(root);

@@ -2,6 +2,7 @@
 /* The result: what a set of guards sees, recomputed from their positions. */
 #include "geometry/vec3.h"
 #include "guard/baseline.h"
+#include "guard/keep.h"
 #include "guard/stages.h"
 #include "visibility/scene.h"
 
@@ -19,183 +20,225 @@ static starg_visibility_options view_of(const guard_problem *problem, starg_targ
     return view;
 }
 
-/* Lists the targets that are not in `joined`; `skip` (may be NULL) leaves some out. */
-static starg_status list_missing(const guard_problem *problem, const uint64_t *joined,
-                                 starg_target target, const uint64_t *skip, uint32_t **missing,
-                                 size_t *count) {
-    starg_status status = STARG_OK;
-    const starg_mesh *mesh = problem->solid->mesh;
-    bool vertices = target == STARG_TARGET_VERTICES;
-    size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
-    STARG_NEW(problem->context, STAGE, *missing, columns);
-    for (size_t j = 0; j < columns; j++)
-        if (!starg_bit_test(joined, j) && solid_is_target(problem->solid, vertices, j) &&
-            (skip == NULL || !starg_bit_test(skip, j)))
-            (*missing)[(*count)++] = (uint32_t)j;
-done:
-    return status;
+static size_t count_faces(const starg_solid *solid, const uint64_t *row) {
+    size_t count = 0, faces = starg_space_model_faces(solid); /* others are no targets */
+    if (solid->patches == NULL)
+        return starg_bit_count(row, starg_bit_words(faces));
+    for (size_t f = 0; f < faces; f++)
+        count += solid_is_target(solid, false, f) && solid_holds_face(solid, row, f);
+    return count;
+}
+
+/* Of a face, the share of the area in a row. */
+static double share_of_face(const starg_solid *solid, const uint64_t *row, size_t face) {
+    double share = 0;
+    for (size_t j = solid_first_patch(solid, face); j < solid_first_patch(solid, face + 1); j++)
+        if (starg_bit_test(row, j))
+            share += solid->patches != NULL ? solid->patches->share.data[j] : 1;
+    return share;
+}
+
+/* Lists the faces of which the guards do not see all, and shares where they see something. */
+static starg_status list_uncovered(const guard_problem *problem, const uint64_t *joined,
+                                   starg_guards *result) {
+    const starg_solid *solid = problem->solid;
+    size_t faces = starg_space_model_faces(solid);
+    NEW(problem->context, STAGE, result->uncovered, faces);
+    NEW(problem->context, STAGE, result->partial, faces);
+    NEW(problem->context, STAGE, result->partial_share, faces);
+    for (size_t f = 0; f < faces; f++) {
+        if (!solid_is_target(solid, false, f) || solid_holds_face(solid, joined, f))
+            continue;
+        double share = share_of_face(solid, joined, f);
+        result->uncovered[result->uncovered_count++] = (uint32_t)f;
+        if (share > 0) {
+            result->partial_share[result->partial_count] = share;
+            result->partial[result->partial_count++] = (uint32_t)f;
+        }
+    }
+    return STARG_OK;
 }
 
 /* The faces and the area that the first k guards see together, for each k; `joined` ends as what
  * all of them see. */
 static starg_status measure_curve(const guard_problem *problem, const starg_bits *seen,
                                   uint64_t *joined, starg_guards *result) {
-    starg_status status = STARG_OK;
-    size_t faces = 0;
     double area = 0;
-    STARG_NEW(problem->context, STAGE, result->curve_faces, result->count);
-    STARG_NEW(problem->context, STAGE, result->curve_area, result->count);
+    NEW(problem->context, STAGE, result->curve_faces, result->count);
+    NEW(problem->context, STAGE, result->curve_area, result->count);
     for (size_t i = 0; i < result->count; i++) {
         for (size_t w = 0; w < seen->words; w++) {
             uint64_t fresh = starg_bits_row(seen, i)[w] & ~joined[w];
             joined[w] |= fresh;
-            STARG_FOR_BITS (bit, fresh) {
-                faces++;
+            STARG_FOR_BITS (bit, fresh)
                 area += problem->weights.areas[64 * w + bit];
-            }
         }
+        size_t faces = count_faces(problem->solid, joined);
         bool all = faces == problem->weights.faces;
         result->curve_faces[i] = (double)faces / (double)problem->weights.faces;
         result->curve_area[i] =
             all || !(problem->weights.area > 0) ? 1 : area / problem->weights.area;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
-/* The number of faces that two guards at least the baseline apart see. */
+/* Do two guards at least the baseline apart see the patch? */
+static bool is_paired(const guard_problem *problem, const starg_bits *seen, size_t patch,
+                      double cosine, const starg_guards *result) {
+    for (size_t i = 0; i < result->count; i++)
+        for (size_t j = i + 1; starg_bits_test(seen, i, patch) && j < result->count; j++)
+            if (starg_bits_test(seen, j, patch) &&
+                baseline_holds(problem->solid, patch, cosine, result->positions + 3 * i,
+                               result->positions + 3 * j))
+                return true;
+    return false;
+}
+
+/* The number of faces of which such guards see each patch. */
 static size_t count_paired(const guard_problem *problem, const starg_bits *seen,
                            const starg_guards *result) {
+    const starg_solid *solid = problem->solid;
     double cosine = starg_cone_cosine(2 * problem->options->baseline);
     size_t paired = 0;
-    for (size_t f = 0; problem->options->baseline > 0 && f < seen->columns; f++) {
-        bool found = false;
-        for (size_t i = 0; i < result->count && !found; i++)
-            for (size_t j = i + 1; starg_bits_test(seen, i, f) && j < result->count && !found; j++)
-                found = starg_bits_test(seen, j, f) &&
-                        baseline_holds(problem->solid->mesh, f, cosine, result->positions + 3 * i,
-                                       result->positions + 3 * j);
-        paired += found;
+    for (size_t f = 0; problem->options->baseline > 0 && f < starg_space_model_faces(solid); f++) {
+        bool all = true;
+        for (size_t j = solid_first_patch(solid, f); j < solid_first_patch(solid, f + 1); j++)
+            all = all && is_paired(problem, seen, j, cosine, result);
+        paired += all;
     }
     return paired;
+}
+
+/* How many guards see each patch of the face. */
+static size_t least_times(const starg_solid *solid, const starg_bits *seen, size_t face) {
+    size_t least = SIZE_MAX;
+    for (size_t j = solid_first_patch(solid, face); j < solid_first_patch(solid, face + 1); j++) {
+        size_t times = 0;
+        for (size_t i = 0; i < seen->rows; i++)
+            times += starg_bits_test(seen, i, j);
+        least = times < least ? times : least;
+    }
+    return least;
 }
 
 /* The numbers of faces that at least 1, 2, ... guards see, up to the redundancy. */
 static starg_status measure_redundancy(const guard_problem *problem, const starg_bits *seen,
                                        starg_guards *result) {
-    starg_status status = STARG_OK;
     size_t most = problem->options->redundancy;
     if (most < 2)
         return STARG_OK;
-    STARG_NEW_ZERO(problem->context, STAGE, result->redundant_faces, most);
+    NEW_ZERO(problem->context, STAGE, result->redundant_faces, most);
     result->redundant_count = most;
-    for (size_t f = 0; f < seen->columns; f++) {
-        size_t times = 0;
-        for (size_t i = 0; i < result->count; i++)
-            times += starg_bits_test(seen, i, f);
+    for (size_t f = 0; f < starg_space_model_faces(problem->solid); f++) {
+        size_t times = least_times(problem->solid, seen, f);
         for (size_t k = 0; k < most && k < times; k++)
             result->redundant_faces[k]++;
     }
-done:
-    return status;
+    return STARG_OK;
+}
+
+/* How many of the faces with needs of their own have what they need? */
+static size_t count_met(const guard_problem *problem, const starg_bits *seen,
+                        const starg_guards *result) {
+    size_t met = 0;
+    for (size_t i = 0; i < result->need_count; i++) {
+        uint32_t times = result->needs[i].times;
+        times = times > 0 ? times : problem->options->redundancy;
+        met += least_times(problem->solid, seen, result->needs[i].face) >= times;
+    }
+    return met;
 }
 
 static starg_status measure_faces(const guard_problem *problem, starg_guards *result) {
-    starg_status status = STARG_OK;
     const starg_visibility_options options =
         view_of(problem, STARG_TARGET_FACES, result->directions, result->ups);
-    starg_bits *seen = NULL;
-    uint64_t *joined = NULL;
-    STARG_TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
-                               &options, &seen));
+    SCOPED_BY(starg_bits_drop) starg_bits *seen = NULL;
+    SCOPED uint64_t *joined = NULL;
+    TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
+                         &options, &seen));
     for (size_t i = 0; i < result->count; i++)
-        result->seen_faces[i] = starg_bits_count(seen, i);
-    STARG_NEW_ZERO(problem->context, STAGE, joined, seen->words);
-    STARG_TRY(measure_curve(problem, seen, joined, result));
-    STARG_TRY(list_missing(problem, joined, STARG_TARGET_FACES, NULL, &result->uncovered,
-                           &result->uncovered_count));
+        result->seen_faces[i] = count_faces(problem->solid, starg_bits_row(seen, i));
+    NEW_ZERO(problem->context, STAGE, joined, seen->words);
+    TRY(measure_curve(problem, seen, joined, result));
+    TRY(list_uncovered(problem, joined, result));
     result->baseline_faces = count_paired(problem, seen, result);
-    STARG_TRY(measure_redundancy(problem, seen, result));
+    TRY(measure_redundancy(problem, seen, result));
+    result->met_needs = count_met(problem, seen, result);
     result->coverage_faces = result->count > 0 ? result->curve_faces[result->count - 1] : 0;
     result->coverage_area = result->count > 0 ? result->curve_area[result->count - 1] : 0;
-done:
-    starg_bits_free(seen);
-    starg_release(problem->context, joined);
-    return status;
+    return STARG_OK;
 }
 
 /* Bits of the vertices that no face uses: they are not targets. *used_count: number of used
  * vertices. */
 static starg_status find_unused(const guard_problem *problem, uint64_t **unused,
                                 size_t *used_count) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = problem->solid->mesh;
     size_t words = starg_bit_words(mesh->vertex_count);
-    STARG_NEW(problem->context, STAGE, *unused, words);
+    NEW(problem->context, STAGE, *unused, words);
     memset(*unused, 0xff, words * sizeof **unused);
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         starg_bit_clear(*unused, mesh->faces[i]);
     for (size_t v = 0; v < mesh->vertex_count; v++)
         *used_count += !starg_bit_test(*unused, v) && solid_is_target(problem->solid, true, v);
-done:
-    return status;
+    return STARG_OK;
+}
+
+/* The target vertices that are neither in `joined` nor unused. */
+static starg_status list_missing_vertices(const guard_problem *problem, const uint64_t *joined,
+                                          const uint64_t *unused, starg_guards *result) {
+    size_t count = problem->solid->mesh->vertex_count;
+    NEW(problem->context, STAGE, result->uncovered_vertices, count);
+    for (size_t v = 0; v < count; v++)
+        if (!starg_bit_test(joined, v) && !starg_bit_test(unused, v) &&
+            solid_is_target(problem->solid, true, v))
+            result->uncovered_vertices[result->uncovered_vertex_count++] = (uint32_t)v;
+    return STARG_OK;
 }
 
 static starg_status measure_vertices(const guard_problem *problem, const guard_pool *pool,
                                      starg_guards *result) {
-    starg_status status = STARG_OK;
-    starg_bits *seen = NULL;
-    uint64_t *joined = NULL, *unused = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *seen = NULL;
+    SCOPED uint64_t *joined = NULL, *unused = NULL;
     size_t used = 0;
     const starg_visibility_options options =
         view_of(problem, STARG_TARGET_VERTICES, result->directions, result->ups);
-    STARG_TRY(find_unused(problem, &unused, &used));
-    STARG_TRY(visibility_rows(problem->context, problem->solid, result->positions, result->count,
-                              &options, NULL, &seen));
-    STARG_TRY(pool_join_rows(problem->context, seen, &joined));
-    STARG_TRY(list_missing(problem, joined, STARG_TARGET_VERTICES, unused,
-                           &result->uncovered_vertices, &result->uncovered_vertex_count));
+    TRY(find_unused(problem, &unused, &used));
+    TRY(visibility_rows(problem->context, problem->solid, result->positions, result->count,
+                        &options, NULL, &seen));
+    TRY(pool_join_rows(problem->context, seen, &joined));
+    TRY(list_missing_vertices(problem, joined, unused, result));
     result->coverage_vertices = (double)(used - result->uncovered_vertex_count) / (double)used;
-    result->coverable_vertices = starg_bit_count(pool->coverable, pool->rows->words);
-done:
-    starg_bits_free(seen);
-    starg_release(problem->context, joined);
-    starg_release(problem->context, unused);
-    return status;
+    result->coverable_vertices = starg_bit_count(pool->coverable, starg_bit_words(pool->columns));
+    return STARG_OK;
 }
 
 /* The number of faces that some candidate sees; with vertices as the target the rows do not
  * tell. */
 static starg_status count_coverable_faces(const guard_problem *problem, const guard_pool *pool,
                                           starg_guards *result) {
-    starg_status status = STARG_OK;
-    starg_bits *rows = NULL;
-    uint64_t *joined = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
+    SCOPED uint64_t *joined = NULL;
     if (problem->options->visibility.target == STARG_TARGET_FACES) {
-        result->coverable_faces = starg_bit_count(pool->coverable, pool->rows->words);
+        result->coverable_faces = count_faces(pool->solid, pool->coverable);
         return STARG_OK;
     }
     const starg_visibility_options options =
         view_of(problem, STARG_TARGET_FACES, pool->points.directions.data, pool->points.ups.data);
-    STARG_TRY(starg_visibility(problem->context, problem->solid, pool->points.data.data,
-                               pool_count(pool), &options, &rows));
-    STARG_TRY(pool_join_rows(problem->context, rows, &joined));
+    TRY(starg_visibility(problem->context, problem->solid, pool->points.data.data, pool_count(pool),
+                         &options, &rows));
+    TRY(pool_join_rows(problem->context, rows, &joined));
     result->coverable_faces = starg_bit_count(joined, rows->words);
-done:
-    starg_bits_free(rows);
-    starg_release(problem->context, joined);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status measure_guards(const guard_problem *problem, const guard_pool *pool,
                                    starg_guards *result) {
-    starg_status status = STARG_OK;
-    STARG_TRY(measure_faces(problem, result));
-    STARG_TRY(count_coverable_faces(problem, pool, result));
+    TRY(measure_faces(problem, result));
+    TRY(count_coverable_faces(problem, pool, result));
     if (problem->options->visibility.target == STARG_TARGET_VERTICES)
-        STARG_TRY(measure_vertices(problem, pool, result));
-done:
-    return status;
+        TRY(measure_vertices(problem, pool, result));
+    return STARG_OK;
 }
 
 /* The up vector of a candidate, as it is written to the file. */
@@ -204,30 +247,44 @@ static void resolve_up(const starg_visibility_options *view, const double *given
     vec3_copy(!vec3_equal(given, none) ? given : !vec3_equal(view->up, none) ? view->up : y, up);
 }
 
+static void copy_pose(const starg_visibility_options *view, const double *p,
+                      const double *direction, const double *up, size_t i, starg_guards *result) {
+    vec3_copy(p, result->positions + 3 * i);
+    if (result->directions != NULL)
+        vec3_copy(direction, result->directions + 3 * i);
+    if (result->ups != NULL)
+        resolve_up(view, up, result->ups + 3 * i);
+}
+
 static starg_status copy_choice(const guard_problem *problem, const guard_pool *pool,
                                 const guard_selection *selection, starg_guards *result) {
-    starg_status status = STARG_OK;
-    size_t count = selection->chosen.count;
-    STARG_NEW(problem->context, STAGE, result->positions, 3 * count);
+    const kept_guards *kept = problem->kept;
+    size_t stay = kept != NULL ? candidates_count(&kept->poses) : 0;
+    size_t count = stay + selection->chosen.count;
+    NEW(problem->context, STAGE, result->positions, 3 * count);
     const starg_visibility_options *view = &problem->options->visibility;
     if (sensor_is_directed(view))
-        STARG_NEW(problem->context, STAGE, result->directions, 3 * count);
+        NEW(problem->context, STAGE, result->directions, 3 * count);
     if (view->fov[0] > 0)
-        STARG_NEW(problem->context, STAGE, result->ups, 3 * count);
-    STARG_NEW(problem->context, STAGE, result->levels, count);
-    STARG_NEW_ZERO(problem->context, STAGE, result->seen_faces, count);
+        NEW(problem->context, STAGE, result->ups, 3 * count);
+    NEW(problem->context, STAGE, result->levels, count);
+    NEW_ZERO(problem->context, STAGE, result->seen_faces, count);
     result->count = count;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t candidate = selection->chosen.data[i];
-        vec3_copy(pool_point(pool, candidate), result->positions + 3 * i);
-        if (result->directions != NULL)
-            vec3_copy(pool_direction(pool, candidate), result->directions + 3 * i);
-        if (result->ups != NULL)
-            resolve_up(view, pool_up(pool, candidate), result->ups + 3 * i);
-        result->levels[i] = selection->levels.data[i];
+    if (stay > 0)
+        NEW_ZERO(problem->context, STAGE, result->kept, count);
+    for (size_t i = 0; i < stay; i++) {
+        copy_pose(view, kept->poses.data.data + 3 * i, kept->poses.directions.data + 3 * i,
+                  kept->poses.ups.data + 3 * i, i, result);
+        result->levels[i] = 0;
+        result->kept[i] = true;
     }
-done:
-    return status;
+    for (size_t i = stay; i < count; i++) {
+        uint32_t candidate = selection->chosen.data[i - stay];
+        copy_pose(view, pool_point(pool, candidate), pool_direction(pool, candidate),
+                  pool_up(pool, candidate), i, result);
+        result->levels[i] = selection->levels.data[i - stay];
+    }
+    return STARG_OK;
 }
 
 /* Is the bounded weight the visible area? Not with vertices, nor if a face counts only once several
@@ -239,11 +296,13 @@ static bool bounds_area(const starg_guard_options *o) {
 static void copy_facts(const guard_problem *problem, const guard_outcome *outcome,
                        starg_guards *result) {
     const guard_selection *selection = &outcome->selection;
+    uint64_t kept = problem->kept != NULL ? problem->kept->weight : 0;
     result->vertex_count = starg_space_model_vertices(problem->solid);
     result->face_count = starg_space_model_faces(problem->solid);
     result->options = *problem->options;
     result->seed = problem->context->seed;
     result->options.points = result->options.directions = result->options.ups = NULL;
+    result->options.keep = result->options.keep_directions = result->options.keep_ups = NULL;
     result->options.visibility.directions = result->options.visibility.ups = NULL;
     result->candidate_count = pool_count(&outcome->pool);
     result->unseen_count = outcome->pool.unseen;
@@ -251,10 +310,13 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->time_limited = selection->time_limited;
     result->area_bound = 1;
     if (bounds_area(problem->options))
-        result->area_bound = (double)selection->weight_bound / (double)problem->weights.total;
+        result->area_bound =
+            (double)(kept + selection->weight_bound) / (double)problem->weights.total;
     if (problem->options->visibility.target == STARG_TARGET_FACES)
         result->area_bound_everywhere =
-            (double)outcome->search.weight_bound / (double)problem->weights.total;
+            outcome->search.weight_bound > 0
+                ? (double)(kept + outcome->search.weight_bound) / (double)problem->weights.total
+                : 0;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
     result->lower_bound_everywhere = outcome->search.bound;
@@ -266,59 +328,140 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
 
 /* The faces that had to be seen, unless all count alike. */
 static starg_status list_targets(const guard_problem *problem, starg_guards *result) {
-    starg_status status = STARG_OK;
     const double *importance = problem->solid->importance;
     bool alike = true;
     for (size_t f = 0; importance != NULL && f < result->face_count; f++)
         alike = alike && importance[f] == 1;
     if (alike)
         return STARG_OK;
-    STARG_NEW(problem->context, STAGE, result->targets, problem->weights.faces);
-    STARG_NEW(problem->context, STAGE, result->importance, problem->weights.faces);
+    NEW(problem->context, STAGE, result->targets, problem->weights.faces);
+    NEW(problem->context, STAGE, result->importance, problem->weights.faces);
     for (size_t f = 0; f < result->face_count; f++)
         if (importance[f] > 0) {
             result->targets[result->target_count] = (uint32_t)f;
             result->importance[result->target_count++] = importance[f];
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status copy_list(starg_context *context, const near_faces *faces, uint32_t **out) {
-    starg_status status = STARG_OK;
     uint32_t *list = NULL;
     if (faces->count == 0)
         return STARG_OK;
-    STARG_NEW(context, STAGE, list, faces->count);
+    NEW(context, STAGE, list, faces->count);
     memcpy(list, faces->list, faces->count * sizeof *list);
     *out = list;
-done:
-    return status;
+    return STARG_OK;
+}
+
+static starg_status copy_needs(starg_context *context, const starg_solid *scene,
+                               starg_guards *result) {
+    size_t faces = starg_space_model_faces(scene);
+    if (scene->times == NULL)
+        return STARG_OK;
+    NEW(context, STAGE, result->needs, faces);
+    for (uint32_t f = 0; f < faces; f++)
+        if (scene->times[f] > 0 || scene->density[f] != 0)
+            result->needs[result->need_count++] =
+                (starg_face_need){f, scene->times[f], scene->density[f]};
+    return STARG_OK;
+}
+
+static starg_status copy_zones(starg_context *context, const zones *from, starg_guards *result) {
+    if (from->count == 0)
+        return STARG_OK;
+    NEW_ZERO(context, STAGE, result->zones, from->count);
+    result->zone_count = from->count;
+    for (size_t i = 0; i < from->count; i++) {
+        starg_guard_zone *own = &result->zones[i];
+        own->excludes = from->list[i].excludes;
+        vec3_copy(from->list[i].box.lower, own->box);
+        vec3_copy(from->list[i].box.upper, own->box + 3);
+        own->vertex_count = from->list[i].vertices;
+        own->face_count = from->list[i].faces;
+    }
+    return STARG_OK;
 }
 
 static starg_status copy_scene(const guard_problem *problem, starg_guards *result) {
-    starg_status status = STARG_OK;
     const starg_solid *scene = problem->solid;
     starg_space_options_default(&result->space);
     if (scene->scene)
         result->space = scene->space;
     result->space.over = result->space.mount = NULL;
-    STARG_TRY(copy_list(problem->context, &scene->over, &result->space.over));
-    STARG_TRY(copy_list(problem->context, &scene->mount, &result->space.mount));
+    result->space.zone_count = 0;
+    result->space.clear = NULL;
+    const near_faces clear = {.count = scene->clear != NULL ? scene->space.clear_count : 0,
+                              .list = scene->clear_list};
+    TRY(copy_list(problem->context, &clear, &result->space.clear));
+    TRY(copy_needs(problem->context, scene, result));
+    TRY(copy_zones(problem->context, &scene->zones, result));
+    TRY(copy_list(problem->context, &scene->over, &result->space.over));
+    TRY(copy_list(problem->context, &scene->mount, &result->space.mount));
     if (scene->obstacle_count > 0)
-        STARG_NEW_ZERO(problem->context, STAGE, result->obstacles, scene->obstacle_count);
+        NEW_ZERO(problem->context, STAGE, result->obstacles, scene->obstacle_count);
     result->obstacle_count = scene->obstacle_count;
     for (size_t i = 0; i < scene->obstacle_count; i++) {
         result->obstacles[i].vertex_count = scene->obstacle_sizes[2 * i];
         result->obstacles[i].face_count = scene->obstacle_sizes[2 * i + 1];
     }
-    status = list_targets(problem, result);
-done:
-    return status;
+    return list_targets(problem, result);
+}
+
+static starg_status copy_steps(starg_context *context, const search_record *from,
+                               starg_guards *result) {
+    NEW(context, STAGE, result->step_work, from->step_count);
+    NEW(context, STAGE, result->step_guards, from->step_count);
+    result->step_count = from->step_count;
+    for (size_t i = 0; i < from->step_count; i++) {
+        result->step_work[i] = from->steps[i].work;
+        result->step_guards[i] = from->steps[i].count;
+    }
+    return STARG_OK;
+}
+
+/* What is proven of every point, in place of what is seen of faces by their corners. */
+static starg_status measure_points(const guard_problem *problem, const point_coverage *coverage,
+                                   starg_guards *result) {
+    const starg_solid *solid = problem->solid;
+    size_t faces = starg_space_model_faces(solid), all = solid->mesh->face_count;
+    const column_weights *weights = &problem->weights;
+    SCOPED double *share = NULL;
+    double area = 0, open = 0;
+    NEW_ZERO(problem->context, STAGE, share, faces);
+    result->uncovered_count = result->partial_count = 0;
+    for (size_t g = 0; g < result->count; g++) {
+        size_t whole = 0;
+        for (size_t f = 0; f < faces; f++) {
+            share[f] += coverage->share[g * all + f];
+            area += weights->areas[f] * coverage->share[g * all + f];
+            whole += solid_is_target(solid, false, f) && share[f] == 1;
+        }
+        result->curve_faces[g] = (double)whole / (double)weights->faces;
+        result->curve_area[g] =
+            whole == weights->faces || !(weights->area > 0) ? 1 : area / weights->area;
+    }
+    for (size_t f = 0; f < faces; f++) {
+        if (!solid_is_target(solid, false, f) || share[f] == 1)
+            continue;
+        open += weights->areas[f] * coverage->open[f];
+        result->uncovered[result->uncovered_count++] = (uint32_t)f;
+        if (share[f] > 0) {
+            result->partial_share[result->partial_count] = share[f];
+            result->partial[result->partial_count++] = (uint32_t)f;
+        }
+    }
+    result->coverage_faces = result->count > 0 ? result->curve_faces[result->count - 1] : 0;
+    result->coverage_area = result->count > 0 ? result->curve_area[result->count - 1] : 0;
+    result->points_complete = result->uncovered_count == 0;
+    result->points_seen = result->coverage_area;
+    result->points_open =
+        result->points_complete || !(weights->area > 0) ? 0 : open / weights->area;
+    return STARG_OK;
 }
 
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
-                           starg_guards **out) {
+                           const point_coverage *coverage, starg_guards **out) {
     starg_status status = STARG_OK;
     starg_guards *result = NULL;
     /* results so far are measured in full */
@@ -328,9 +471,22 @@ starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
     STARG_TRY(copy_scene(problem, result));
     STARG_TRY(copy_choice(problem, &outcome->pool, &outcome->selection, result));
     STARG_TRY(measure_guards(problem, &outcome->pool, result));
+    if (coverage != NULL)
+        STARG_TRY(measure_points(problem, coverage, result));
+    STARG_TRY(copy_steps(problem->context, &outcome->search, result));
     result->level_list = outcome->records.data;
     result->level_count = outcome->records.count;
     outcome->records.data = NULL;
+    result->worth_count = outcome->worth.count;
+    result->worth_seen = outcome->worth.seen;
+    result->worth_bound = outcome->worth.bound;
+    outcome->worth = (guard_worth){0};
+    result->tour = outcome->tour;
+    outcome->tour = (starg_tour){0};
+    if (problem->options->worth) {
+        result->rows = outcome->pool.rows;
+        outcome->pool.rows = NULL;
+    }
     outcome->records.count = outcome->records.capacity = 0;
     *out = result;
 done:

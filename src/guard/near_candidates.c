@@ -44,17 +44,14 @@ static starg_status push_if_allowed(starg_context *context, const candidate_shap
 /* Between the clearance and the largest distance, to either side. */
 static starg_status hang(starg_context *context, const candidate_shape *shape,
                          const double *const t[3], const double at[3], candidate_points *points) {
-    starg_status status = STARG_OK;
     double normal[3];
     double step = 0.5 * (shape->clearance + shape->solid->space.mount_distance);
     vec3_triangle_normal(t[0], t[1], t[2], normal);
     double length = vec3_length(normal);
     for (int k = 0; k < 3; k++)
         normal[k] /= length;
-    STARG_TRY(push_if_allowed(context, shape, at, step, normal, points));
-    STARG_TRY(push_if_allowed(context, shape, at, -step, normal, points));
-done:
-    return status;
+    TRY(push_if_allowed(context, shape, at, step, normal, points));
+    return push_if_allowed(context, shape, at, -step, normal, points);
 }
 
 /* In the upper part of the height, from where more is seen. */
@@ -67,7 +64,6 @@ static starg_status stand(starg_context *context, const candidate_shape *shape, 
 
 static starg_status sample(starg_context *context, const candidate_shape *shape, size_t count,
                            candidate_points *points) {
-    starg_status status = STARG_OK;
     const starg_solid *solid = shape->solid;
     const near_faces *faces = solid->mount.count > 0 ? &solid->mount : &solid->over;
     double all = 0, passed = 0;
@@ -83,49 +79,44 @@ static starg_status sample(starg_context *context, const candidate_shape *shape,
                    ((double)index + 0.5) * all <= passed * (double)count) {
                 double at[3];
                 place_on(t, index, at);
-                STARG_TRY(solid->mount.count > 0 ? hang(context, shape, t, at, points)
-                                                 : stand(context, shape, index, at, points));
+                TRY(solid->mount.count > 0 ? hang(context, shape, t, at, points)
+                                           : stand(context, shape, index, at, points));
                 index++;
             }
             if (f % 1024 == 0)
-                STARG_TRY(starg_check_cancel(context, "candidates"));
+                TRY(starg_check_cancel(context, "candidates"));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status near_candidates_before(starg_context *context, const candidate_shape *shape,
-                                    const uint32_t *faces, size_t count, candidate_points *points) {
-    starg_status status = STARG_OK;
+                                    const uint32_t *patches, size_t count,
+                                    candidate_points *points) {
     const starg_solid *solid = shape->solid;
     const near_faces *bound = solid->mount.count > 0 ? &solid->mount : &solid->over;
     for (size_t i = 0; i < count && bound->count > 0; i++) {
-        const double *t[3], *v = solid->mesh->vertices;
+        const double *t[3];
         double middle[3] = {0}, at[3];
         for (size_t k = 0; k < 3; k++)
-            vec3_along(middle, 1.0 / 3, v + 3 * (size_t)solid->mesh->faces[3 * faces[i] + k],
-                       middle);
+            vec3_along(middle, 1.0 / 3, solid_patch_corner(solid, patches[i], k), middle);
         uint32_t nearest = bvh_nearest_triangle(bound->tree, middle);
         bvh_nearest(bound->tree, middle, at);
         for (size_t k = 0; k < 3; k++)
             t[k] = bound->tree->vertices + 3 * (size_t)bound->corners[3 * nearest + k];
-        STARG_TRY(solid->mount.count > 0 ? hang(context, shape, t, at, points)
-                                         : stand(context, shape, i, at, points));
+        TRY(solid->mount.count > 0 ? hang(context, shape, t, at, points)
+                                   : stand(context, shape, i, at, points));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status near_candidates(starg_context *context, const candidate_shape *shape, size_t wanted,
                              candidate_points *points) {
-    starg_status status = STARG_OK;
     size_t count = wanted;
     for (int round = 0; round < ROUNDS; round++, count *= 3) {
         points->data.count = 0;
-        STARG_TRY(sample(context, shape, count, points));
+        TRY(sample(context, shape, count, points));
         if (10 * candidates_count(points) >= 5 * wanted)
             break;
     }
-done:
-    return status;
+    return STARG_OK;
 }

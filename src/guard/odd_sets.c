@@ -86,15 +86,14 @@ static void list_priced(finding *f) {
 }
 
 static starg_status list_rows(starg_context *context, finding *f) {
-    starg_status status = STARG_OK;
     const odd_sets_question *q = f->question;
     size_t filled = 0, most = 0;
     for (size_t i = 0; i < q->count; i++)
         most += q->share[i] >= LEAST_SHARE;
-    STARG_NEW(context, STAGE, f->held, most * f->n);
-    STARG_NEW(context, STAGE, f->start, most + 1);
-    STARG_NEW(context, STAGE, f->share, most);
-    STARG_NEW(context, STAGE, f->sign, most);
+    NEW(context, STAGE, f->held, most * f->n);
+    NEW(context, STAGE, f->start, most + 1);
+    NEW(context, STAGE, f->share, most);
+    NEW(context, STAGE, f->sign, most);
     for (size_t i = 0; i < q->count; i++) {
         if (q->share[i] < LEAST_SHARE)
             continue;
@@ -105,8 +104,7 @@ static starg_status list_rows(starg_context *context, finding *f) {
                 f->held[filled++] = (uint16_t)a;
     }
     f->start[f->rows] = filled;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* to[a, b] = the sum over rows that hold both; the diagonal: that hold a. */
@@ -222,15 +220,12 @@ static int by_violation(const void *a, const void *b) {
 }
 
 static starg_status grow_best(starg_context *context, finding *f) {
-    starg_status status = STARG_OK;
-    double *change = NULL;
-    STARG_NEW(context, STAGE, change, f->n * f->n);
+    SCOPED double *change = NULL;
+    NEW(context, STAGE, change, f->n * f->n);
     for (size_t k = 0; k < f->found_count && k < MOST_GROWN; k++)
         while (f->found[k].set.count + 2 <= ODD_SET_SIZE && grow(f, change, &f->found[k]))
             continue;
-done:
-    starg_release(context, change);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the choice ---- */
@@ -299,11 +294,6 @@ starg_status odd_sets_renew(starg_context *context, const odd_sets_question *que
     *work += f.work / 1000;
 done:
     index_sets(sets);
-    starg_release(context, f.held);
-    starg_release(context, f.start);
-    starg_release(context, f.share);
-    starg_release(context, f.sign);
-    starg_release(context, f.pair);
-    starg_release(context, f.found);
+    RELEASE(f.held, f.start, f.share, f.sign, f.pair, f.found);
     return status;
 }

@@ -8,20 +8,31 @@
 #include "core/file.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
+#include "guard/poses_read.h"
 #include "mesh/formats/scan.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "points file";
 
 static starg_status take_positions(const starg_source *source, candidate_points *points) {
+    starg_status status = STARG_OK;
     starg_guards *guards = NULL;
-    starg_status status = starg_guards_read_memory(source->context, source->bytes, source->size,
-                                                   source->name, &guards);
+    json_t *root = NULL;
+    STARG_TRY(
+        starg_json_parse(source->context, STAGE, source->name, source->bytes, source->size, &root));
+    if (poses_are_json(root)) {
+        status = poses_read_json(source, root, points);
+        goto done;
+    }
+    status = starg_guards_read_memory(source->context, source->bytes, source->size, source->name,
+                                      &guards);
     for (size_t i = 0; status == STARG_OK && i < guards->count; i++)
         status =
             candidates_push_pose(source->context, points, guards->positions + 3 * i,
                                  guards->directions != NULL ? guards->directions + 3 * i : NULL,
                                  guards->ups != NULL ? guards->ups + 3 * i : NULL);
+done:
+    json_decref(root);
     starg_guards_free(source->context, guards);
     return status;
 }
@@ -83,7 +94,6 @@ static bool is_passed_over(starg_word word) {
 
 /* One line: empty, an OBJ keyword other than a vertex, or a point. */
 static starg_status scan_line(starg_scan *scan, pose_scan *poses) {
-    starg_status status = STARG_OK;
     starg_word word;
     double p[9], x;
     size_t count = 0, line = scan->line;
@@ -93,7 +103,7 @@ static starg_status scan_line(starg_scan *scan, pose_scan *poses) {
     if (starg_word_is(word, "v"))
         more = starg_scan_word_here(scan, &word);
     for (; more; more = starg_scan_word_here(scan, &word)) {
-        STARG_TRY(starg_word_real(scan, word, "a coordinate", &x));
+        TRY(starg_word_real(scan, word, "a coordinate", &x));
         if (!(fabs(x) < 1e100))
             return starg_source_fail(scan->source, starg_at_line(line),
                                      "coordinate %c is %g; it must be finite and below 1e100",
@@ -102,28 +112,24 @@ static starg_status scan_line(starg_scan *scan, pose_scan *poses) {
             p[count] = x;
         count++;
     }
-    STARG_TRY(check_count(scan, line, count, poses));
-    STARG_TRY(check_direction(scan, line, count, p + 3));
-    STARG_TRY(candidates_push_pose(scan->source->context, poses->points, p,
-                                   count > 3 ? p + 3 : NULL, count > 6 ? p + 6 : NULL));
+    TRY(check_count(scan, line, count, poses));
+    TRY(check_direction(scan, line, count, p + 3));
+    TRY(candidates_push_pose(scan->source->context, poses->points, p, count > 3 ? p + 3 : NULL,
+                             count > 6 ? p + 6 : NULL));
     poses->width = count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status scan_text(const starg_source *source, candidate_points *points) {
-    starg_status status = STARG_OK;
-    starg_c_locale locale = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     starg_scan scan = starg_scan_make(source);
     pose_scan poses = {.points = points};
     scan.comments = true;
-    STARG_TRY(starg_c_locale_enter(source->context, &locale));
+    TRY(starg_c_locale_enter(source->context, &locale));
     do
-        STARG_TRY(scan_line(&scan, &poses));
+        TRY(scan_line(&scan, &poses));
     while (starg_scan_next_line(&scan));
-done:
-    starg_c_locale_leave(&locale);
-    return status;
+    return STARG_OK;
 }
 
 /* A JSON text begins with a brace; a list of points never does. */
@@ -147,9 +153,8 @@ static bool is_skeleton(const starg_source *source) {
 }
 
 void starg_poses_free(starg_context *context, starg_poses *poses) {
-    starg_release(context, poses->points);
-    starg_release(context, poses->directions);
-    starg_release(context, poses->ups);
+    (void)context;
+    RELEASE(poses->points, poses->directions, poses->ups);
     *poses = (starg_poses){0};
 }
 
@@ -159,7 +164,11 @@ starg_status starg_poses_read_memory(starg_context *context, const void *bytes, 
     starg_source source = {context, name, bytes, size};
     candidate_points found = {0};
     *out = (starg_poses){0};
-    if (is_json(&source))
+    if (poses_are_glb(&source))
+        STARG_TRY(poses_read_glb(&source, &found));
+    else if (poses_are_table(&source))
+        STARG_TRY(poses_read_table(&source, &found));
+    else if (is_json(&source))
         STARG_TRY(take_positions(&source, &found));
     else if (is_skeleton(&source))
         STARG_TRY(take_nodes(&source, &found));
@@ -170,13 +179,21 @@ starg_status starg_poses_read_memory(starg_context *context, const void *bytes, 
                             "'%s' has no points; write three numbers per line", name);
         goto done;
     }
+    if (found.directions.count > 0 && found.directions.count != found.data.count) {
+        status =
+            starg_fail(context, STARG_ERROR_FORMAT, STAGE,
+                       "'%s' has %zu poses, of which %zu have a direction; give one to all, or "
+                       "to none",
+                       name, found.data.count / 3, found.directions.count / 3);
+        goto done;
+    }
     *out = (starg_poses){.points = found.data.data,
                          .directions = found.directions.data,
                          .ups = found.ups.data,
                          .count = found.data.count / 3};
     found = (candidate_points){0};
 done:
-    candidates_free(context, &found);
+    candidates_free(&found);
     return status;
 }
 

@@ -8,31 +8,29 @@ static const char STAGE[] = "guard";
 
 enum { MOST_ADDED = 256 };
 
-/* Columns behind the faces of the model, which come first, are never set. The search over every
+/* Columns behind the patches of the model, which come first, are never set. The search over every
  * point has them as its engines do. */
 static size_t columns_of(const starg_solid *solid, const starg_guard_options *o) {
     bool part = (o->coverage < 1 || o->max_guards > 0) && !o->prove;
     return part && o->visibility.target == STARG_TARGET_FACES
-               ? starg_space_model_faces(solid)
-               : target_columns(solid->mesh, o->visibility.target);
+               ? solid_first_patch(solid, starg_space_model_faces(solid))
+               : target_columns(solid, o->visibility.target);
 }
 
 starg_status pool_create(starg_context *context, const starg_solid *solid,
                          const starg_guard_options *options, guard_pool *pool) {
-    starg_status status = STARG_OK;
     *pool = (guard_pool){.context = context,
                          .solid = solid,
                          .options = options,
                          .columns = columns_of(solid, options)};
-    STARG_NEW_ZERO(context, STAGE, pool->coverable, starg_bit_words(pool->columns));
-done:
-    return status;
+    NEW_ZERO(context, STAGE, pool->coverable, starg_bit_words(pool->columns));
+    return STARG_OK;
 }
 
 void pool_free(guard_pool *pool) {
     if (pool->context == NULL)
         return;
-    candidates_free(pool->context, &pool->points);
+    candidates_free(&pool->points);
     starg_release(pool->context, pool->coverable);
     starg_bits_free(pool->rows);
     *pool = (guard_pool){0};
@@ -50,22 +48,20 @@ static const double *up_of(const candidate_points *points, size_t index) {
  * unless these are allowed. */
 static starg_status keep_finished(guard_pool *pool, const candidate_points *points, bool empty,
                                   const uint8_t *finished, starg_bits *rows) {
-    starg_status status = STARG_OK;
     size_t kept = 0, words = starg_bit_words(pool->columns);
     for (size_t i = 0; i < rows->rows; i++) {
         pool->time_limited = pool->time_limited || !finished[i];
         if (!finished[i] || (!empty && starg_bits_count(rows, i) == 0))
             continue;
-        STARG_TRY(candidates_push_pose(pool->context, &pool->points, points->data.data + 3 * i,
-                                       direction_of(points, i), up_of(points, i)));
+        TRY(candidates_push_pose(pool->context, &pool->points, points->data.data + 3 * i,
+                                 direction_of(points, i), up_of(points, i)));
         memmove(rows->data + kept * words, starg_bits_row(rows, i), words * sizeof *rows->data);
         kept++;
     }
     rows->rows = kept;
     rows->columns = pool->columns;
     rows->words = words;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Appends the rows of `added`, which is always consumed. */
@@ -93,37 +89,28 @@ done:
 
 /* Adds the rows of points whose poses are complete. */
 static starg_status add_rows(guard_pool *pool, const candidate_points *points, bool empty) {
-    starg_status status = STARG_OK;
     starg_visibility_options view = pool->options->visibility;
-    starg_bits *added = NULL;
-    uint8_t *finished = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *added = NULL;
+    SCOPED uint8_t *finished = NULL;
     size_t count = candidates_count(points);
     view.directions = points->directions.data;
     view.ups = points->ups.data;
-    STARG_NEW_ZERO(pool->context, STAGE, finished, count);
-    STARG_TRY(visibility_rows(pool->context, pool->solid, points->data.data, count, &view, finished,
-                              &added));
-    STARG_TRY(keep_finished(pool, points, empty, finished, added));
+    NEW_ZERO(pool->context, STAGE, finished, count);
+    TRY(visibility_rows(pool->context, pool->solid, points->data.data, count, &view, finished,
+                        &added));
+    TRY(keep_finished(pool, points, empty, finished, added));
     starg_bits *rows = added;
     added = NULL;
-    STARG_TRY(append_rows(pool, rows));
-done:
-    starg_bits_free(added);
-    starg_release(pool->context, finished);
-    return status;
+    return append_rows(pool, rows);
 }
 
 starg_status pool_add(guard_pool *pool, const candidate_points *points) {
-    starg_status status = STARG_OK;
-    candidate_points turned = {0};
+    SCOPED_BY(candidates_free) candidate_points turned = {0};
     if (!sensor_is_directed(&pool->options->visibility) || points->directions.count > 0)
         return add_rows(pool, points, true);
-    STARG_TRY(
-        candidates_turn(pool->context, pool->solid, &pool->options->visibility, points, &turned));
-    STARG_TRY(add_rows(pool, &turned, false)); /* most directions of a point see no whole face */
-done:
-    candidates_free(pool->context, &turned);
-    return status;
+    TRY(candidates_turn(pool->context, pool->solid, &pool->options->visibility, points, &turned));
+    TRY(add_rows(pool, &turned, false)); /* most directions of a point see no whole face */
+    return STARG_OK;
 }
 
 void pool_truncate(guard_pool *pool, size_t count) {
@@ -166,20 +153,24 @@ done:
     return status;
 }
 
-/* Marks the faces that are wanted but not coverable; with vertices or corners as the target, the
+/* Is a vertex or a corner of the face a column that nothing covers? */
+static bool lacks_corner(const guard_pool *pool, size_t face) {
+    bool vertices = pool->options->visibility.target == STARG_TARGET_VERTICES, lacks = false;
+    for (size_t k = 3 * face; k < 3 * face + 3; k++)
+        lacks =
+            lacks || !starg_bit_test(pool->coverable, vertices ? pool->solid->mesh->faces[k] : k);
+    return lacks;
+}
+
+/* Marks the patches that are wanted but not coverable; with vertices or corners as the target, the
  * faces around each one that is not. */
 static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
-    const starg_mesh *mesh = pool->solid->mesh;
-    starg_target target = pool->options->visibility.target;
-    for (size_t f = 0; f < mesh->face_count; f++) {
-        unseen[f] = 0;
-        if (!solid_is_target(pool->solid, false, f))
-            continue;
-        unseen[f] = target == STARG_TARGET_FACES && !starg_bit_test(pool->coverable, f);
-        for (size_t k = 3 * f; k < 3 * f + 3 && target != STARG_TARGET_FACES; k++) {
-            size_t column = target == STARG_TARGET_VERTICES ? mesh->faces[k] : k;
-            unseen[f] = unseen[f] || !starg_bit_test(pool->coverable, column);
-        }
+    bool patches = pool->options->visibility.target == STARG_TARGET_FACES;
+    for (size_t j = 0; j < solid_patch_count(pool->solid); j++) {
+        size_t face = solid_patch_face(pool->solid, j);
+        unseen[j] = patches ? solid_wants(pool->solid, false, face, j) &&
+                                  !starg_bit_test(pool->coverable, j)
+                            : solid_is_target(pool->solid, false, face) && lacks_corner(pool, face);
     }
 }
 
@@ -214,9 +205,9 @@ static double weigh_missing(const guard_pool *pool, const column_weights *weight
                             const augmentation_finds *finds, size_t *count) {
     double missing = 0;
     *count = 0;
-    for (size_t i = 0; i < finds->faces.count; i++)
-        if (!starg_bit_test(pool->coverable, finds->faces.data[i])) {
-            missing += (double)weights->weights[finds->faces.data[i]];
+    for (size_t i = 0; i < finds->patches.count; i++)
+        if (!starg_bit_test(pool->coverable, finds->patches.data[i])) {
+            missing += (double)weights->weights[finds->patches.data[i]];
             ++*count;
         }
     return missing;
@@ -224,22 +215,18 @@ static double weigh_missing(const guard_pool *pool, const column_weights *weight
 
 /* Adds some of the points that see these faces, evenly. */
 static starg_status add_some(guard_pool *pool, const augmentation_finds *finds, size_t count) {
-    starg_status status = STARG_OK;
-    candidate_points some = {0};
+    SCOPED_BY(candidates_free) candidate_points some = {0};
     size_t take = count < MOST_ADDED ? count : MOST_ADDED, index = 0, taken = 0;
-    for (size_t i = 0; i < finds->faces.count; i++) {
-        if (starg_bit_test(pool->coverable, finds->faces.data[i]))
+    for (size_t i = 0; i < finds->patches.count; i++) {
+        if (starg_bit_test(pool->coverable, finds->patches.data[i]))
             continue;
         if (index++ * take / count == taken) {
-            STARG_TRY(candidates_push(pool->context, &some, finds->poses.data.data + 3 * i,
-                                      direction_of(&finds->poses, i)));
+            TRY(candidates_push(pool->context, &some, finds->poses.data.data + 3 * i,
+                                direction_of(&finds->poses, i)));
             taken++;
         }
     }
-    STARG_TRY(pool_add(pool, &some));
-done:
-    candidates_free(pool->context, &some);
-    return status;
+    return pool_add(pool, &some);
 }
 
 /* Adds points until candidates see enough of all that can be seen at all. What else could be seen
@@ -261,10 +248,10 @@ static starg_status augment_part(guard_pool *pool, const column_weights *weights
         if (!(missing < before))
             break; /* never: each point sees its face */
     }
-    for (size_t i = 0; i < finds.faces.count; i++)
-        starg_bit_set(pool->coverable, finds.faces.data[i]);
+    for (size_t i = 0; i < finds.patches.count; i++)
+        starg_bit_set(pool->coverable, finds.patches.data[i]);
 done:
-    augment_finds_free(pool->context, &finds);
+    augment_finds_free(&finds);
     if (status == STARG_ERROR_TIME) {
         pool->time_limited = true;
         return STARG_OK;
@@ -279,8 +266,8 @@ starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
     augmentation all = {pool->solid, &pool->options->visibility, pool->options->clearance, NULL};
     bool pending = pool->options->candidates != STARG_CANDIDATES_GIVEN;
     pool->first_count = pool_count(pool);
-    STARG_NEW_ZERO(pool->context, STAGE, all.tried, pool->solid->mesh->face_count);
-    STARG_NEW(pool->context, STAGE, unseen, pool->solid->mesh->face_count);
+    STARG_NEW_ZERO(pool->context, STAGE, all.tried, solid_patch_count(pool->solid));
+    STARG_NEW(pool->context, STAGE, unseen, solid_patch_count(pool->solid));
     if (tests_first(pool)) {
         status = augment_part(pool, weights, &all, unseen);
         goto done;
@@ -305,29 +292,24 @@ starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
         pool_count(pool) > 0)
         STARG_TRY(pool_add_companions(pool));
 done:
-    candidates_free(pool->context, &found);
-    starg_release(pool->context, all.tried);
-    starg_release(pool->context, unseen);
+    candidates_free(&found);
+    RELEASE(all.tried, unseen);
     return status;
 }
 
 starg_status pool_supply(const guard_pool *pool, uint32_t **supply) {
-    starg_status status = STARG_OK;
-    STARG_NEW_ZERO(pool->context, STAGE, *supply, pool->columns);
+    NEW_ZERO(pool->context, STAGE, *supply, pool->columns);
     for (size_t i = 0; i < pool_count(pool); i++)
         for (size_t w = 0; w < pool->rows->words; w++)
             STARG_FOR_BITS (bit, starg_bits_row(pool->rows, i)[w])
                 (*supply)[64 * w + bit]++;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status pool_join_rows(starg_context *context, const starg_bits *rows, uint64_t **joined) {
-    starg_status status = STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, *joined, rows->words);
+    NEW_ZERO(context, STAGE, *joined, rows->words);
     for (size_t i = 0; i < rows->rows; i++)
         for (size_t w = 0; w < rows->words; w++)
             (*joined)[w] |= starg_bits_row(rows, i)[w];
-done:
-    return status;
+    return STARG_OK;
 }

@@ -104,11 +104,7 @@ static bool put_json(FILE *stream, const void *what, const char *unused) {
 
 starg_status starg_guards_write_poses(starg_context *context, const starg_guards *guards, bool csv,
                                       const char *path) {
-    starg_status status = STARG_OK;
-    starg_c_locale locale = {0};
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    status = starg_json_write(context, STAGE, path, csv ? put_csv : put_json, guards, NULL);
-done:
-    starg_c_locale_leave(&locale);
-    return status;
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
+    TRY(starg_c_locale_enter(context, &locale));
+    return starg_json_write(context, STAGE, path, csv ? put_csv : put_json, guards, NULL);
 }

@@ -43,14 +43,14 @@ typedef struct program {
     uint64_t work;
 } program;
 
-static void program_free(starg_context *context, program *p) {
-    starg_release(context, p->index);
-    starg_release(context, p->value);
-    starg_release(context, p->start);
-    starg_release(context, p->x);
-    starg_release(context, p->w);
-    starg_release(context, p->matrix);
-    starg_release(context, p->first);
+static void program_free(program *p) {
+    RELEASE(p->index);
+    RELEASE(p->value);
+    RELEASE(p->start);
+    RELEASE(p->x);
+    RELEASE(p->w);
+    RELEASE(p->matrix);
+    RELEASE(p->first);
 }
 
 /* Appends the columns of a row; returns their end. */
@@ -130,9 +130,8 @@ static bool take_least(ordering *o, const witness_row *among) {
  * 1969], which keeps the envelope small. */
 static starg_status number_witnesses(starg_context *context, program *p, const witness_row *wanted,
                                      uint32_t *number) {
-    starg_status status = STARG_OK;
-    ordering *o = NULL;
-    STARG_NEW_ZERO(context, STAGE, o, 1);
+    SCOPED ordering *o = NULL;
+    NEW_ZERO(context, STAGE, o, 1);
     o->left = *wanted;
     find_beside(p, wanted, o);
     for (size_t k = 0; k < o->count || take_least(o, wanted); k++)
@@ -143,9 +142,7 @@ static starg_status number_witnesses(starg_context *context, program *p, const w
     for (size_t k = 0; k < o->count; k++)
         number[o->queue[k]] = (uint32_t)(o->count - 1 - k);
     p->m = o->count + p->sets->count;
-done:
-    starg_release(context, o);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- steps ---- */
@@ -165,15 +162,14 @@ static size_t count_entries(const program *p, const witness_row *wanted) {
 
 static starg_status program_make(starg_context *context, program *p, const witness_row *wanted,
                                  const uint32_t *number) {
-    starg_status status = STARG_OK;
     size_t entries = count_entries(p, wanted);
-    STARG_NEW(context, STAGE, p->index, entries);
-    STARG_NEW(context, STAGE, p->value, entries);
-    STARG_NEW(context, STAGE, p->start, p->n + 1);
-    STARG_NEW_ZERO(context, STAGE, p->x, 5 * p->n);
-    STARG_NEW_ZERO(context, STAGE, p->w, 5 * p->m);
-    STARG_NEW(context, STAGE, p->matrix, p->m * p->m);
-    STARG_NEW(context, STAGE, p->first, p->m);
+    NEW(context, STAGE, p->index, entries);
+    NEW(context, STAGE, p->value, entries);
+    NEW(context, STAGE, p->start, p->n + 1);
+    NEW_ZERO(context, STAGE, p->x, 5 * p->n);
+    NEW_ZERO(context, STAGE, p->w, 5 * p->m);
+    NEW(context, STAGE, p->matrix, p->m * p->m);
+    NEW(context, STAGE, p->first, p->m);
     p->s = p->x + p->n;
     p->dx = p->s + p->n;
     p->ds = p->dx + p->n;
@@ -183,8 +179,7 @@ static starg_status program_make(starg_context *context, program *p, const witne
     p->dt = p->dw + p->m;
     p->rw = p->dt + p->m;
     list_columns(p, number, wanted);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* out[f] = start[f] + the sum of `of` over the rows of f. */
@@ -388,13 +383,13 @@ starg_status prices_find(starg_context *context, const witness_row *const *rows,
     run(&p);
     read_prices(&p, number, out);
 done:
-    program_free(context, &p);
+    program_free(&p);
     if (status != STARG_OK)
-        prices_free(context, out);
+        prices_free(out);
     return status;
 }
 
-void prices_free(starg_context *context, witness_prices *prices) {
-    starg_release(context, prices->share);
+void prices_free(witness_prices *prices) {
+    RELEASE(prices->share);
     prices->share = NULL;
 }

@@ -28,6 +28,6 @@ static inline double prices_of_row(const witness_prices *prices, const odd_sets 
         sum += halves[k] * prices->odd[k];
     return sum;
 }
-void prices_free(starg_context *context, witness_prices *prices);
+void prices_free(witness_prices *prices);
 
 #endif

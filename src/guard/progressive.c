@@ -43,17 +43,15 @@ static bool is_significant(const level_work *work, uint32_t candidate) {
 }
 
 static starg_status keep_significant(level_work *work, const guard_selection *before) {
-    starg_status status = STARG_OK;
     size_t limit = work->problem->options->max_guards;
     for (size_t i = 0; i < before->chosen.count; i++) {
         uint32_t candidate = before->chosen.data[i];
         if (limit > 0 && work->kept.count + 1 == limit)
             break; /* at least one slot stays free, so that the choice can respect the limit */
         if (is_significant(work, candidate))
-            STARG_PUSH(work->problem->context, STAGE, &work->kept, candidate);
+            PUSH(work->problem->context, STAGE, &work->kept, candidate);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_listed(uint32_t candidate, const uint32_t *list, size_t count) {
@@ -66,63 +64,53 @@ static bool is_listed(uint32_t candidate, const uint32_t *list, size_t count) {
 /* Fills `kept` with those of a list that are chosen. */
 static starg_status mark_kept(starg_context *context, const uint32_t *list, size_t count,
                               guard_selection *selection) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < selection->chosen.count; i++)
         if (is_listed(selection->chosen.data[i], list, count))
-            STARG_PUSH(context, STAGE, &selection->kept, selection->chosen.data[i]);
-done:
-    return status;
+            PUSH(context, STAGE, &selection->kept, selection->chosen.data[i]);
+    return STARG_OK;
 }
 
 /* The fewest candidates of `all` that see as much as all of them together, or `weight` if a part
  * suffices. */
 static starg_status cover_by(const level_work *work, const uint32_t *all, size_t count,
                              uint64_t weight, starg_cover **out) {
-    starg_status status = STARG_OK;
     const guard_problem *problem = work->problem;
-    starg_bits *rows = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
     starg_cover_problem cover;
-    STARG_TRY(starg_bits_create(problem->context, count, work->pool->columns, &rows));
+    TRY(starg_bits_create(problem->context, count, work->pool->columns, &rows));
     for (size_t i = 0; i < count; i++)
         memcpy(starg_bits_row_mutable(rows, i), starg_bits_row(work->pool->rows, all[i]),
                rows->words * sizeof *rows->data);
     starg_cover_problem_default(&cover);
     cover.rows = rows;
     cover.redundancy = problem->options->redundancy;
+    cover.needs = work->pool->solid->need;
     if (problem->options->coverage < 1 || problem->options->max_guards > 0) {
         cover.weights = work->weights.weights;
         cover.target = weight;
     }
-    STARG_TRY(starg_cover_solve(problem->context, &cover, NULL, out));
-done:
-    starg_bits_free(rows);
-    return status;
+    return starg_cover_solve(problem->context, &cover, NULL, out);
 }
 
 /* The fewest of the kept and added candidates that see as much as all of them, ordered by what each
  * adds. The bounds are those of the whole problem if no guard was kept. */
 static starg_status take_needed(const level_work *work, const starg_cover *added,
                                 const guard_selection *before, guard_selection *out) {
-    starg_status status = STARG_OK;
     starg_context *context = work->problem->context;
     size_t count = work->kept.count + added->count;
-    uint32_t *all = NULL;
-    starg_cover *needed = NULL;
-    STARG_NEW(context, STAGE, all, count);
+    SCOPED uint32_t *all = NULL;
+    SCOPED_BY(starg_cover_drop) starg_cover *needed = NULL;
+    NEW(context, STAGE, all, count);
     for (size_t i = 0; i < count; i++)
         all[i] = i < work->kept.count ? work->kept.data[i] : added->rows[i - work->kept.count];
-    STARG_TRY(cover_by(work, all, count, added->weight, &needed));
+    TRY(cover_by(work, all, count, added->weight, &needed));
     for (size_t i = 0; i < needed->count; i++)
         needed->rows[i] = all[needed->rows[i]];
-    STARG_TRY(selection_of_cover(context, needed, before, work->level, out));
+    TRY(selection_of_cover(context, needed, before, work->level, out));
     out->time_limited = before->time_limited || added->time_limited;
     out->lower_bound = work->kept.count == 0 ? added->lower_bound : 0;
     out->weight_bound = work->kept.count == 0 ? added->weight_bound : 0;
-    STARG_TRY(mark_kept(context, work->kept.data, work->kept.count, out));
-done:
-    starg_release(context, all);
-    starg_cover_free(needed);
-    return status;
+    return mark_kept(context, work->kept.data, work->kept.count, out);
 }
 
 starg_status record_level(const guard_pool *pool, const guard_selection *selection,
@@ -167,7 +155,7 @@ static starg_status guard_level(const guard_problem *problem, const guard_pool *
     STARG_TRY(take_needed(&work, added, before, out));
 done:
     starg_cover_free(added);
-    column_weights_free(problem->context, &work.weights);
+    column_weights_free(&work.weights);
     STARG_ARRAY_FREE(problem->context, &work.kept);
     return status;
 }
@@ -192,11 +180,11 @@ static starg_status guard_coarse_level(const guard_problem *problem, const guard
         goto done;
     STARG_TRY(guard_level(problem, &pool, (int)records->count, chosen, &next));
     STARG_TRY(record_level(&pool, &next, records));
-    selection_free(problem->context, chosen);
+    selection_free(chosen);
     *chosen = next;
     next = (guard_selection){0};
 done:
-    selection_free(problem->context, &next);
+    selection_free(&next);
     pool_free(&pool);
     starg_solid_free(solid);
     return status;
@@ -204,36 +192,30 @@ done:
 
 starg_status bound_guards(const guard_problem *problem, const guard_pool *pool,
                           const guard_selection *first, guard_selection *out) {
-    starg_status status = STARG_OK;
-    starg_cover *bound = NULL;
+    SCOPED_BY(starg_cover_drop) starg_cover *bound = NULL;
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = 0};
-    STARG_TRY(choose_candidates(pool, &problem->weights, &how, &bound));
+    TRY(choose_candidates(pool, &problem->weights, &how, &bound));
     bool smaller = bound->target_reached && bound->count < first->chosen.count;
     if (smaller)
-        STARG_TRY(selection_of_cover(problem->context, bound, first, first->level, out));
+        TRY(selection_of_cover(problem->context, bound, first, first->level, out));
     else
-        STARG_TRY(selection_copy(problem->context, first, out));
+        TRY(selection_copy(problem->context, first, out));
     if (smaller)
-        STARG_TRY(mark_kept(problem->context, first->kept.data, first->kept.count, out));
+        TRY(mark_kept(problem->context, first->kept.data, first->kept.count, out));
     out->lower_bound = bound->lower_bound;
     out->weight_bound = bound->weight_bound;
-done:
-    starg_cover_free(bound);
-    return status;
+    return STARG_OK;
 }
 
 starg_status progressive_guards(const guard_problem *problem, const guard_detail *detail,
                                 const guard_pool *pool, guard_records *records,
                                 guard_selection *out) {
-    starg_status status = STARG_OK;
     const starg_levels *levels = detail->levels;
     size_t coarse = levels == NULL || pool->first_count == 0 ? 0 : levels->count - 1;
+    SCOPED_BY(selection_free)
     guard_selection chosen = {.time_limited = detail->time_limited || pool->time_limited};
     for (size_t i = 0; i < coarse && !chosen.time_limited; i++)
-        STARG_TRY(guard_coarse_level(problem, pool, levels->levels[i].mesh, records, &chosen));
+        TRY(guard_coarse_level(problem, pool, levels->levels[i].mesh, records, &chosen));
     /* skipped levels have no number */
-    STARG_TRY(guard_level(problem, pool, (int)records->count, &chosen, out));
-done:
-    selection_free(problem->context, &chosen);
-    return status;
+    return guard_level(problem, pool, (int)records->count, &chosen, out);
 }

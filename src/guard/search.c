@@ -49,6 +49,12 @@ static const double FIRST_FINEST = 1.0 / 16;
 /* Most work of cells for better guards, and the number of columns above which it is less. */
 static const double MOST_CELL_WORK = 5e6, EASY_COLUMNS = 1e4;
 
+starg_status search_note_guards(search *s) {
+    PUSH(context_of(s), STAGE, &s->steps, ((search_step){s->scene.work, s->count}));
+    starg_tell_best(context_of(s), s->count, "guards");
+    return STARG_OK;
+}
+
 /* ---- points ---- */
 
 /* Points of the pool stay: other witnesses may raise their value. */
@@ -68,7 +74,6 @@ void search_prune_points(search *s, size_t first) {
 }
 
 static starg_status begin_points(search *s) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < pool_count(s->pool); i++) {
         search_point point = {.candidate = (uint32_t)i};
         vec3_copy(pool_point(s->pool, i), point.place);
@@ -76,10 +81,9 @@ static starg_status begin_points(search *s) {
             vec3_copy(pool_direction(s->pool, i), point.direction);
             vec3_copy(pool_up(s->pool, i), point.up);
         }
-        STARG_PUSH(context_of(s), STAGE, &s->points, point);
+        PUSH(context_of(s), STAGE, &s->points, point);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Adds the medial axis as places, unless guards stand there already. Adds none if time does not
@@ -101,7 +105,7 @@ static starg_status begin_places(search *s, const guard_detail *detail) {
         STARG_PUSH(context_of(s), STAGE, &s->points, point);
     }
 done:
-    candidates_free(p->context, &places);
+    candidates_free(&places);
     return status;
 }
 
@@ -115,7 +119,6 @@ int search_by_score(const void *a, const void *b) {
 }
 
 starg_status search_list_leaves(search *s, double most, size_t first, leaf_list *list) {
-    starg_status status = STARG_OK;
     for (size_t i = first; i < s->cells.count; i++) {
         const search_cell *cell = &s->cells.data[i];
         if (cell->children != 0 || search_is_fine(s, cell))
@@ -125,11 +128,10 @@ starg_status search_list_leaves(search *s, double most, size_t first, leaf_list 
             continue;
         double size = vec3_distance(cell->box.lower, cell->box.upper);
         scored_leaf leaf = {(value - most) * sqrt(size), (uint32_t)i};
-        STARG_PUSH(context_of(s), STAGE, list, leaf);
+        PUSH(context_of(s), STAGE, list, leaf);
     }
     s->scene.work += (s->cells.count - first) / VALUES;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status search_split(search *s, scored_leaf *list, size_t count, int tries) {
@@ -197,18 +199,16 @@ done:
 /* Integer programs over the points look for fewer guards. If there are none, what is known of the
  * points is renewed all the same. */
 static starg_status close_and_resume(search *s) {
-    starg_status status = STARG_OK;
     size_t before = s->count;
     if (s->bound < before)
-        STARG_TRY(search_close(s));
+        TRY(search_close(s));
     else
-        STARG_TRY(search_bound_points(s));
+        TRY(search_bound_points(s));
     if (s->count < before) {
         s->idle = 0;
         s->ended = false;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static int count_closings(const search *s) {
@@ -221,39 +221,35 @@ static int count_closings(const search *s) {
 /* Rounds of local search. With many guards, cover problems find in the points of a few rounds what
  * local search would need many for, so it begins anew from their guards. */
 static starg_status run_improvement(search *s, uint64_t work) {
-    starg_status status = STARG_OK;
     uint64_t begun = s->scene.work;
     bool more = true;
     int closings = count_closings(s);
     for (int k = 0; k < closings && s->count >= MANY_GUARDS && more; k++) {
-        STARG_TRY(run_rounds(s, search_improve, begun, work, (k + 1.0) / (closings + 1)));
-        STARG_TRY(close_and_resume(s));
+        TRY(run_rounds(s, search_improve, begun, work, (k + 1.0) / (closings + 1)));
+        TRY(close_and_resume(s));
         s->budget = begun + work;
         more = goes_on(s);
     }
     if (more)
-        STARG_TRY(run_rounds(s, search_improve, begun, work, 1));
-done:
-    return status;
+        TRY(run_rounds(s, search_improve, begun, work, 1));
+    return STARG_OK;
 }
 
 /* Rounds of a proof, closed several times too: after work that does not depend on how much there
  * is, so that more work begins alike and never proves less. */
 static starg_status run_proof(search *s, uint64_t work) {
-    starg_status status = STARG_OK;
     uint64_t begun = s->scene.work, next = FIRST_CLOSING;
     bool more = s->bound < s->count;
     s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST / (double)s->count;
     s->ended = false;
     for (; more; next *= CLOSING_FACTOR) {
         double share = next < work ? (double)next / (double)work : 1;
-        STARG_TRY(run_rounds(s, search_prove_round, begun, work, share));
-        STARG_TRY(close_and_resume(s));
+        TRY(run_rounds(s, search_prove_round, begun, work, share));
+        TRY(close_and_resume(s));
         s->budget = begun + work;
         more = share < 1 && goes_on(s);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Looks for better guards. Where local search gives up early and the effort is to be the best,
@@ -261,83 +257,71 @@ done:
  * boxes take longer in larger models, so that there are fewer; where guards are few, one fewer is
  * worth more. */
 static starg_status improve(search *s) {
-    starg_status status = STARG_OK;
     uint64_t begun = s->scene.work, work = search_improve_work(s);
     double most = MOST_CELL_WORK * pow(fmin(1, EASY_COLUMNS / (double)s->pool->columns), 5);
     most *= fmax(1, MANY_GUARDS / (double)s->count);
-    STARG_TRY(run_improvement(s, work));
+    TRY(run_improvement(s, work));
     double left = (double)work - (double)(s->scene.work - begun);
     const starg_guard_options *o = s->problem->options;
     if (o->prove || guard_is_brief(o) || s->bound == s->count || !(left > 0))
-        STARG_TRY(close_and_resume(s));
+        TRY(close_and_resume(s));
     else
-        STARG_TRY(run_proof(s, (uint64_t)fmin(left, most)));
-done:
-    return status;
+        TRY(run_proof(s, (uint64_t)fmin(left, most)));
+    return STARG_OK;
 }
 
 static starg_status run(search *s, bool improves) {
-    starg_status status = STARG_OK;
     const starg_guard_options *o = s->problem->options;
     s->nodes = FEW_NODES;
     if (improves)
-        STARG_TRY(improve(s));
+        TRY(improve(s));
     s->improve_work = s->scene.work;
     s->nodes = MANY_NODES;
     if (o->prove) {
-        STARG_TRY(run_proof(s, (uint64_t)((double)o->prove_work / search_scene_unit(&s->scene))));
-        STARG_TRY(search_prove_by_leaves(s));
+        TRY(run_proof(s, (uint64_t)((double)o->prove_work / search_scene_unit(&s->scene))));
+        TRY(search_prove_by_leaves(s));
     }
     if (s->bound < s->count)
-        STARG_TRY(search_prove(s));
-done:
-    return status;
+        TRY(search_prove(s));
+    return STARG_OK;
 }
 
 /* How often each column must be seen: as often as the guards see it, but at most as often as
  * required. */
 static starg_status find_need(search *s, const guard_selection *selection) {
-    starg_status status = STARG_OK;
     const starg_bits *rows = s->pool->rows;
-    STARG_NEW_ZERO(context_of(s), STAGE, s->need, 64 * rows->words);
+    NEW_ZERO(context_of(s), STAGE, s->need, 64 * rows->words);
     for (size_t i = 0; i < selection->chosen.count; i++)
         for (size_t w = 0; w < rows->words; w++)
             STARG_FOR_BITS (bit, starg_bits_row(rows, selection->chosen.data[i])[w])
                 s->need[64 * w + bit] += s->need[64 * w + bit] < s->redundancy;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status begin(search *s, const guard_detail *detail, const guard_selection *selection) {
-    starg_status status = STARG_OK;
     const guard_problem *p = s->problem;
     for (size_t i = 0; i < selection->chosen.count; i++)
-        STARG_PUSH(p->context, STAGE, &s->guards, selection->chosen.data[i]);
+        PUSH(p->context, STAGE, &s->guards, selection->chosen.data[i]);
     s->count = s->guards.count;
+    TRY(search_note_guards(s));
     s->bound = s->bound > 0 ? s->bound : s->count > 0;
     s->redundancy = p->options->redundancy;
     s->first_count = pool_count(s->pool);
-    STARG_TRY(search_scene_open(p->context, p->solid, &p->options->visibility,
-                                p->options->clearance, &s->scene));
-    STARG_TRY(find_need(s, selection));
-    STARG_TRY(search_count_views(s));
-    STARG_TRY(begin_points(s));
-    STARG_TRY(begin_places(s, detail));
-    STARG_TRY(cells_begin(&s->scene, &s->cells));
-    STARG_TRY(search_first_witnesses(s));
-done:
-    return status;
+    TRY(search_scene_open(p->context, p->solid, &p->options->visibility, p->options->clearance,
+                          &s->scene));
+    TRY(find_need(s, selection));
+    TRY(search_count_views(s));
+    TRY(begin_points(s));
+    TRY(begin_places(s, detail));
+    TRY(cells_begin(&s->scene, &s->cells));
+    return search_first_witnesses(s);
 }
 
 static void end(search *s) {
-    starg_context *context = context_of(s);
-    prices_free(context, &s->prices);
-    STARG_ARRAY_FREE(context, &s->cells);
-    STARG_ARRAY_FREE(context, &s->points);
-    STARG_ARRAY_FREE(context, &s->guards);
-    starg_release(context, s->need);
-    starg_release(context, s->views);
-    starg_release(context, s->viewers);
+    prices_free(&s->prices);
+    RELEASE(s->cells.data, s->points.data, s->guards.data, s->need, s->views, s->viewers,
+            s->steps.data);
+    starg_tell_best(context_of(s), 0, "");
     search_scene_close(&s->scene);
 }
 
@@ -350,38 +334,34 @@ static void count_columns(const starg_bits *rows, size_t row, uint32_t *counts) 
 
 /* The guards found, ordered by what each adds, descending. */
 static starg_status order_guards(const search *s, starg_cover **out) {
-    starg_status status = STARG_OK;
     starg_cover_problem problem;
     starg_cover_options options;
-    starg_bits *rows = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
     const starg_bits *all = s->pool->rows;
     starg_cover_problem_default(&problem);
     starg_cover_options_default(&options);
-    STARG_TRY(starg_bits_create(context_of(s), s->count, all->columns, &rows));
+    TRY(starg_bits_create(context_of(s), s->count, all->columns, &rows));
     for (size_t i = 0; i < s->count; i++)
         memcpy(starg_bits_row_mutable(rows, i), starg_bits_row(all, s->guards.data[i]),
                all->words * sizeof *all->data);
     problem.rows = rows;
     problem.redundancy = (uint32_t)s->redundancy;
     options.method = STARG_COVER_GREEDY;
-    STARG_TRY(starg_cover_solve(context_of(s), &problem, &options, out));
+    TRY(starg_cover_solve(context_of(s), &problem, &options, out));
     for (size_t i = 0; i < (*out)->count; i++)
         (*out)->rows[i] = s->guards.data[(*out)->rows[i]];
-done:
-    starg_bits_free(rows);
-    return status;
+    return STARG_OK;
 }
 
 /* Do the rows still suffice? Added candidates may see faces that none saw before, or that too few
  * saw for the redundancy. */
 static starg_status check_enough(const search *s, const uint32_t *chosen, size_t count,
                                  bool *enough) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
     const starg_bits *rows = s->pool->rows;
-    uint32_t *supply = NULL, *held = NULL;
-    STARG_NEW_ZERO(context, STAGE, supply, 64 * rows->words);
-    STARG_NEW_ZERO(context, STAGE, held, 64 * rows->words);
+    SCOPED uint32_t *supply = NULL, *held = NULL;
+    NEW_ZERO(context, STAGE, supply, 64 * rows->words);
+    NEW_ZERO(context, STAGE, held, 64 * rows->words);
     for (size_t i = 0; i < rows->rows; i++)
         count_columns(rows, i, supply);
     for (size_t i = 0; i < count; i++)
@@ -389,30 +369,26 @@ static starg_status check_enough(const search *s, const uint32_t *chosen, size_t
     *enough = true;
     for (size_t j = 0; j < rows->columns; j++)
         *enough = *enough && (held[j] >= s->redundancy || held[j] == supply[j]);
-done:
-    starg_release(context, supply);
-    starg_release(context, held);
-    return status;
+    return STARG_OK;
 }
 
 /* Replaces the choice and its bound by the result. If added candidates see faces that none saw
  * before, the choice is made again over all candidates. */
 static starg_status choose_again(search *s, guard_selection *selection) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    starg_cover *cover = NULL;
-    guard_selection next = {0};
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
+    SCOPED_BY(selection_free) guard_selection next = {0};
     bool enough = false;
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
-    STARG_TRY(check_enough(s, s->guards.data, s->count, &enough));
+    TRY(check_enough(s, s->guards.data, s->count, &enough));
     if (!enough)
-        STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
+        TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
     else if (s->better)
-        STARG_TRY(order_guards(s, &cover));
+        TRY(order_guards(s, &cover));
     size_t cover_bound = cover != NULL ? cover->lower_bound : 0;
     if (cover != NULL) {
-        STARG_TRY(selection_of_cover(context, cover, selection, selection->level, &next));
-        selection_free(context, selection);
+        TRY(selection_of_cover(context, cover, selection, selection->level, &next));
+        selection_free(selection);
         *selection = next;
         next = (guard_selection){0};
     }
@@ -422,10 +398,7 @@ static starg_status choose_again(search *s, guard_selection *selection) {
     bound = bound > s->bound ? bound : s->bound;
     if (bound > selection->lower_bound)
         selection->lower_bound = bound;
-done:
-    selection_free(context, &next);
-    starg_cover_free(cover);
-    return status;
+    return STARG_OK;
 }
 
 static uint64_t in_microseconds(const search *s, uint64_t work) {
@@ -459,12 +432,18 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
     if (!problem->options->prove && s.bound < 2)
         s.bound = 0; /* no improvement */
     problem->context->work += in_microseconds(&s, s.scene.work);
+    for (size_t i = 0; i < s.steps.count; i++)
+        s.steps.data[i].work = in_microseconds(&s, s.steps.data[i].work);
+    RELEASE(out->steps);
     *out = (search_record){s.bound,
                            s.cells.count,
                            s.scene.witnesses.count,
                            in_microseconds(&s, s.improve_work),
                            in_microseconds(&s, s.scene.work - s.improve_work),
-                           0};
+                           0,
+                           s.steps.count,
+                           s.steps.data};
+    s.steps.data = NULL;
 done:
     end(&s);
     starg_progress_end(problem->context);

@@ -79,7 +79,6 @@ static void free_parts(area_search *a, size_t count) {
 
 /* One half replaces the cell, the other is appended. */
 static starg_status take_parts(area_search *a, size_t count) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < 2 * count; i++) {
         area_cell part = a->parts[i];
         a->work += part.work;
@@ -88,11 +87,10 @@ static starg_status take_parts(area_search *a, size_t count) {
             a->cells.data[a->list[i / 2].cell] = part;
             continue;
         }
-        STARG_PUSH(a->scene->context, STAGE, &a->cells, part);
+        PUSH(a->scene->context, STAGE, &a->cells, part);
         a->parts[i].open = NULL;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Splits the cells at the front of the list. */
@@ -139,23 +137,21 @@ static starg_status begin(area_search *a) {
         cell.open = NULL;
     }
 done:
-    STARG_ARRAY_FREE(a->scene->context, &first);
-    starg_release(a->scene->context, cell.open);
+    RELEASE(first.data, cell.open);
     return status;
 }
 
 /* The bound from the cover of the cells' rows: on their number, or on the weight they cover. */
 static starg_status ask_cover(area_search *a) {
-    starg_status status = STARG_OK;
     starg_context *context = a->scene->context;
     const starg_guard_options *o = a->problem->options;
-    starg_bits *rows = NULL;
-    starg_cover *cover = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
     starg_cover_problem problem;
     starg_cover_options options;
     starg_cover_problem_default(&problem);
     starg_cover_options_default(&options);
-    STARG_TRY(starg_bits_create(context, a->cells.count, a->pool->columns, &rows));
+    TRY(starg_bits_create(context, a->cells.count, a->pool->columns, &rows));
     for (size_t i = 0; i < a->cells.count; i++) {
         memcpy(starg_bits_row_mutable(rows, i), a->cells.data[i].open,
                rows->words * sizeof *rows->data);
@@ -166,7 +162,7 @@ static starg_status ask_cover(area_search *a) {
     problem.max_rows = o->max_guards;
     problem.target = choose_target(a->pool, &a->problem->weights);
     options.max_nodes = 0;
-    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    TRY(starg_cover_solve(context, &problem, &options, &cover));
     for (size_t i = 0; i < cover->count; i++)
         a->cells.data[cover->rows[i]].chosen = true;
     if (o->max_guards > 0 && cover->weight_bound < a->weight_bound)
@@ -175,10 +171,7 @@ static starg_status ask_cover(area_search *a) {
         a->bound = cover->lower_bound;
     a->work += a->cells.count * a->pool->columns / 16;
     a->asked_at = a->cells.count;
-done:
-    starg_bits_free(rows);
-    starg_cover_free(cover);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status split_best(area_search *a, bool *any) {
@@ -222,21 +215,19 @@ static bool is_proven(const area_search *a, const guard_selection *selection) {
 }
 
 static starg_status run(area_search *a, const guard_selection *selection) {
-    starg_status status = STARG_OK;
     starg_context *context = a->scene->context;
     uint64_t most = a->problem->options->prove_work;
     bool any = true;
     while (any && a->work < most && !is_proven(a, selection) && !starg_time_is_over(context)) {
         starg_progress_step(context, a->work, most);
-        STARG_TRY(starg_check_cancel(context, STAGE));
-        STARG_TRY(split_best(a, &any));
+        TRY(starg_check_cancel(context, STAGE));
+        TRY(split_best(a, &any));
         if (2 * a->cells.count > 3 * a->asked_at)
-            STARG_TRY(ask_cover(a));
+            TRY(ask_cover(a));
     }
     if (!is_proven(a, selection) && a->cells.count > a->asked_at)
-        STARG_TRY(ask_cover(a));
-done:
-    return status;
+        TRY(ask_cover(a));
+    return STARG_OK;
 }
 
 starg_status search_area(const guard_problem *problem, const guard_pool *pool,

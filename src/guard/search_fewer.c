@@ -195,7 +195,6 @@ static double look_from(local_search *l, search_point *point, size_t witness, do
 
 /* Looks for a point of larger gain than `point`, which then joins the known points. */
 static starg_status climb(local_search *l, uint32_t *point, size_t witness, double gain) {
-    starg_status status = STARG_OK;
     search *s = l->s;
     search_point best = s->points.data[*point];
     double most = gain, step = FIRST_STEP;
@@ -216,16 +215,14 @@ static starg_status climb(local_search *l, uint32_t *point, size_t witness, doub
         witness_row rest = all_witnesses(s);
         for (int w = 0; w < WITNESS_WORDS; w++)
             rest.bits[w] &= ~l->open.bits[w];
-        STARG_TRY(points_look_at(&s->scene, &best, 1, &rest));
+        TRY(points_look_at(&s->scene, &best, 1, &rest));
         *point = (uint32_t)s->points.count;
-        STARG_PUSH(context_of(s), STAGE, &s->points, best);
+        PUSH(context_of(s), STAGE, &s->points, best);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_step(local_search *l) {
-    starg_status status = STARG_OK;
     double gain;
     l->step++;
     size_t out = choose_to_remove(l);
@@ -235,15 +232,14 @@ static starg_status take_step(local_search *l) {
     if (in != UINT32_MAX) {
         size_t left = count_left(l, in);
         if (left <= l->fewest)
-            STARG_TRY(climb(l, &in, witness, gain));
+            TRY(climb(l, &in, witness, gain));
         l->fewest = left < l->fewest ? left : l->fewest;
         add_point(l, in);
     }
     for (size_t w = 0; w < WITNESS_WORDS; w++)
         STARG_FOR_BITS (bit, l->open.bits[w])
             l->weight[64 * w + bit]++;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_open(const local_search *l) {
@@ -252,10 +248,9 @@ static bool is_open(const local_search *l) {
 
 /* Starts from the guards without one of them. */
 static starg_status begin(local_search *l) {
-    starg_status status = STARG_OK;
     const search *s = l->s;
-    STARG_NEW(context_of(s), STAGE, l->chosen, s->count);
-    STARG_NEW_ZERO(context_of(s), STAGE, l->moved, s->count);
+    NEW(context_of(s), STAGE, l->chosen, s->count);
+    NEW_ZERO(context_of(s), STAGE, l->moved, s->count);
     for (size_t j = 0; j < MOST_WITNESSES; j++)
         l->weight[j] = 1;
     for (size_t i = 0; i < s->points.count; i++)
@@ -263,23 +258,20 @@ static starg_status begin(local_search *l) {
             if (s->points.data[i].candidate == s->guards.data[k])
                 add_point(l, (uint32_t)i);
     take_witnesses(l);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The points see all witnesses: tests them against all faces. */
 static starg_status try_guards(local_search *l, bool *changed) {
-    starg_status status = STARG_OK;
     size_t before = l->s->count;
     bool found = false;
-    STARG_TRY(search_try_guards(l->s, l->chosen, l->count, &found));
+    TRY(search_try_guards(l->s, l->chosen, l->count, &found));
     *changed = *changed || found;
     if (l->s->count < before)
         l->last = l->step;
     l->fewest = SIZE_MAX;
     take_witnesses(l);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool may_go_on(const local_search *l) {
@@ -310,7 +302,6 @@ starg_status search_fewer(search *s, bool *changed) {
     }
     search_prune_points(s, first);
 done:
-    starg_release(context_of(s), l.chosen);
-    starg_release(context_of(s), l.moved);
+    RELEASE(l.chosen, l.moved);
     return status;
 }

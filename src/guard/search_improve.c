@@ -104,13 +104,12 @@ done:
 
 /* The most valuable points become candidates. */
 static starg_status hold_best(search *s) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    scored_leaf *scored = NULL;
-    uint32_t *best = NULL;
+    SCOPED scored_leaf *scored = NULL;
+    SCOPED uint32_t *best = NULL;
     size_t count = 0;
-    STARG_NEW(context, STAGE, scored, s->points.count);
-    STARG_NEW(context, STAGE, best, s->points.count);
+    NEW(context, STAGE, scored, s->points.count);
+    NEW(context, STAGE, best, s->points.count);
     for (size_t i = 0; i < s->points.count; i++) {
         double value = row_value(&s->points.data[i].seen, s->prices.price);
         if (s->points.data[i].candidate == UINT32_MAX && value > 0.9)
@@ -122,23 +121,17 @@ static starg_status hold_best(search *s) {
         count = most;
     for (size_t i = 0; i < count; i++)
         best[i] = scored[i].cell;
-    STARG_TRY(search_hold(s, best, count));
-done:
-    starg_release(context, scored);
-    starg_release(context, best);
-    return status;
+    return search_hold(s, best, count);
 }
 
 starg_status search_close(search *s) {
-    starg_status status = STARG_OK;
     bool open = false;
-    STARG_TRY(ask_again(s, &open));
+    TRY(ask_again(s, &open));
     if (!open || starg_time_is_over(context_of(s)))
-        goto done;
-    STARG_TRY(hold_best(s));
+        return STARG_OK;
+    TRY(hold_best(s));
     if (pool_count(s->pool) > s->asked_pool)
-        STARG_TRY(search_ask_candidates(s));
+        TRY(search_ask_candidates(s));
     s->known = s->asked_bound > s->known ? s->asked_bound : s->known;
-done:
-    return status;
+    return STARG_OK;
 }

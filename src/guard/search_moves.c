@@ -85,10 +85,9 @@ static int by_price(const void *a, const void *b) {
 
 /* Lists the sources by decreasing price, and the remaining witnesses. */
 static starg_status list_sources(moving *m) {
-    starg_status status = STARG_OK;
     const search_scene *scene = &m->s->scene;
     size_t all = scene->witnesses.count;
-    STARG_NEW_ZERO(scene->context, STAGE, m->sources, all);
+    NEW_ZERO(scene->context, STAGE, m->sources, all);
     for (size_t j = 0; j < all; j++)
         m->sources[j] = (source){.witness = (uint32_t)j, .price = m->s->prices.price[j]};
     qsort(m->sources, all, sizeof *m->sources, by_price);
@@ -96,8 +95,7 @@ static starg_status list_sources(moving *m) {
         m->count++;
     for (size_t i = m->count; i < all; i++)
         starg_bit_set(m->rest.bits, m->sources[i].witness);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Offers a point to the sources that it sees. */
@@ -235,6 +233,8 @@ void search_propose(const search_scene *scene, const search_point *best, size_t 
     vec3_copy(best->up, out->up);
     if (vec3_dot(out->direction, out->direction) > 0)
         turn(step, rng, out->direction);
+    if (sensor_is_directed(scene->view))
+        sensor_tilt(scene->view, out->direction);
 }
 
 static bool look_at(const search_scene *scene, proposal *q, uint32_t witness) {
@@ -283,7 +283,6 @@ static const int STANDS_IN_TURN[] = {STAND_AROUND,  STAND_AT_WALL, STAND_BETWEEN
 
 /* Every source makes proposals, and takes better ones. */
 static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, double step) {
-    starg_status status = STARG_OK;
     search_scene *scene = &m->s->scene;
     for (size_t i = 0; i < m->count; i++) {
         const source *n = &m->sources[i];
@@ -306,17 +305,16 @@ static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, 
                                       .shared = m,
                                       .item = look_from,
                                       .silent = true};
-    STARG_TRY(starg_parallel_for(scene->context, &loop));
+    TRY(starg_parallel_for(scene->context, &loop));
     for (size_t k = 0; k < m->each * m->count; k++) {
         const proposal *q = &m->proposals[k];
         if (q->value > 0)
             offer(m, &q->point, q->value, true);
         if (q->value > 1 + SEARCH_GAP)
-            STARG_PUSH(scene->context, STAGE, &m->worthy, q->point);
+            PUSH(scene->context, STAGE, &m->worthy, q->point);
         scene->work += q->work;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool stands_before(const moving *m, size_t index) {
@@ -330,21 +328,19 @@ static bool stands_before(const moving *m, size_t index) {
 
 /* Adds the points of the sources that are valuable enough to the points of the search. */
 static starg_status take_best(moving *m, double *most) {
-    starg_status status = STARG_OK;
     search *s = m->s;
     size_t first = s->points.count;
     *most = 0;
     for (size_t i = 0; i < m->worthy.count; i++)
-        STARG_PUSH(context_of(s), STAGE, &s->points, m->worthy.data[i]);
+        PUSH(context_of(s), STAGE, &s->points, m->worthy.data[i]);
     for (size_t i = 0; i < m->count; i++)
         if (m->sources[i].is_new && m->sources[i].value > WORTH && !stands_before(m, i)) {
-            STARG_PUSH(context_of(s), STAGE, &s->points, m->sources[i].best);
+            PUSH(context_of(s), STAGE, &s->points, m->sources[i].best);
             *most = fmax(*most, m->sources[i].value);
         }
-    STARG_TRY(points_look_at(&s->scene, s->points.data + first, s->points.count - first, &m->rest));
+    TRY(points_look_at(&s->scene, s->points.data + first, s->points.count - first, &m->rest));
     search_prune_points(s, first);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status search_move(search *s, double *most) {
@@ -366,8 +362,6 @@ starg_status search_move(search *s, double *most) {
     s->moves++;
     STARG_TRY(take_best(&m, most));
 done:
-    starg_release(context, m.sources);
-    STARG_ARRAY_FREE(context, &m.worthy);
-    starg_release(context, m.proposals);
+    RELEASE(m.sources, m.worthy.data, m.proposals);
     return status;
 }

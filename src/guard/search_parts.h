@@ -11,6 +11,8 @@
 /* By how much points may exceed 1 all the same. */
 #define SEARCH_GAP 2e-3
 
+typedef STARG_ARRAY(search_step) search_steps;
+
 typedef struct search {
     const guard_problem *problem;
     guard_pool *pool; /* receives the points that were tested against all columns */
@@ -43,7 +45,11 @@ typedef struct search {
     int idle;                     /* rounds that looked for guards and found none */
     bool better;                  /* the guards differ from those at the start */
     bool ended;
+    search_steps steps; /* all numbers of guards, in units of the scene's work */
 } search;
+
+/* Notes that there are `count` guards now. Errors: MEMORY. */
+starg_status search_note_guards(search *s);
 
 /* Lower bound on the points that see all witnesses often enough, by the prices. */
 static inline double search_value(const search *s) {

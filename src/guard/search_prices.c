@@ -133,7 +133,6 @@ static void rest_witnesses(search *s) {
 }
 
 starg_status search_find_odd(search *s, const row_list *list, bool *changed) {
-    starg_status status = STARG_OK;
     size_t added = 0;
     const odd_sets_question question = {list->rows, s->prices.share, list->count, s->prices.price};
     *changed = false;
@@ -144,20 +143,17 @@ starg_status search_find_odd(search *s, const row_list *list, bool *changed) {
     }
     s->odd_value = search_value(s);
     s->odd_rounds++;
-    STARG_TRY(
-        odd_sets_renew(context_of(s), &question, &s->odd, s->prices.odd, &added, &s->scene.work));
+    TRY(odd_sets_renew(context_of(s), &question, &s->odd, s->prices.odd, &added, &s->scene.work));
     *changed = added > 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status search_find_prices(search *s, row_list *list) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    uint8_t *listed = NULL;
+    SCOPED uint8_t *listed = NULL;
     double most = 1;
     uint64_t before = s->scene.work;
-    STARG_NEW_ZERO(context, STAGE, listed, s->points.count);
+    NEW_ZERO(context, STAGE, listed, s->points.count);
     double least = s->prices.sum > 0 ? 0.8 : 0;
     list->count = 0;
     for (int k = 0; k < PROGRAMS; k++) {
@@ -167,8 +163,8 @@ starg_status search_find_prices(search *s, row_list *list) {
         for (size_t i = 0; i < list->count; i++)
             if (list->points[i] != UINT32_MAX)
                 listed[list->points[i]] = 1;
-        prices_free(context, &s->prices);
-        STARG_TRY(prices_find(context, list->rows, list->count, &wanted, &s->odd, &s->prices));
+        prices_free(&s->prices);
+        TRY(prices_find(context, list->rows, list->count, &wanted, &s->odd, &s->prices));
         s->scene.work += s->prices.work;
         most = search_largest_value(s);
         least = 1 + 1e-9;
@@ -182,7 +178,5 @@ starg_status search_find_prices(search *s, row_list *list) {
         s->prices.odd[k] /= most;
     s->prices.sum /= most;
     s->prices.work = s->scene.work - before;
-done:
-    starg_release(context, listed);
-    return status;
+    return STARG_OK;
 }

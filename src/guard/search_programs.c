@@ -118,21 +118,20 @@ static void list_useful_candidates(const search *s, uint32_t *list, size_t *coun
 }
 
 starg_status search_ask_candidates(search *s) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
     const starg_bits *all = s->pool->rows;
     starg_cover_problem problem;
     starg_cover_options options;
-    starg_bits *rows = NULL;
-    starg_cover *cover = NULL;
-    uint32_t *list = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
+    SCOPED uint32_t *list = NULL;
     size_t count;
     bool changed;
     starg_cover_problem_default(&problem);
     starg_cover_options_default(&options);
-    STARG_NEW(context, STAGE, list, s->points.count);
+    NEW(context, STAGE, list, s->points.count);
     list_useful_candidates(s, list, &count);
-    STARG_TRY(starg_bits_create(context, count, all->columns, &rows));
+    TRY(starg_bits_create(context, count, all->columns, &rows));
     for (size_t k = 0; k < count; k++)
         memcpy(starg_bits_row_mutable(rows, k),
                starg_bits_row(all, s->points.data[list[k]].candidate),
@@ -142,19 +141,15 @@ starg_status search_ask_candidates(search *s) {
     options.max_nodes = s->problem->options->max_nodes;
     if (guard_is_brief(s->problem->options))
         options.method = STARG_COVER_LOCAL;
-    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    TRY(starg_cover_solve(context, &problem, &options, &cover));
     size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;
     for (size_t k = 0; k < cover->count; k++)
         cover->rows[k] = list[cover->rows[k]];
     if (cover->count < s->count)
-        STARG_TRY(search_try_guards(s, cover->rows, cover->count, &changed));
+        TRY(search_try_guards(s, cover->rows, cover->count, &changed));
     s->asked_pool = pool_count(s->pool);
     s->asked_bound = bound;
-done:
-    starg_release(context, list);
-    starg_bits_free(rows);
-    starg_cover_free(cover);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- cells and points ---- */
@@ -167,10 +162,9 @@ typedef struct column_list {
 } column_list;
 
 static starg_status list_columns(const search *s, column_list *out) {
-    starg_status status = STARG_OK;
     size_t most = s->points.count + s->cells.count, hint = 0;
-    STARG_TRY(row_list_make(context_of(s), most, &out->rows));
-    STARG_NEW(context_of(s), STAGE, out->cells, most);
+    TRY(row_list_make(context_of(s), most, &out->rows));
+    NEW(context_of(s), STAGE, out->cells, most);
     list_needed(s, 0, &out->rows);
     for (size_t k = 0; k < out->rows.count; k++)
         out->cells[k] = UINT32_MAX;
@@ -189,8 +183,7 @@ static starg_status list_columns(const search *s, column_list *out) {
         out->rows.points[out->rows.count] = UINT32_MAX;
         out->rows.rows[out->rows.count++] = open;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Unsettled leaves that could replace a chosen column: they may see everything that only it
@@ -269,7 +262,7 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
                                         columns.rows.rows, columns.rows.count, &branches));
     }
 done:
-    branch_record_free(context, &branches);
+    branch_record_free(&branches);
     row_list_free(context, &columns.rows);
     starg_release(context, columns.cells);
     starg_cover_free(cover);
@@ -278,11 +271,9 @@ done:
 }
 
 starg_status search_ask_cells(search *s, bool *changed) {
-    starg_status status = STARG_OK;
     bool again = true;
     *changed = false;
     for (int k = 0; k < FOLLOWED && again; k++)
-        STARG_TRY(ask_cells_once(s, changed, &again));
-done:
-    return status;
+        TRY(ask_cells_once(s, changed, &again));
+    return STARG_OK;
 }

@@ -107,48 +107,42 @@ done:
 /* No leaf blocks the bound of the prices: looks for better guards, more witnesses, or cells chosen
  * by an integer program. */
 static starg_status ask_further(search *s, const row_list *list, bool *changed) {
-    starg_status status = STARG_OK;
-    STARG_TRY(look_for_guards(s, true, changed));
+    TRY(look_for_guards(s, true, changed));
     if (!*changed)
-        STARG_TRY(search_add_short(s, list, changed));
+        TRY(search_add_short(s, list, changed));
     if (!*changed)
-        STARG_TRY(search_ask_cells(s, changed));
-done:
-    return status;
+        TRY(search_ask_cells(s, changed));
+    return STARG_OK;
 }
 
 /* No leaf that is not small blocks the bound of the prices. If small ones hold them down, half as
  * small ones do from now on; every third time, or if nothing else helps, looks further. */
 static starg_status go_on(search *s, const row_list *list, bool *changed) {
-    starg_status status = STARG_OK;
     bool bind = search_fine_bind(s, list), turn = bind && ++s->refinements % 3 != 0;
-    STARG_TRY(search_find_odd(s, list, changed));
+    TRY(search_find_odd(s, list, changed));
     if (!*changed && !turn)
-        STARG_TRY(ask_further(s, list, changed));
+        TRY(ask_further(s, list, changed));
     if (!*changed && bind) {
         s->finest /= 2;
         *changed = true;
     }
     s->ended = !*changed;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status search_prove_round(search *s, row_list *list) {
-    starg_status status = STARG_OK;
     size_t before = s->bound;
     bool changed;
-    STARG_TRY(search_find_prices(s, list));
-    STARG_TRY(look_for_guards(s, false, &changed));
+    TRY(search_find_prices(s, list));
+    TRY(look_for_guards(s, false, &changed));
     if (!changed)
-        STARG_TRY(split_costly(s, &changed));
-    STARG_TRY(search_prove(s));
+        TRY(split_costly(s, &changed));
+    TRY(search_prove(s));
     if (!changed && s->bound < s->count && s->bound == before) {
-        STARG_TRY(go_on(s, list, &changed));
-        STARG_TRY(search_prove(s));
+        TRY(go_on(s, list, &changed));
+        TRY(search_prove(s));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status search_prove_by_leaves(search *s) {

@@ -23,8 +23,8 @@ static void fill_places(search_scene *scene) {
         for (size_t j = 0; j < 3 * mesh->face_count; j++)
             scene->places[j] = points->slot_of[mesh->faces[j]];
     else
-        for (size_t rank = 0; rank < points->face_count; rank++)
-            scene->places[points->face_of[rank]] = (uint32_t)rank;
+        for (size_t j = 0; j < solid_patch_count(scene->solid); j++)
+            scene->places[j] = points->rank_of[solid_patch_face(scene->solid, j)];
     for (size_t i = 3 * points->face_count; i-- > 0;)
         scene->ranks[points->corners[i]] = (uint32_t)(i / 3);
 }
@@ -41,7 +41,7 @@ starg_status search_scene_open(starg_context *context, const starg_solid *solid,
     STARG_TRY(scene_create(context, solid, &out->points));
     STARG_TRY(scene_add_sights(out->points));
     STARG_TRY(box_scene_create(context, solid, &out->boxes));
-    STARG_NEW(context, STAGE, out->places, target_columns(solid->mesh, view->target));
+    STARG_NEW(context, STAGE, out->places, target_columns(solid, view->target));
     STARG_NEW(context, STAGE, out->ranks, solid->mesh->vertex_count);
     fill_places(out);
     STARG_TRY(solid_parts_find(context, solid, &out->parts));
@@ -62,9 +62,8 @@ void search_scene_close(search_scene *scene) {
         return;
     scene_free(scene->points);
     box_scene_free(scene->boxes);
-    starg_release(scene->context, scene->places);
-    starg_release(scene->context, scene->ranks);
-    solid_parts_free(scene->context, &scene->parts);
+    RELEASE(scene->places, scene->ranks);
+    solid_parts_free(&scene->parts);
     STARG_ARRAY_FREE(scene->context, &scene->witnesses);
     *scene = (search_scene){0};
 }
@@ -93,9 +92,7 @@ void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) 
         vec3_copy(at, centre);
         return;
     }
-    for (int k = 0; k < 3; k++)
-        centre[k] = scene_corner(points, place, 0)[k] / 3 + scene_corner(points, place, 1)[k] / 3 +
-                    scene_corner(points, place, 2)[k] / 3;
+    scene_patch_centre(points, column, centre);
 }
 
 size_t search_scene_rank(const search_scene *scene, size_t j) {
@@ -127,7 +124,7 @@ bool search_scene_sees(const search_scene *scene, const search_point *point, siz
     view.directions = point->direction;
     view.ups = point->up;
     bool sees =
-        whole ? scene_sees_face(scene->points, point->place, place, &view)
+        whole ? scene_sees_patch(scene->points, point->place, column, &view)
               : (view.target == STARG_TARGET_VERTICES || is_before(scene, column, point->place)) &&
                     scene_sees_vertex(scene->points, point->place, place, &view);
     *work += !sees || !whole ? 1 : view.face_rule == STARG_FACES_WHOLE ? WHOLE_WORK : 3;

@@ -18,10 +18,10 @@ typedef struct search_scene {
     double clearance;
     visibility_scene *points; /* what a point sees */
     box_scene *boxes;         /* what a box may see */
-    uint32_t
-        *places; /* by column, its position in `points`: rank of the face, or slot of the vertex */
-    uint32_t *ranks;                 /* by slot, a rank of a face at the vertex */
-    solid_parts parts;               /* no point sees witnesses of two of them */
+    uint32_t *places;  /* by column, its position in `points`: rank of the patch's face, or slot of
+                          the vertex */
+    uint32_t *ranks;   /* by slot, a rank of a face at the vertex */
+    solid_parts parts; /* no point sees witnesses of two of them */
     STARG_ARRAY(uint32_t) witnesses; /* columns: the faces or vertices that stand for all */
     uint64_t number;                 /* of the context's scenes */
     uint64_t work; /* tests of a vertex against a box or a point, and what takes as long */

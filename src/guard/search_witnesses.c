@@ -38,10 +38,9 @@ static int by_score(const void *a, const void *b) {
 }
 
 starg_status search_count_views(search *s) {
-    starg_status status = STARG_OK;
     const starg_bits *rows = s->pool->rows;
-    STARG_NEW_ZERO(context_of(s), STAGE, s->views, 64 * rows->words);
-    STARG_NEW_ZERO(context_of(s), STAGE, s->viewers, 64 * rows->words);
+    NEW_ZERO(context_of(s), STAGE, s->views, 64 * rows->words);
+    NEW_ZERO(context_of(s), STAGE, s->viewers, 64 * rows->words);
     for (size_t i = 0; i < rows->rows; i++) {
         uint64_t number = starg_hash64(i + 1);
         for (size_t w = 0; w < rows->words; w++)
@@ -50,8 +49,7 @@ starg_status search_count_views(search *s) {
                 s->viewers[64 * w + bit] += number;
             }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_alike(const search *s, const scored_column *list, size_t count,
@@ -111,42 +109,36 @@ done:
 }
 
 static starg_status look_at_new(search *s, size_t first) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < s->points.count; i++) {
         search_point *point = &s->points.data[i];
         for (size_t j = first; point->candidate != UINT32_MAX && j < s->scene.witnesses.count; j++)
             if (starg_bits_test(s->pool->rows, point->candidate, s->scene.witnesses.data[j]))
                 starg_bit_set(point->seen.bits, j);
     }
-    STARG_TRY(points_look(&s->scene, &s->points, first));
-    STARG_TRY(cells_look(&s->scene, &s->cells, first));
-done:
-    return status;
+    TRY(points_look(&s->scene, &s->points, first));
+    return cells_look(&s->scene, &s->cells, first);
 }
 
 /* Turns at most `most` columns with a score below `limit` into witnesses. *added: how many. */
 static starg_status add_witnesses(search *s, const double *scores, double limit, size_t most,
                                   size_t *added) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
     size_t columns = s->pool->columns, count = 0, first = s->scene.witnesses.count;
-    scored_column *list = NULL;
+    SCOPED scored_column *list = NULL;
     *added = 0;
-    STARG_NEW(context, STAGE, list, columns);
+    NEW(context, STAGE, list, columns);
     for (size_t j = 0; j < columns; j++)
         if (s->need[j] == s->redundancy && scores[j] < limit)
             list[count++] = (scored_column){scores[j], s->views[j], (uint32_t)j};
     if (most > MOST_WITNESSES - first)
         most = MOST_WITNESSES - first;
-    STARG_TRY(choose_columns(s, list, count, most, &count));
+    TRY(choose_columns(s, list, count, most, &count));
     for (size_t i = 0; i < count; i++)
-        STARG_PUSH(context, STAGE, &s->scene.witnesses, list[i].column);
+        PUSH(context, STAGE, &s->scene.witnesses, list[i].column);
     *added = count;
     if (count > 0)
-        STARG_TRY(look_at_new(s, first));
-done:
-    starg_release(context, list);
-    return status;
+        TRY(look_at_new(s, first));
+    return STARG_OK;
 }
 
 /* The rarest faces, then those that the fractional cover by candidates does not see enough. */
@@ -176,27 +168,23 @@ done:
 /* ---- all columns ---- */
 
 starg_status search_hold(search *s, const uint32_t *points, size_t count) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    candidate_points found = {0};
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
+    SCOPED_BY(candidates_free) candidate_points found = {0};
+    TIME_RULE(context, STARG_TIME_IGNORED);
     uint32_t next = (uint32_t)pool_count(s->pool);
     for (size_t i = 0; i < count; i++) {
         search_point *point = &s->points.data[points[i]];
         if (point->candidate != UINT32_MAX)
             continue;
         bool looks = sensor_is_directed(s->scene.view);
-        STARG_TRY(candidates_push_pose(context, &found, point->place,
-                                       looks ? point->direction : NULL, point->up));
+        TRY(candidates_push_pose(context, &found, point->place, looks ? point->direction : NULL,
+                                 point->up));
         point->candidate = next++;
     }
     s->scene.work += candidates_count(&found) * s->pool->columns / 20;
     if (found.data.count > 0)
-        STARG_TRY(pool_add(s->pool, &found));
-done:
-    starg_time_end(context, former);
-    candidates_free(context, &found);
-    return status;
+        TRY(pool_add(s->pool, &found));
+    return STARG_OK;
 }
 
 /* Adds a share for each column that the point sees. */
@@ -230,13 +218,12 @@ static bool see_most(const search *s, uint64_t *missing, uint32_t *candidate) {
  * `seen`: by column, how many of the points see it. */
 static starg_status take_guards(search *s, const uint32_t *points, size_t count, const double *seen,
                                 bool *complete) {
-    starg_status status = STARG_OK;
-    STARG_ARRAY(uint32_t) guards = {0};
-    uint64_t *missing = NULL;
+    SCOPED STARG_ARRAY(uint32_t) guards = {0};
+    SCOPED uint64_t *missing = NULL;
     size_t lacking = 0;
-    STARG_NEW_ZERO(context_of(s), STAGE, missing, s->pool->rows->words);
+    NEW_ZERO(context_of(s), STAGE, missing, s->pool->rows->words);
     for (size_t i = 0; i < count; i++)
-        STARG_PUSH(context_of(s), STAGE, &guards, s->points.data[points[i]].candidate);
+        PUSH(context_of(s), STAGE, &guards, s->points.data[points[i]].candidate);
     for (size_t j = 0; j < s->pool->columns; j++)
         if (seen[j] < s->need[j]) {
             starg_bit_set(missing, j);
@@ -246,20 +233,17 @@ static starg_status take_guards(search *s, const uint32_t *points, size_t count,
     uint32_t next = 0;
     while (lacking > 0 && s->redundancy == 1 && guards.count + 1 < s->count &&
            see_most(s, missing, &next)) {
-        STARG_PUSH(context_of(s), STAGE, &guards, next);
+        PUSH(context_of(s), STAGE, &guards, next);
         lacking = starg_bit_count(missing, s->pool->rows->words);
     }
     if (lacking > 0 || guards.count >= s->count)
-        goto done;
+        return STARG_OK;
     s->guards.count = 0;
     for (size_t i = 0; i < guards.count; i++)
-        STARG_PUSH(context_of(s), STAGE, &s->guards, guards.data[i]);
+        PUSH(context_of(s), STAGE, &s->guards, guards.data[i]);
     s->count = guards.count;
     s->better = true;
-done:
-    STARG_ARRAY_FREE(context_of(s), &guards);
-    starg_release(context_of(s), missing);
-    return status;
+    return search_note_guards(s);
 }
 
 starg_status search_try_guards(search *s, const uint32_t *points, size_t count, bool *changed) {
@@ -282,24 +266,20 @@ done:
 }
 
 starg_status search_add_short(search *s, const row_list *list, bool *changed) {
-    starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    uint32_t *held = NULL;
-    double *sums = NULL;
+    SCOPED uint32_t *held = NULL;
+    SCOPED double *sums = NULL;
     size_t added, count = 0;
-    STARG_NEW(context, STAGE, held, list->count);
+    NEW(context, STAGE, held, list->count);
     for (size_t i = 0; i < list->count; i++)
         if (s->prices.share[i] >= LEAST_SHARE && list->points[i] != UINT32_MAX)
             held[count++] = list->points[i];
-    STARG_TRY(search_hold(s, held, count));
-    STARG_NEW_ZERO(context, STAGE, sums, 64 * s->pool->rows->words);
+    TRY(search_hold(s, held, count));
+    NEW_ZERO(context, STAGE, sums, 64 * s->pool->rows->words);
     for (size_t i = 0; i < list->count; i++)
         if (s->prices.share[i] >= LEAST_SHARE && list->points[i] != UINT32_MAX)
             add_share(s, list->points[i], s->prices.share[i], sums);
-    STARG_TRY(add_witnesses(s, sums, ENOUGH, MORE_WITNESSES + s->count / 2, &added));
+    TRY(add_witnesses(s, sums, ENOUGH, MORE_WITNESSES + s->count / 2, &added));
     *changed = added > 0;
-done:
-    starg_release(context, held);
-    starg_release(context, sums);
-    return status;
+    return STARG_OK;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Restores a result: its scene, and what each guard sees there. */
+#include "guard/patched.h"
 #include "guard/stages.h"
 
 static const char STAGE[] = "guards";
@@ -7,33 +8,30 @@ static const char STAGE[] = "guards";
 /* The weights from a result; NULL: all faces count alike. */
 static starg_status spread_weights(starg_context *context, const starg_guards *guards,
                                    double **out) {
-    starg_status status = STARG_OK;
     *out = NULL;
     if (guards->targets == NULL)
         return STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, *out, guards->face_count);
+    NEW_ZERO(context, STAGE, *out, guards->face_count);
     for (size_t i = 0; i < guards->target_count; i++)
         (*out)[guards->targets[i]] = guards->importance[i];
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_plain(const starg_guards *g) {
     const starg_space_options *o = &g->space;
     bool bounded = o->standoff_least > 0 || o->standoff_most > 0 || o->cell > 0 ||
-                   o->over_count > 0 || o->mount_count > 0;
+                   o->over_count > 0 || o->mount_count > 0 || o->clear_count > 0;
     for (int k = 0; k < 6; k++)
         bounded = bounded || o->within[k] != 0;
-    return !bounded && g->obstacle_count == 0 && g->targets == NULL && !o->outside && !o->soup &&
-           o->orientation == STARG_ORIENTATION_NESTED;
+    return !bounded && g->obstacle_count == 0 && g->need_count == 0 && g->targets == NULL &&
+           !o->outside && !o->soup && o->orientation == STARG_ORIENTATION_NESTED;
 }
 
 starg_status starg_guards_scene(starg_context *context, const starg_mesh *model,
                                 const starg_mesh *const *obstacles, const starg_guards *guards,
                                 starg_solid **out) {
-    starg_status status = STARG_OK;
-    double *weights = NULL;
-    starg_solid *scene = NULL;
+    SCOPED double *weights = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *scene = NULL;
     *out = NULL;
     if (model->vertex_count != guards->vertex_count || model->face_count != guards->face_count)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
@@ -43,38 +41,140 @@ starg_status starg_guards_scene(starg_context *context, const starg_mesh *model,
                           model->face_count);
     if (is_plain(guards))
         return starg_solid_create(context, model, out);
-    STARG_TRY(spread_weights(context, guards, &weights));
-    STARG_TRY(starg_space_create(context, model, obstacles, guards->obstacle_count, &guards->space,
-                                 &scene));
+    TRY(spread_weights(context, guards, &weights));
+    TRY(starg_space_create(context, model, obstacles, guards->obstacle_count, &guards->space,
+                           &scene));
     if (weights != NULL)
-        STARG_TRY(starg_space_weigh(scene, weights));
+        TRY(starg_space_weigh(scene, weights));
+    if (guards->need_count > 0)
+        TRY(starg_space_require(scene, guards->needs, guards->need_count));
     *out = scene;
     scene = NULL;
-done:
-    starg_solid_free(scene);
-    starg_release(context, weights);
-    return status;
+    return STARG_OK;
 }
 
-starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
+/* What guards see of a scene or of its patches, as their options say. */
+static starg_status look_from(starg_context *context, const starg_solid *scene,
                               const starg_guards *guards, starg_bits **out) {
-    starg_status status = STARG_OK;
     starg_visibility_options view = guards->options.visibility;
-    starg_bits *rows = NULL, *model = NULL;
-    size_t faces = starg_space_model_faces(scene);
-    *out = NULL;
     view.engine = STARG_VISIBILITY_FASTEST;
     view.target = STARG_TARGET_FACES;
     view.directions = guards->directions;
     view.ups = guards->ups;
-    STARG_TRY(starg_visibility(context, scene, guards->positions, guards->count, &view, &rows));
-    STARG_TRY(starg_bits_create(context, guards->count, faces, &model));
-    for (size_t i = 0; i < guards->count; i++) /* obstacles follow and are not targets */
+    return starg_visibility(context, scene, guards->positions, guards->count, &view, out);
+}
+
+/* Files without patches have the word for auto. */
+static starg_status cut_patches(starg_context *context, const starg_solid *scene,
+                                const starg_guards *guards, patched_solid *out) {
+    starg_visibility_options view = guards->options.visibility;
+    view.target = STARG_TARGET_FACES;
+    view.patch = view.patch > 0 ? view.patch : STARG_PATCH_OFF;
+    return patched_solid_make(context, scene, &view, out);
+}
+
+starg_status guards_look(starg_context *context, const starg_solid *scene,
+                         const starg_guards *guards, patched_solid *patched, starg_bits **rows) {
+    starg_status status = cut_patches(context, scene, guards, patched);
+    return status == STARG_OK ? look_from(context, &patched->solid, guards, rows) : status;
+}
+
+/* Patches of the model; obstacles follow and are not targets. */
+static size_t drawn_patches(const patched_solid *patched) {
+    return solid_first_patch(&patched->solid, starg_space_model_faces(&patched->solid));
+}
+
+starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
+                              const starg_guards *guards, starg_bits **out) {
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
+    starg_bits *model = NULL;
+    SCOPED_BY(patched_solid_free) patched_solid patched = {0};
+    size_t faces = starg_space_model_faces(scene);
+    *out = NULL;
+    TRY(cut_patches(context, scene, guards, &patched));
+    TRY(look_from(context, &patched.solid, guards, &rows));
+    TRY(starg_bits_create(context, guards->count, faces, &model));
+    for (size_t i = 0; i < guards->count; i++)
+        for (size_t f = 0; f < faces; f++)
+            if (solid_holds_face(&patched.solid, starg_bits_row(rows, i), f))
+                starg_bit_set(starg_bits_row_mutable(model, i), f);
+    *out = model;
+    return STARG_OK;
+}
+
+/* The mesh of the patches: the vertices of the model, then the points. */
+static starg_status draw_patches(starg_context *context, const patched_solid *patched,
+                                 starg_mesh **out) {
+    const starg_mesh *mesh = patched->solid.mesh;
+    const mesh_patches *patches = patched->patches;
+    size_t count = drawn_patches(patched), points = patches != NULL ? patches->points.count : 0;
+    SCOPED double *vertices = NULL;
+    NEW(context, STAGE, vertices, 3 * (mesh->vertex_count + points));
+    memcpy(vertices, mesh->vertices, 3 * mesh->vertex_count * sizeof *vertices);
+    if (points > 0)
+        memcpy(vertices + 3 * mesh->vertex_count, patches->places.data,
+               3 * points * sizeof *vertices);
+    return starg_mesh_create(context, vertices, mesh->vertex_count + points,
+                             patches != NULL ? patches->corner.data : mesh->faces, count, out);
+}
+
+starg_status starg_guards_patch_faces(starg_context *context, const starg_solid *scene,
+                                      const starg_guards *guards, uint32_t **faces, size_t *count) {
+    SCOPED_BY(patched_solid_free) patched_solid patched = {0};
+    *faces = NULL;
+    *count = 0;
+    TRY(cut_patches(context, scene, guards, &patched));
+    *count = drawn_patches(&patched);
+    NEW(context, STAGE, *faces, *count);
+    for (size_t j = 0; j < *count; j++)
+        (*faces)[j] = (uint32_t)solid_patch_face(&patched.solid, j);
+    return STARG_OK;
+}
+
+static starg_status list_missing(starg_context *context, const patched_solid *patched,
+                                 const starg_bits *seen, uint32_t **out, size_t *count) {
+    SCOPED uint64_t *joined = NULL;
+    *count = 0;
+    TRY(pool_join_rows(context, seen, &joined));
+    NEW(context, STAGE, *out, seen->columns);
+    for (uint32_t j = 0; j < seen->columns; j++)
+        if (!starg_bit_test(joined, j) &&
+            solid_is_target(&patched->solid, false, solid_patch_face(&patched->solid, j)))
+            (*out)[(*count)++] = j;
+    return STARG_OK;
+}
+
+void starg_patches_free(starg_context *context, uint32_t *missing) {
+    starg_release(context, missing);
+}
+
+starg_status starg_guards_patches(starg_context *context, const starg_solid *scene,
+                                  const starg_guards *guards, starg_mesh **mesh, starg_bits **seen,
+                                  uint32_t **missing, size_t *count) {
+    starg_status status = STARG_OK;
+    patched_solid patched = {0};
+    starg_bits *rows = NULL, *model = NULL;
+    *mesh = NULL;
+    *seen = NULL;
+    if (missing != NULL)
+        *missing = NULL;
+    STARG_TRY(cut_patches(context, scene, guards, &patched));
+    STARG_TRY(look_from(context, &patched.solid, guards, &rows));
+    STARG_TRY(starg_bits_create(context, guards->count, drawn_patches(&patched), &model));
+    for (size_t i = 0; i < guards->count; i++)
         memcpy(starg_bits_row_mutable(model, i), starg_bits_row(rows, i),
                model->words * sizeof *model->data);
-    *out = model;
+    if (missing != NULL)
+        STARG_TRY(list_missing(context, &patched, model, missing, count));
+    STARG_TRY(draw_patches(context, &patched, mesh));
+    *seen = model;
     model = NULL;
 done:
+    if (status != STARG_OK && missing != NULL) {
+        starg_release(context, *missing);
+        *missing = NULL;
+    }
+    patched_solid_free(&patched);
     starg_bits_free(rows);
     starg_bits_free(model);
     return status;

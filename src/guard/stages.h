@@ -5,6 +5,8 @@
 #define STARG_GUARD_STAGES_H
 
 #include "guard/choose.h"
+#include "guard/patched.h"
+#include "guard/point_coverage.h"
 #include "starguard/simplify.h"
 
 /* The request, constant throughout a call. */
@@ -15,6 +17,9 @@ typedef struct guard_problem {
     column_weights weights;
     struct guard_certificate
         *certificate; /* receives the certificate of the bound for all points; NULL: not wanted */
+    const struct kept_guards *kept;  /* what the solid's needs were found from; NULL: nothing */
+    const candidate_points *carried; /* candidates in place of new ones; NULL: none */
+    bool hurried; /* targets that no candidate sees are not looked for in the whole free space */
 } guard_problem;
 
 /* Simplified versions of the solid. */
@@ -37,6 +42,12 @@ typedef struct guard_selection {
 
 typedef STARG_ARRAY(starg_guard_level) guard_records;
 
+/* So many guards after so much work. */
+typedef struct search_step {
+    uint64_t work;
+    size_t count;
+} search_step;
+
 /* The result of the search over every point. */
 typedef struct search_record {
     size_t bound; /* lower bound for guards anywhere; 0: not sought */
@@ -44,10 +55,20 @@ typedef struct search_record {
     uint64_t improve_work, prove_work;
     uint64_t weight_bound; /* upper bound on the weight that max_guards guards anywhere see; 0: not
                               sought */
+    size_t step_count;
+    search_step *steps; /* work in microseconds */
 } search_record;
+
+/* What 1, 2, ... candidates see at most, found and bounded, as fractions of the area. */
+typedef struct guard_worth {
+    size_t count;
+    double *seen, *bound;
+} guard_worth;
 
 /* Everything that the report of guards needs. */
 typedef struct guard_outcome {
+    guard_worth worth;
+    starg_tour tour;
     guard_pool pool;
     guard_selection selection;
     guard_records records; /* of the levels */
@@ -83,7 +104,7 @@ starg_status selection_of_cover(starg_context *context, const starg_cover *cover
                                 const guard_selection *before, int level, guard_selection *out);
 starg_status selection_copy(starg_context *context, const guard_selection *from,
                             guard_selection *out);
-void selection_free(starg_context *context, guard_selection *selection);
+void selection_free(guard_selection *selection);
 
 /* Records the guards of a level, the kept ones first. Errors: MEMORY. */
 starg_status record_level(const guard_pool *pool, const guard_selection *selection,
@@ -118,9 +139,45 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
 starg_status search_area(const guard_problem *problem, const guard_pool *pool,
                          guard_selection *selection, search_record *out);
 
+/* Everything from the solid to the choice (guard/guard.c). Errors: MEMORY, CANCELLED, those of a
+ * solid without candidates. */
+starg_status find_guards(const guard_problem *problem, guard_outcome *out);
+void outcome_free(starg_context *context, guard_outcome *outcome);
+
+/* Guards of some points, and what they see of all. The pool is of `patched`, so it may not move. */
+typedef struct point_round {
+    patched_solid patched;
+    guard_outcome outcome;
+    point_coverage coverage;
+    bool complete, any; /* is everything seen, or any part of a face? */
+} point_round;
+
+/* The same for every point of the targets (guard/every_point.c); `parts`, if not NULL, are
+ * those of faces whose corners have to be seen first. *out is one of the two rounds. */
+starg_status find_guards_of_points(const guard_problem *problem, const mesh_patches *parts,
+                                   point_round rounds[2], point_round **out);
+void point_round_free(starg_context *context, point_round *round);
+
+/* What the chosen guards see of every point. Errors: MEMORY, CANCELLED. */
+starg_status find_coverage(const guard_problem *problem, const guard_outcome *outcome,
+                           point_coverage *out);
+
+/* What guards of a result see of the patches of their scene (guard/see.c). Errors: those of
+ * starg_visibility. */
+starg_status guards_look(starg_context *context, const starg_solid *scene,
+                         const starg_guards *guards, patched_solid *patched, starg_bits **rows);
+
+/* Finds the worth, if the options ask for it (guard/curve.c). Errors: MEMORY, CANCELLED. */
+starg_status curve_find(const guard_problem *problem, guard_outcome *outcome);
+
+/* If the options ask for it, puts the chosen guards in the order of a short tour and finds the way
+ * (guard/tour.c). Guards that stay are no part of it, and the time limit does not end it. Errors:
+ * MEMORY, CANCELLED. */
+starg_status tour_find(const guard_problem *problem, guard_outcome *outcome);
+
 /* The result: what the chosen guards see, recomputed (guard/measure.c). Takes the records over.
  * Errors: MEMORY, CANCELLED. */
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
-                           starg_guards **out);
+                           const point_coverage *coverage, starg_guards **out);
 
 #endif

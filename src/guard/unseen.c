@@ -45,7 +45,6 @@ typedef struct unseen_search {
     double clearance;
     visibility_scene *points;
     box_scene *boxes;
-    uint32_t *rank_of;
     STARG_ARRAY(uint32_t) list;   /* faces that no candidate sees */
     STARG_ARRAY(uint32_t) buried; /* those within matter, which are not in the list */
     uint64_t *open;               /* bits of the list: not seen yet */
@@ -96,7 +95,7 @@ static starg_status look_from_above(unseen_search *s, uint64_t budget, uint8_t *
         pending = pending && s->spent < budget / 2;
     }
 done:
-    candidates_free(s->context, &found);
+    candidates_free(&found);
     starg_release(s->context, unseen);
     return status;
 }
@@ -131,7 +130,7 @@ static starg_status look_from_candidates(unseen_search *s, const starg_guard_opt
     }
 done:
     pool_free(&pool);
-    candidates_free(s->context, &points);
+    candidates_free(&points);
     starg_release(s->context, tried);
     return status;
 }
@@ -148,7 +147,7 @@ static void look_from_middle(const unseen_search *s, const unseen_box *part, uin
         return;
     for (size_t w = 0; w < words_of(s); w++)
         STARG_FOR_BITS (bit, part->open[w] & s->open[w])
-            if (scene_sees_face(s->points, p, s->rank_of[s->list.data[64 * w + bit]], &s->view))
+            if (scene_sees_patch(s->points, p, s->list.data[64 * w + bit], &s->view))
                 starg_bit_set(seen, 64 * w + bit);
 }
 
@@ -251,7 +250,6 @@ static int by_size(const void *a, const void *b) {
 
 /* Chooses the leaves to cut, and makes room for their parts. */
 static starg_status choose_cut(unseen_search *s, size_t *count) {
-    starg_status status = STARG_OK;
     *count = 0;
     qsort(s->leaves.data, s->leaves.count, sizeof *s->leaves.data, by_size);
     for (size_t i = 0; i < s->leaves.count && *count < BATCH; i++) {
@@ -261,17 +259,15 @@ static starg_status choose_cut(unseen_search *s, size_t *count) {
         for (size_t k = 0; k < 2; k++) {
             unseen_box *part = &s->parts[2 * *count + k];
             *part = (unseen_box){.box = halves[k]};
-            STARG_NEW_ZERO(s->context, STAGE, part->open, words_of(s));
+            NEW_ZERO(s->context, STAGE, part->open, words_of(s));
         }
         s->cut[(*count)++] = (uint32_t)i;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The parts replace the leaves that were cut. */
 static starg_status take_parts(unseen_search *s, size_t count) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < 2 * count; i++) {
         const uint64_t *seen = s->looks + i * words_of(s);
         bool is_new = false;
@@ -283,7 +279,7 @@ static starg_status take_parts(unseen_search *s, size_t count) {
         }
         middle_of(&s->parts[i].box, p);
         if (is_new && s->places != NULL)
-            STARG_TRY(candidates_push(s->context, s->places, p, NULL));
+            TRY(candidates_push(s->context, s->places, p, NULL));
     }
     for (size_t i = 0; i < 2 * count; i++) {
         unseen_box *leaf = &s->leaves.data[s->cut[i / 2]];
@@ -291,16 +287,14 @@ static starg_status take_parts(unseen_search *s, size_t count) {
             starg_release(s->context, leaf->open);
             *leaf = s->parts[i];
         } else
-            STARG_PUSH(s->context, STAGE, &s->leaves, s->parts[i]);
+            PUSH(s->context, STAGE, &s->leaves, s->parts[i]);
         s->parts[i].open = NULL;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status cut_batch(unseen_search *s, size_t *count) {
-    starg_status status = STARG_OK;
-    STARG_TRY(choose_cut(s, count));
+    TRY(choose_cut(s, count));
     memset(s->looks, 0, 2 * BATCH * words_of(s) * sizeof *s->looks);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = 2 * *count,
@@ -309,10 +303,8 @@ static starg_status cut_batch(unseen_search *s, size_t *count) {
                                       .make_scratch = make_worker,
                                       .free_scratch = free_worker,
                                       .silent = true};
-    STARG_TRY(starg_parallel_for(s->context, &loop));
-    STARG_TRY(take_parts(s, *count));
-done:
-    return status;
+    TRY(starg_parallel_for(s->context, &loop));
+    return take_parts(s, *count);
 }
 
 static starg_status begin_leaves(unseen_search *s) {
@@ -337,31 +329,23 @@ done:
 }
 
 static starg_status cut_boxes(unseen_search *s, uint64_t budget) {
-    starg_status status = STARG_OK;
     size_t count = 1;
-    STARG_TRY(begin_leaves(s));
+    TRY(begin_leaves(s));
     while (s->leaves.count > 0 && count > 0 && s->spent < budget &&
            !starg_time_is_over(s->context)) {
-        STARG_TRY(starg_check_cancel(s->context, STAGE));
-        STARG_TRY(cut_batch(s, &count));
+        TRY(starg_check_cancel(s->context, STAGE));
+        TRY(cut_batch(s, &count));
         drop_leaves(s);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the call ---- */
 
 static starg_status begin(unseen_search *s) {
-    starg_status status = STARG_OK;
-    STARG_TRY(scene_create(s->context, s->solid, &s->points));
-    STARG_TRY(scene_add_sights(s->points));
-    STARG_TRY(box_scene_create(s->context, s->solid, &s->boxes));
-    STARG_NEW(s->context, STAGE, s->rank_of, s->points->face_count);
-    for (size_t rank = 0; rank < s->points->face_count; rank++)
-        s->rank_of[s->points->face_of[rank]] = (uint32_t)rank;
-done:
-    return status;
+    TRY(scene_create(s->context, s->solid, &s->points));
+    TRY(scene_add_sights(s->points));
+    return box_scene_create(s->context, s->solid, &s->boxes);
 }
 
 static void end(unseen_search *s) {
@@ -372,15 +356,8 @@ static void end(unseen_search *s) {
         starg_release(context, s->leaves.data[i].open);
     for (size_t i = 0; s->parts != NULL && i < 2 * BATCH; i++)
         starg_release(context, s->parts[i].open);
-    STARG_ARRAY_FREE(context, &s->leaves);
-    STARG_ARRAY_FREE(context, &s->list);
-    STARG_ARRAY_FREE(context, &s->buried);
-    starg_release(context, s->rank_of);
-    starg_release(context, s->open);
-    starg_release(context, s->parts);
-    starg_release(context, s->cut);
-    starg_release(context, s->work);
-    starg_release(context, s->looks);
+    RELEASE(s->leaves.data, s->list.data, s->buried.data, s->open, s->parts, s->cut, s->work,
+            s->looks);
 }
 
 /* Is it unknown whether some place sees a face of the list that none was found for? */
@@ -393,9 +370,8 @@ static bool is_left_open(const unseen_search *s, size_t index) {
 
 /* Reports the faces that some leaf leaves open. */
 static starg_status report(const unseen_search *s, uint8_t **out) {
-    starg_status status = STARG_OK;
     size_t faces = starg_space_model_faces(s->solid);
-    STARG_NEW_ZERO(s->context, STAGE, *out, faces);
+    NEW_ZERO(s->context, STAGE, *out, faces);
     for (size_t f = 0; f < faces; f++)
         (*out)[f] = solid_is_target(s->solid, false, f) ? STARG_FACE_SEEN : STARG_FACE_IGNORED;
     for (size_t i = 0; i < s->buried.count; i++)
@@ -403,8 +379,7 @@ static starg_status report(const unseen_search *s, uint8_t **out) {
     for (size_t i = 0; i < s->list.count; i++)
         if (starg_bit_test(s->open, i))
             (*out)[s->list.data[i]] = is_left_open(s, i) ? STARG_FACE_UNDECIDED : STARG_FACE_UNSEEN;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_unseen(starg_context *context, const starg_solid *scene,
@@ -439,11 +414,40 @@ done:
     return status;
 }
 
+/* Proves matter that no place sees the patch? A hidden face may have visible parts. */
+static bool is_hidden(const starg_solid *solid, uint32_t patch) {
+    const mesh_patches *patches = solid->patches;
+    bool buried = false;
+    if (patches == NULL)
+        return solid_hides(solid, patch);
+    for (size_t k = 0; k < patches->corners && !buried; k++) {
+        uint32_t corner = patches_corner(patches, patch, k);
+        buried = corner < patches->vertex_count && solid_buries(solid, corner);
+    }
+    return buried;
+}
+
+/* The number of faces all of whose listed patches, which are ascending, are proven to be unseen. */
+static size_t count_faces(const starg_solid *solid, const uint32_t *patches, const uint8_t *proven,
+                          size_t count) {
+    size_t faces = 0;
+    for (size_t i = 0, next; i < count; i = next) {
+        bool all = true;
+        for (next = i; next < count && solid_patch_face(solid, patches[next]) ==
+                                           solid_patch_face(solid, patches[i]);
+             next++)
+            all = all && proven[next];
+        faces += all;
+    }
+    return faces;
+}
+
 starg_status unseen_prove(starg_context *context, const starg_solid *solid,
-                          const starg_guard_options *options, const uint32_t *faces, size_t count,
-                          uint64_t work, size_t *proven, candidate_points *places) {
+                          const starg_guard_options *options, const uint32_t *patches, size_t count,
+                          uint64_t work, size_t *faces, candidate_points *places) {
     starg_status status = STARG_OK;
     starg_visibility_options around;
+    uint8_t *proven = NULL;
     unseen_search s = {.context = context,
                        .solid = solid,
                        .view = options->visibility,
@@ -452,20 +456,24 @@ starg_status unseen_prove(starg_context *context, const starg_solid *solid,
     starg_visibility_options_default(&around);
     s.view.cone = around.cone;
     memcpy(s.view.fov, around.fov, sizeof s.view.fov);
-    *proven = 0;
+    STARG_NEW(context, STAGE, proven, count);
     for (size_t i = 0; i < count; i++) {
-        if (solid_hides(solid, faces[i]))
-            ++*proven;
-        else
-            STARG_PUSH(context, STAGE, &s.list, faces[i]);
+        proven[i] = is_hidden(solid, patches[i]);
+        if (!proven[i])
+            STARG_PUSH(context, STAGE, &s.list, patches[i]);
     }
     STARG_TRY(begin(&s));
     if (s.list.count > 0)
         STARG_TRY(cut_boxes(&s, work));
-    for (size_t i = 0; i < s.list.count; i++)
-        *proven += starg_bit_test(s.open, i) && !is_left_open(&s, i);
+    for (size_t i = 0, k = 0; i < count && k < s.list.count; i++)
+        if (s.list.data[k] == patches[i]) {
+            proven[i] = starg_bit_test(s.open, k) && !is_left_open(&s, k);
+            k++;
+        }
+    *faces = count_faces(solid, patches, proven, count);
 done:
     context->work += s.spent;
+    starg_release(context, proven);
     end(&s);
     return status;
 }

@@ -23,36 +23,36 @@ static int find_exponent(const starg_mesh *mesh) {
  * or huge models neither underflow nor overflow. */
 static starg_status measure_areas(starg_context *context, const starg_solid *solid,
                                   column_weights *out) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = solid->mesh;
     int exponent = find_exponent(mesh);
-    STARG_NEW(context, STAGE, out->areas, mesh->face_count);
+    NEW(context, STAGE, out->areas, solid_patch_count(solid));
     for (size_t f = 0; f < mesh->face_count; f++) {
+        size_t first = solid_first_patch(solid, f), end = solid_first_patch(solid, f + 1);
         double corner[3][3];
         for (size_t k = 0; k < 9; k++)
             corner[k / 3][k % 3] =
                 ldexp(mesh->vertices[3 * (size_t)mesh->faces[3 * f + k / 3] + k % 3], -exponent);
-        out->areas[f] = vec3_triangle_area(corner[0], corner[1], corner[2]);
+        double area = vec3_triangle_area(corner[0], corner[1], corner[2]);
         if (solid->importance != NULL)
-            out->areas[f] *= solid->importance[f];
+            area *= solid->importance[f];
+        for (size_t j = first; j < end; j++)
+            out->areas[j] = solid->patches != NULL ? area * solid->patches->share.data[j] : area;
         out->faces += solid_is_target(solid, false, f);
-        out->area += out->areas[f];
+        out->area += area;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status column_weights_create(starg_context *context, const starg_solid *solid,
                                    starg_target target, column_weights *out) {
-    starg_status status = STARG_OK;
-    const starg_mesh *mesh = solid->mesh;
     bool vertices = target == STARG_TARGET_VERTICES, faces = target == STARG_TARGET_FACES;
-    size_t columns = target_columns(mesh, target);
+    size_t columns = target_columns(solid, target);
     *out = (column_weights){0};
-    STARG_TRY(measure_areas(context, solid, out));
-    STARG_NEW(context, STAGE, out->weights, columns);
+    TRY(measure_areas(context, solid, out));
+    NEW(context, STAGE, out->weights, columns);
     for (size_t j = 0; j < columns; j++) {
-        if (!solid_is_target(solid, vertices, target == STARG_TARGET_CORNERS ? j / 3 : j)) {
+        size_t index = faces ? solid_patch_face(solid, j) : vertices ? j : j / 3;
+        if (!solid_wants(solid, vertices, index, j)) {
             out->weights[j] = 0;
             continue;
         }
@@ -61,12 +61,11 @@ starg_status column_weights_create(starg_context *context, const starg_solid *so
         out->weights[j] = weight > 0 ? weight : 1;
         out->total += out->weights[j];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
-void column_weights_free(starg_context *context, column_weights *weights) {
-    starg_release(context, weights->areas);
-    starg_release(context, weights->weights);
+void column_weights_free(column_weights *weights) {
+    RELEASE(weights->areas);
+    RELEASE(weights->weights);
     *weights = (column_weights){0};
 }

@@ -14,12 +14,13 @@ typedef struct column_weights {
     double area;   /* of all faces */
     uint64_t *weights;
     uint64_t total;
-    size_t faces; /* number of target faces */
+    uint64_t kept; /* of the columns that guards that stay see often enough; not in the total */
+    size_t faces;  /* number of target faces */
 } column_weights;
 
 /* Errors: MEMORY. */
 starg_status column_weights_create(starg_context *context, const starg_solid *solid,
                                    starg_target target, column_weights *out);
-void column_weights_free(starg_context *context, column_weights *weights);
+void column_weights_free(column_weights *weights);
 
 #endif

@@ -66,27 +66,23 @@ static starg_status fail_range(starg_mesh_builder *builder, size_t axis, double 
 
 starg_status starg_builder_vertex(starg_mesh_builder *builder, const double point[3],
                                   starg_place place) {
-    starg_status status = STARG_OK;
     for (size_t k = 0; k < 3; k++)
         if (!(fabs(point[k]) < STARG_COORDINATE_LIMIT)) /* also true for NaN */
             return fail_range(builder, k, point[k], place);
     for (size_t k = 0; k < 3; k++)
-        STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->vertices, point[k]);
-done:
-    return status;
+        PUSH(builder->source->context, STARG_MESH_FILE, &builder->vertices, point[k]);
+    return STARG_OK;
 }
 
 starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, starg_place place) {
-    starg_status status = STARG_OK;
     size_t count = starg_builder_vertex_count(builder);
     if (vertex < 0 || (uint64_t)vertex >= count || vertex > UINT32_MAX)
         return starg_source_fail(
             builder->source, place,
             "a face refers to vertex %lld (counted from 0), but there are only %zu vertices",
             (long long)vertex, count);
-    STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->corners, (uint32_t)vertex);
-done:
-    return status;
+    PUSH(builder->source->context, STARG_MESH_FILE, &builder->corners, (uint32_t)vertex);
+    return STARG_OK;
 }
 
 /* Room for `count` more face indices. */
@@ -105,14 +101,13 @@ static starg_status make_room(starg_mesh_builder *builder, size_t count) {
 }
 
 starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place) {
-    starg_status status = STARG_OK;
     const uint32_t *corners = builder->corners.data;
     size_t count = builder->corners.count;
     if (count < 3)
         return starg_source_fail(builder->source, place,
                                  "a face has %zu corner%s; it needs at least 3", count,
                                  count == 1 ? "" : "s");
-    STARG_TRY(make_room(builder, 3 * (count - 2)));
+    TRY(make_room(builder, 3 * (count - 2)));
     uint32_t *triangles = builder->faces.data + builder->faces.count;
     if (!starg_polygon_fan(builder->vertices.data, corners, count, triangles)) {
         if (count > MAX_CONCAVE_CORNERS)
@@ -120,16 +115,15 @@ starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place) 
                 builder->source, place,
                 "a nonconvex face has %zu corners, more than the limit of %d; triangulate it first",
                 count, MAX_CONCAVE_CORNERS);
-        STARG_TRY(starg_polygon_clip(builder->source->context, builder->vertices.data, corners,
-                                     count, triangles));
+        TRY(starg_polygon_clip(builder->source->context, builder->vertices.data, corners, count,
+                               triangles));
     }
     builder->faces.count += 3 * (count - 2);
     builder->corners.count = 0;
     while (builder->values != NULL && builder->values->data.count < builder->faces.count / 3)
-        STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->values->data,
-                   builder->values->current);
-done:
-    return status;
+        PUSH(builder->source->context, STARG_MESH_FILE, &builder->values->data,
+             builder->values->current);
+    return STARG_OK;
 }
 
 starg_status starg_builder_tick(starg_mesh_builder *builder, size_t done) {
@@ -155,7 +149,5 @@ starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out)
 }
 
 void starg_builder_free(starg_mesh_builder *builder) {
-    STARG_ARRAY_FREE(builder->source->context, &builder->vertices);
-    STARG_ARRAY_FREE(builder->source->context, &builder->faces);
-    STARG_ARRAY_FREE(builder->source->context, &builder->corners);
+    RELEASE(builder->vertices.data, builder->faces.data, builder->corners.data);
 }

@@ -17,9 +17,6 @@
  */
 #include "mesh/solid.h"
 
-#include <math.h>
-
-#include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
@@ -185,8 +182,9 @@ bool solid_buries(const starg_solid *solid, uint32_t vertex) {
     const double *v = at(&f, vertex);
     const bvh_box point = {{v[0], v[1], v[2]}, {v[0], v[1], v[2]}};
     int winding;
-    return bvh_query_box(solid->tree, &point, take_face, &f) && is_cycle(&f) && is_unfolded(&f) &&
-           find_winding(solid, &f, &winding) && winding + solid->ambient <= 0;
+    return solid->clear == NULL && bvh_query_box(solid->tree, &point, take_face, &f) &&
+           is_cycle(&f) && is_unfolded(&f) && find_winding(solid, &f, &winding) &&
+           winding + solid->ambient <= 0;
 }
 
 /* ---- faces ---- */
@@ -195,6 +193,8 @@ bool solid_hides(const starg_solid *solid, uint32_t face) {
     const uint32_t *c = solid->mesh->faces + 3 * (size_t)face;
     const double *v = solid->mesh->vertices;
     bool from_behind = solid_is_two_sided(solid) && solid->other_side[face] != TOPOLOGY_NONE;
+    if (solid->clear != NULL) /* views go through matter behind glass */
+        return false;
     bool has_area = !collinear(v + 3 * (size_t)c[0], v + 3 * (size_t)c[1], v + 3 * (size_t)c[2]);
     for (int k = 0; k < 3; k++)
         if (solid_buries(solid, c[k]) ||

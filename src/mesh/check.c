@@ -7,21 +7,15 @@
  * Stages: corners, edges, vertices (fans), positions, duplicate faces, degenerate faces,
  * intersections of all pairs with overlapping boxes (by the tree), shells. All decisions are exact.
  * Cost: O(n log n) plus the number of box pairs. */
-#include "starguard/check.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/memory.h"
-#include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "mesh/examine.h"
 #include "mesh/grid.h"
-#include "mesh/mesh.h"
-#include "mesh/topology.h"
 
 typedef struct checker {
     starg_context *context;
@@ -110,11 +104,10 @@ static void check_edges(checker *c) {
 }
 
 static starg_status check_vertices(checker *c) {
-    starg_status status = STARG_OK;
     size_t corners = 3 * c->mesh->face_count;
-    uint32_t *fan = NULL, *fans = NULL;
-    STARG_NEW(c->context, "check", fan, corners);
-    STARG_NEW_ZERO(c->context, "check", fans, c->mesh->vertex_count);
+    SCOPED uint32_t *fan = NULL, *fans = NULL;
+    NEW(c->context, "check", fan, corners);
+    NEW_ZERO(c->context, "check", fans, c->mesh->vertex_count);
     wings_find_fans(c->topology, c->mesh, fan);
     for (uint32_t h = 0; h < corners; h++)
         if (sets_find(fan, h) == h)
@@ -128,10 +121,7 @@ static starg_status check_vertices(checker *c) {
     for (size_t h = 0; h < corners; h++)
         if (fans[c->mesh->faces[h]] > 1)
             mark_face(c, STARG_FINDING_NONMANIFOLD_VERTEX, h / 3);
-done:
-    starg_release(c->context, fan);
-    starg_release(c->context, fans);
-    return status;
+    return STARG_OK;
 }
 
 typedef struct place {
@@ -149,12 +139,11 @@ static int compare_places(const void *left, const void *right) {
 
 starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh, uint32_t **first,
                                   size_t *count) {
-    starg_status status = STARG_OK;
-    place *places = NULL;
+    SCOPED place *places = NULL;
     *first = NULL;
     *count = 0;
-    STARG_NEW(context, "check", places, mesh->vertex_count);
-    STARG_NEW(context, "check", *first, mesh->vertex_count);
+    NEW(context, "check", places, mesh->vertex_count);
+    NEW(context, "check", *first, mesh->vertex_count);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         memcpy(places[v].p, mesh->vertices + 3 * v, sizeof places[v].p);
         places[v].vertex = (uint32_t)v;
@@ -166,9 +155,7 @@ starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh
         (*first)[places[i].vertex] = again ? (*first)[places[i - 1].vertex] : places[i].vertex;
         *count += again;
     }
-done:
-    starg_release(context, places);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status check_positions(checker *c) {
@@ -216,13 +203,30 @@ static void check_areas(checker *c) {
     }
 }
 
-/* Shells that only touch need not cross. */
+/* Does an edge of face a pass through the inside of face b? */
+static bool passes_through(const checker *c, uint32_t a, uint32_t b) {
+    const double *s[3], *t[3];
+    bool passes = false;
+    for (size_t k = 0; k < 3; k++) {
+        s[k] = position(c, c->mesh->faces[3 * (size_t)a + k]);
+        t[k] = position(c, c->mesh->faces[3 * (size_t)b + k]);
+    }
+    for (int i = 0; i < 3 && !passes; i++) {
+        const double *p = s[i], *q = s[(i + 1) % 3];
+        int turn = orient3d(p, q, t[0], t[1]);
+        passes = orient3d(t[0], t[1], t[2], p) * orient3d(t[0], t[1], t[2], q) < 0 && turn != 0 &&
+                 turn == orient3d(p, q, t[1], t[2]) && turn == orient3d(p, q, t[2], t[0]);
+    }
+    return passes;
+}
+
+/* Shells that touch, or overlap in faces, need not cross. */
 static void note_shells(checker *c, uint32_t a, uint32_t b, triangle_contact contact) {
     uint32_t first = c->topology->component[a], second = c->topology->component[b];
     if (contact == TRIANGLES_APART || first == second)
         return;
     c->touching[a] = c->touching[b] = 1;
-    if (contact == TRIANGLES_CROSS)
+    if (contact == TRIANGLES_CROSS && (passes_through(c, a, b) || passes_through(c, b, a)))
         c->shells[first].crossed = c->shells[second].crossed = true;
 }
 
@@ -433,8 +437,8 @@ starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, st
 }
 
 void starg_check_free(starg_context *context, starg_check *check) {
+    (void)context;
     if (check == NULL)
         return;
-    starg_release(context, check->face_marks);
-    starg_release(context, check);
+    RELEASE(check->face_marks, check);
 }

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The check and the tables that it was computed from, for callers that need both. */
-#ifndef STARG_MESH_EXAMINE_H
-#define STARG_MESH_EXAMINE_H
-
-#include <stdbool.h>
+#pragma once
 
 #include "geometry/bvh.h"
-#include "mesh/mesh.h"
 #include "mesh/topology.h"
 #include "starguard/check.h"
 
@@ -59,5 +55,3 @@ bool mesh_only_touches(const starg_check *check);
 /* Has rounding far from the origin broken it? Then nothing else is worth saying. */
 bool mesh_is_rounded(const starg_check *check);
 void mesh_examination_free(starg_context *context, mesh_examination *examination);
-
-#endif

@@ -2,10 +2,7 @@
 /* Faces and weights of faces from text files, and by names in the file of the model. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "mesh/formats/scan.h"
 #include "starguard/space.h"
 
@@ -23,9 +20,7 @@ typedef starg_status take_word(face_reader *r, starg_word word);
 /* A face of which the value is to be 1. */
 static starg_status take_face(face_reader *r, starg_word word) {
     int64_t face;
-    starg_status status = starg_word_integer(&r->scan, word, "a face number", &face);
-    if (status != STARG_OK)
-        return status;
+    TRY(starg_word_integer(&r->scan, word, "a face number", &face));
     if (face < 0 || (uint64_t)face >= r->face_count)
         return starg_source_fail(r->scan.source, starg_at_line(word.line),
                                  "there is no face %lld; the model has the faces 0 to %zu",
@@ -38,9 +33,7 @@ static starg_status take_face(face_reader *r, starg_word word) {
 /* The value of the next face. */
 static starg_status take_weight(face_reader *r, starg_word word) {
     double weight;
-    starg_status status = starg_word_real(&r->scan, word, "a weight", &weight);
-    if (status != STARG_OK)
-        return status;
+    TRY(starg_word_real(&r->scan, word, "a weight", &weight));
     if (!(weight >= 0 && weight < 1e100))
         return starg_source_fail(r->scan.source, starg_at_line(word.line),
                                  "a weight is %g; it must be zero or more, and finite", weight);
@@ -76,8 +69,7 @@ static starg_status read_words(starg_context *context, const char *path, take_wo
     }
 done:
     starg_c_locale_leave(&locale);
-    starg_release(context, bytes);
-    starg_release(context, r.values);
+    RELEASE(bytes, r.values);
     return status;
 }
 
@@ -175,18 +167,15 @@ static starg_status fail_unknown(starg_context *context, const starg_face_values
 
 static starg_status take_pattern(starg_context *context, const char *name,
                                  starg_face_values *values) {
-    starg_status status = STARG_OK;
-    starg_c_locale locale = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     values->pattern = name;
     values->equals = strchr(name, '=');
     if (values->equals == NULL)
         return STARG_OK;
-    STARG_TRY(starg_c_locale_enter(context, &locale));
+    TRY(starg_c_locale_enter(context, &locale));
     if (!starg_parse_real(values->equals + 1, strlen(values->equals + 1), &values->wanted))
         values->wanted = NAN;
-done:
-    starg_c_locale_leave(&locale);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_faces_named(starg_context *context, const char *model_file, const char *name,
@@ -198,7 +187,7 @@ starg_status starg_faces_named(starg_context *context, const char *model_file, c
     starg_face_values values = {0};
     *weights = NULL;
     STARG_TRY(take_pattern(context, name, &values));
-    STARG_TRY(starg_file_read(context, STAGE, model_file, &bytes, &size));
+    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size));
     STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
     if (!values.found)
         status = fail_unknown(context, &values, model_file);
@@ -217,6 +206,76 @@ done:
     starg_mesh_free(mesh);
     starg_release(context, bytes);
     return status;
+}
+
+/* ---- groups ---- */
+
+starg_status starg_values_collect(starg_context *context, starg_face_values *values,
+                                  const char *name, size_t length, double *number) {
+    starg_status status = STARG_OK;
+    size_t at = 0;
+    for (size_t i = 0; i < values->group_count; i++) {
+        const char *known = values->names.data + at;
+        size_t size = strlen(known);
+        *number = (double)i + 1;
+        if (size == length && memcmp(known, name, length) == 0)
+            return STARG_OK;
+        at += size + 1;
+    }
+    for (size_t i = 0; i < length; i++)
+        STARG_PUSH(context, STAGE, &values->names, name[i]);
+    STARG_PUSH(context, STAGE, &values->names, '\0');
+    *number = (double)++values->group_count;
+done:
+    return status;
+}
+
+/* Takes the names over. */
+static starg_status take_groups(starg_context *context, starg_face_values *values,
+                                starg_face_groups *out) {
+    starg_status status = STARG_OK;
+    size_t at = 0;
+    STARG_NEW(context, STAGE, out->names, values->group_count);
+    STARG_NEW(context, STAGE, out->of, values->data.count);
+    out->face_count = values->data.count;
+    for (size_t f = 0; f < out->face_count; f++)
+        out->of[f] = values->data.data[f] > 0 ? (uint32_t)values->data.data[f] - 1 : UINT32_MAX;
+    out->text = values->names.data;
+    values->names.data = NULL;
+    for (; out->count < values->group_count; out->count++) {
+        out->names[out->count] = out->text + at;
+        at += strlen(out->text + at) + 1;
+    }
+done:
+    return status;
+}
+
+starg_status starg_face_groups_read(starg_context *context, const char *model_file,
+                                    starg_face_groups *out) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    char *bytes = NULL;
+    size_t size = 0;
+    starg_face_values values = {.collects = true, .pattern = ""};
+    *out = (starg_face_groups){0};
+    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size));
+    STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
+    STARG_TRY(take_groups(context, &values, out));
+done:
+    STARG_ARRAY_FREE(context, &values.data);
+    STARG_ARRAY_FREE(context, &values.names);
+    starg_mesh_free(mesh);
+    starg_release(context, bytes);
+    if (status != STARG_OK)
+        starg_face_groups_free(context, out);
+    return status;
+}
+
+void starg_face_groups_free(starg_context *context, starg_face_groups *groups) {
+    starg_release(context, groups->names);
+    starg_release(context, groups->text);
+    starg_release(context, groups->of);
+    *groups = (starg_face_groups){0};
 }
 
 void starg_weights_free(starg_context *context, double *weights) {

@@ -14,9 +14,6 @@
  */
 #include "mesh/solid.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "scene";
@@ -41,7 +38,6 @@ bool flood_locate(const flood_cells *f, const double p[3], size_t at[3]) {
 
 static starg_status make_grid(starg_context *context, const starg_solid *scene, double size,
                               flood_cells *f) {
-    starg_status status = STARG_OK;
     bvh_box reach;
     double cells = 1;
     solid_reach(scene, &reach);
@@ -56,10 +52,9 @@ static starg_status make_grid(starg_context *context, const starg_solid *scene, 
                               size);
         f->count[k] = (size_t)wanted;
     }
-    STARG_NEW_ZERO(context, STAGE, f->taken, starg_bit_words((size_t)cells));
-    STARG_NEW_ZERO(context, STAGE, f->bits, starg_bit_words((size_t)cells));
-done:
-    return status;
+    NEW_ZERO(context, STAGE, f->taken, starg_bit_words((size_t)cells));
+    NEW_ZERO(context, STAGE, f->bits, starg_bit_words((size_t)cells));
+    return STARG_OK;
 }
 
 /* ---- taken cubes ---- */
@@ -125,17 +120,15 @@ static void take_face(flood_cells *f, const double *const c[3]) {
 }
 
 static starg_status take_faces(starg_context *context, const starg_mesh *mesh, flood_cells *f) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < mesh->face_count; i++) {
         const double *corner[3];
         for (size_t k = 0; k < 3; k++)
             corner[k] = mesh->vertices + 3 * (size_t)mesh->faces[3 * i + k];
         take_face(f, corner);
         if (i % FACES_PER_CLOCK == 0)
-            STARG_TRY(starg_check_cancel(context, STAGE));
+            TRY(starg_check_cancel(context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the flood ---- */
@@ -143,14 +136,12 @@ done:
 typedef STARG_ARRAY(size_t) cell_stack;
 
 static starg_status reach(flood_cells *f, size_t cell, cell_stack *stack) {
-    starg_status status = STARG_OK;
     if (starg_bit_test(f->taken, cell) || starg_bit_test(f->bits, cell))
         return STARG_OK;
     starg_bit_set(f->bits, cell);
     f->reached++;
-    STARG_PUSH(f->context, STAGE, stack, cell);
-done:
-    return status;
+    PUSH(f->context, STAGE, stack, cell);
+    return STARG_OK;
 }
 
 static starg_status fail_beyond(const flood_cells *f, const starg_solid *scene,
@@ -166,8 +157,7 @@ static starg_status fail_beyond(const flood_cells *f, const starg_solid *scene,
 }
 
 static starg_status spread(flood_cells *f, const starg_solid *scene, const double from[3]) {
-    starg_status status = STARG_OK;
-    cell_stack stack = {0};
+    SCOPED cell_stack stack = {0};
     size_t at[3];
     const size_t step[3] = {1, f->count[0], f->count[0] * f->count[1]};
     if (!flood_locate(f, from, at))
@@ -182,45 +172,38 @@ static starg_status spread(flood_cells *f, const starg_solid *scene, const doubl
                           "nobody can stand at (%g, %g, %g): it is within matter, or outside of "
                           "everything; choose another point",
                           from[0], from[1], from[2]);
-    STARG_TRY(reach(f, cell_at(f, at), &stack));
+    TRY(reach(f, cell_at(f, at), &stack));
     while (stack.count > 0) {
         size_t cell = stack.data[--stack.count];
         for (int k = 0; k < 3; k++) {
             size_t x = cell / step[k] % f->count[k];
             if (x > 0)
-                STARG_TRY(reach(f, cell - step[k], &stack));
+                TRY(reach(f, cell - step[k], &stack));
             if (x + 1 < f->count[k])
-                STARG_TRY(reach(f, cell + step[k], &stack));
+                TRY(reach(f, cell + step[k], &stack));
         }
     }
-done:
-    STARG_ARRAY_FREE(f->context, &stack);
-    return status;
+    return STARG_OK;
 }
 
 starg_status flood_create(starg_context *context, const starg_solid *scene, const double from[3],
                           double size, flood_cells **out) {
-    starg_status status = STARG_OK;
-    flood_cells *f = NULL;
+    SCOPED_BY(flood_drop) flood_cells *f = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, f, 1);
+    NEW_ZERO(context, STAGE, f, 1);
     f->context = context;
-    STARG_TRY(make_grid(context, scene, size, f));
-    STARG_TRY(take_faces(context, scene->mesh, f));
-    STARG_TRY(spread(f, scene, from));
+    TRY(make_grid(context, scene, size, f));
+    TRY(take_faces(context, scene->mesh, f));
+    TRY(spread(f, scene, from));
     *out = f;
     f = NULL;
-done:
-    flood_free(f);
-    return status;
+    return STARG_OK;
 }
 
 void flood_free(flood_cells *f) {
     if (f == NULL)
         return;
-    starg_release(f->context, f->taken);
-    starg_release(f->context, f->bits);
-    starg_release(f->context, f);
+    RELEASE(f->taken, f->bits, f);
 }
 
 bool flood_reaches(const flood_cells *f, const double p[3]) {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The grid on which coordinates lie (mesh/grid.c). */
-#ifndef STARG_MESH_GRID_H
-#define STARG_MESH_GRID_H
+#pragma once
 
 #include "mesh/mesh.h"
 #include "starguard/check.h"
@@ -10,5 +9,3 @@
  * (0 if all are 0), the shortest edge, and whether the grid is coarse for edges as short, as
  * rounding far from the origin leaves it. */
 void check_steps(const starg_mesh *mesh, starg_check *check);
-
-#endif

@@ -7,17 +7,14 @@
  * Cost: constant, except collapse and halfedge search, which take the degree of the vertex. */
 #include "mesh/halfedges.h"
 
-#include <string.h>
-
 starg_status halfedges_create(const mesh_topology *topology, const starg_mesh *mesh,
                               const char *stage, mesh_halfedges *out) {
-    starg_status status = STARG_OK;
     starg_context *context = topology->context;
     size_t halfedges = 3 * mesh->face_count;
     *out = (mesh_halfedges){.context = context, .stage = stage};
-    STARG_NEW(context, stage, out->corners.data, halfedges);
-    STARG_NEW(context, stage, out->twins.data, halfedges);
-    STARG_NEW(context, stage, out->leaving.data, mesh->vertex_count);
+    NEW(context, stage, out->corners.data, halfedges);
+    NEW(context, stage, out->twins.data, halfedges);
+    NEW(context, stage, out->leaving.data, mesh->vertex_count);
     out->corners.count = out->corners.capacity = halfedges;
     out->twins.count = out->twins.capacity = halfedges;
     out->leaving.count = out->leaving.capacity = mesh->vertex_count;
@@ -26,33 +23,28 @@ starg_status halfedges_create(const mesh_topology *topology, const starg_mesh *m
     memset(out->leaving.data, 0xff, mesh->vertex_count * sizeof *out->leaving.data);
     for (uint32_t h = 0; h < halfedges; h++)
         out->leaving.data[mesh->faces[h]] = h;
-done:
-    return status;
+    return STARG_OK;
 }
 
-/* TO = a copy of the growable array FROM with the same capacity; jumps to `done` on failure. */
+/* TO = a copy of the growable array FROM with the same capacity; returns on failure. */
 #define COPY_ARRAY(CONTEXT, STAGE, FROM, TO)                                                       \
     do {                                                                                           \
-        STARG_NEW((CONTEXT), (STAGE), (TO)->data, (FROM)->capacity);                               \
+        NEW((CONTEXT), (STAGE), (TO)->data, (FROM)->capacity);                                     \
         (TO)->count = (FROM)->count;                                                               \
         (TO)->capacity = (FROM)->capacity;                                                         \
         memcpy((TO)->data, (FROM)->data, (FROM)->count * sizeof *(FROM)->data);                    \
     } while (0)
 
 starg_status halfedges_copy(const mesh_halfedges *m, mesh_halfedges *out) {
-    starg_status status = STARG_OK;
     *out = (mesh_halfedges){.context = m->context, .stage = m->stage};
     COPY_ARRAY(m->context, m->stage, &m->corners, &out->corners);
     COPY_ARRAY(m->context, m->stage, &m->twins, &out->twins);
     COPY_ARRAY(m->context, m->stage, &m->leaving, &out->leaving);
-done:
-    return status;
+    return STARG_OK;
 }
 
 void halfedges_free(mesh_halfedges *m) {
-    STARG_ARRAY_FREE(m->context, &m->corners);
-    STARG_ARRAY_FREE(m->context, &m->twins);
-    STARG_ARRAY_FREE(m->context, &m->leaving);
+    RELEASE(m->corners.data, m->twins.data, m->leaving.data);
     *m = (mesh_halfedges){0};
 }
 
@@ -129,22 +121,18 @@ static void set_face(mesh_halfedges *m, uint32_t face, uint32_t a, uint32_t b, u
 }
 
 static starg_status add_face(mesh_halfedges *m, uint32_t *face) {
-    starg_status status = STARG_OK;
     *face = (uint32_t)(m->corners.count / 3);
     for (int k = 0; k < 3; k++) {
-        STARG_PUSH(m->context, m->stage, &m->corners, 0);
-        STARG_PUSH(m->context, m->stage, &m->twins, TOPOLOGY_NONE);
+        PUSH(m->context, m->stage, &m->corners, 0);
+        PUSH(m->context, m->stage, &m->twins, TOPOLOGY_NONE);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_vertex(mesh_halfedges *m, uint32_t *vertex) {
-    starg_status status = STARG_OK;
     *vertex = (uint32_t)m->leaving.count;
-    STARG_PUSH(m->context, m->stage, &m->leaving, TOPOLOGY_NONE);
-done:
-    return status;
+    PUSH(m->context, m->stage, &m->leaving, TOPOLOGY_NONE);
+    return STARG_OK;
 }
 
 /* An edge u v between faces u v w and v u x, and the twins of their other sides. */
@@ -190,12 +178,11 @@ void halfedges_begin_face(mesh_halfedges *m, uint32_t h) {
 
 /* The faces become u p w, p v w, v p x and p u x. */
 starg_status halfedges_split_edge(mesh_halfedges *m, uint32_t h, uint32_t *vertex) {
-    starg_status status = STARG_OK;
     edge_pair e = pair_at(m, h);
     uint32_t f = 3 * e.f, g = 3 * e.g, f2, g2, p;
-    STARG_TRY(add_vertex(m, &p));
-    STARG_TRY(add_face(m, &f2));
-    STARG_TRY(add_face(m, &g2));
+    TRY(add_vertex(m, &p));
+    TRY(add_face(m, &f2));
+    TRY(add_face(m, &g2));
     set_face(m, e.f, e.u, p, e.w);
     set_face(m, f2, p, e.v, e.w);
     set_face(m, e.g, e.v, p, e.x);
@@ -209,21 +196,19 @@ starg_status halfedges_split_edge(mesh_halfedges *m, uint32_t h, uint32_t *verte
     join_twins(m, g + 2, e.xv);
     join_twins(m, 3 * g2 + 1, e.ux);
     *vertex = p;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Face a b c becomes a b p, b c p and c a p. */
 starg_status halfedges_split_face(mesh_halfedges *m, uint32_t face, uint32_t *vertex) {
-    starg_status status = STARG_OK;
     uint32_t v[3], beyond[3], part[3] = {face}, p;
     for (uint32_t k = 0; k < 3; k++) {
         v[k] = m->corners.data[3 * face + k];
         beyond[k] = m->twins.data[3 * face + k];
     }
-    STARG_TRY(add_vertex(m, &p));
-    STARG_TRY(add_face(m, &part[1]));
-    STARG_TRY(add_face(m, &part[2]));
+    TRY(add_vertex(m, &p));
+    TRY(add_face(m, &part[1]));
+    TRY(add_face(m, &part[2]));
     for (int k = 0; k < 3; k++)
         set_face(m, part[k], v[k], v[(k + 1) % 3], p);
     for (int k = 0; k < 3; k++) {
@@ -231,8 +216,7 @@ starg_status halfedges_split_face(mesh_halfedges *m, uint32_t face, uint32_t *ve
         join_twins(m, 3 * part[k] + 1, 3 * part[(k + 1) % 3] + 2);
     }
     *vertex = p;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- compaction ---- */

@@ -2,12 +2,8 @@
 /* Connectivity of a closed, oriented triangle mesh under edge collapses, flips and splits and face
  * splits. It stays a 2-manifold of the same topology. No operation reads coordinates; attributes of
  * vertices, edges and faces belong to the caller. */
-#ifndef STARG_MESH_HALFEDGES_H
-#define STARG_MESH_HALFEDGES_H
+#pragma once
 
-#include <stdbool.h>
-
-#include "core/memory.h"
 #include "mesh/topology.h"
 
 /* Corners, halfedges and faces are numbered as in topology.h. Numbers are stable: a collapse leaves
@@ -87,5 +83,3 @@ starg_status halfedges_split_face(mesh_halfedges *m, uint32_t face, uint32_t *ve
  * allocated by the caller, receives the corners of the living faces in order. Returns the number of
  * vertices. */
 uint32_t halfedges_compact(const mesh_halfedges *m, uint32_t *number, uint32_t *faces);
-
-#endif

@@ -18,10 +18,6 @@
  * scene gives the same way. Cost: linear in the cubes, a byte and a bit each. */
 #include "mesh/solid.h"
 
-#include <string.h>
-
-#include "core/memory.h"
-
 static const char STAGE[] = "scene";
 
 enum { START = 7, SMALL_PART = 64 };
@@ -102,10 +98,9 @@ static void note(search *s, size_t cell, int way) {
 }
 
 static starg_status spread_by_breadth(search *s, size_t from) {
-    starg_status status = STARG_OK;
-    cell_list now = {0}, next = {0};
+    SCOPED cell_list now = {0}, next = {0};
     note(s, from, START);
-    STARG_PUSH(s->cells->context, STAGE, &now, from);
+    PUSH(s->cells->context, STAGE, &now, from);
     while (now.count > 0) {
         next.count = 0;
         for (size_t i = 0; i < now.count; i++)
@@ -114,24 +109,20 @@ static starg_status spread_by_breadth(search *s, size_t from) {
                 if (cell == NONE || s->way[cell] != 0 || !starg_bit_test(s->cells->bits, cell))
                     continue;
                 note(s, cell, way);
-                STARG_PUSH(s->cells->context, STAGE, &next, cell);
+                PUSH(s->cells->context, STAGE, &next, cell);
             }
         cell_list swap = now;
         now = next;
         next = swap;
-        STARG_TRY(starg_check_cancel(s->cells->context, STAGE));
+        TRY(starg_check_cancel(s->cells->context, STAGE));
     }
-done:
-    STARG_ARRAY_FREE(s->cells->context, &now);
-    STARG_ARRAY_FREE(s->cells->context, &next);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status spread_roomy(search *s) {
-    starg_status status = STARG_OK;
-    cell_list stack = {0};
+    SCOPED cell_list stack = {0};
     starg_bit_set(s->roomy, s->first);
-    STARG_PUSH(s->cells->context, STAGE, &stack, s->first);
+    PUSH(s->cells->context, STAGE, &stack, s->first);
     while (stack.count > 0) {
         size_t at = stack.data[--stack.count];
         for (int way = 1; way < START; way++) {
@@ -140,12 +131,10 @@ static starg_status spread_roomy(search *s) {
                 !is_roomy(s, cell))
                 continue;
             starg_bit_set(s->roomy, cell);
-            STARG_PUSH(s->cells->context, STAGE, &stack, cell);
+            PUSH(s->cells->context, STAGE, &stack, cell);
         }
     }
-done:
-    STARG_ARRAY_FREE(s->cells->context, &stack);
-    return status;
+    return STARG_OK;
 }
 
 /* The nearest exit that the second flood comes to; without one, the exit stays. */
@@ -182,23 +171,19 @@ static void centre_of(const search *s, size_t cell, double p[3]) {
 }
 
 static starg_status push_point(const search *s, const double p[3], flood_leak *out) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(s->cells->context, STAGE, &out->way, p[k]);
-done:
-    return status;
+        PUSH(s->cells->context, STAGE, &out->way, p[k]);
+    return STARG_OK;
 }
 
 /* The cubes from `end` back to the first one. */
 static starg_status trace(const search *s, size_t end, cell_list *out) {
-    starg_status status = STARG_OK;
     for (size_t cell = end; cell != NONE;) {
-        STARG_PUSH(s->cells->context, STAGE, out, cell);
+        PUSH(s->cells->context, STAGE, out, cell);
         int way = s->way[cell];
         cell = way == START ? NONE : beside(s, cell, way % 2 != 0 ? way + 1 : way - 1);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The middle of the cubes that touch no roomy one, between those of the second flood and others; of
@@ -248,20 +233,17 @@ static void place_opening(const search *s, const cell_list *back, double place[3
 /* From the point, with a point wherever the way turns, to the last cube, and out of the box. */
 static starg_status draw(const search *s, const cell_list *back, const double from[3],
                          flood_leak *out) {
-    starg_status status = STARG_OK;
     double p[3] = {0};
-    STARG_TRY(push_point(s, from, out));
+    TRY(push_point(s, from, out));
     for (size_t i = back->count; i-- > 0;) {
         centre_of(s, back->data[i], p);
         if (i == 0 || s->way[back->data[i]] != s->way[back->data[i - 1]])
-            STARG_TRY(push_point(s, p, out));
+            TRY(push_point(s, p, out));
     }
     if (!out->outside)
-        goto done;
+        return STARG_OK;
     p[(s->side - 1) / 2] += s->side % 2 != 0 ? -s->cells->size : s->cells->size;
-    status = push_point(s, p, out);
-done:
-    return status;
+    return push_point(s, p, out);
 }
 
 starg_status flood_find_leak(const flood_cells *f, const bvh_box *model, const double from[3],
@@ -297,8 +279,6 @@ starg_status flood_find_leak(const flood_cells *f, const bvh_box *model, const d
 done:
     if (status != STARG_OK)
         STARG_ARRAY_FREE(f->context, &out->way);
-    STARG_ARRAY_FREE(f->context, &back);
-    starg_release(f->context, s.way);
-    starg_release(f->context, s.roomy);
+    RELEASE(back.data, s.way, s.roomy);
     return status;
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "mesh/mesh.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
 
 static starg_status check_counts(starg_context *context, size_t vertex_count, size_t face_count) {
@@ -43,21 +39,19 @@ static starg_status check_faces(starg_context *context, const uint32_t *faces, s
 
 starg_status starg_mesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
                               uint32_t *faces, size_t face_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     *out = NULL;
-    STARG_TRY(check_counts(context, vertex_count, face_count));
-    STARG_TRY(check_vertices(context, vertices, vertex_count));
-    STARG_TRY(check_faces(context, faces, face_count, vertex_count));
-    STARG_NEW(context, "mesh", mesh, 1);
+    TRY(check_counts(context, vertex_count, face_count));
+    TRY(check_vertices(context, vertices, vertex_count));
+    TRY(check_faces(context, faces, face_count, vertex_count));
+    NEW(context, "mesh", mesh, 1);
     *mesh = (starg_mesh){.context = context,
                          .vertex_count = vertex_count,
                          .face_count = face_count,
                          .vertices = vertices,
                          .faces = faces};
     *out = mesh;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_mesh_create(starg_context *context, const double *vertices, size_t vertex_count,
@@ -76,8 +70,7 @@ starg_status starg_mesh_create(starg_context *context, const double *vertices, s
     STARG_TRY(starg_mesh_adopt(context, own_vertices, vertex_count, own_faces, face_count, out));
 done:
     if (status != STARG_OK) {
-        starg_release(context, own_vertices);
-        starg_release(context, own_faces);
+        RELEASE(own_vertices, own_faces);
     }
     return status;
 }
@@ -85,10 +78,7 @@ done:
 void starg_mesh_free(starg_mesh *mesh) {
     if (mesh == NULL)
         return;
-    starg_context *context = mesh->context;
-    starg_release(context, mesh->vertices);
-    starg_release(context, mesh->faces);
-    starg_release(context, mesh);
+    RELEASE(mesh->vertices, mesh->faces, mesh);
 }
 
 size_t starg_mesh_vertex_count(const starg_mesh *mesh) {

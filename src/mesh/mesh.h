@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of a mesh. */
-#ifndef STARG_MESH_MESH_H
-#define STARG_MESH_MESH_H
+#pragma once
 
-#include "core/context.h"
-#include "core/private.h"
+#include "core/memory.h"
 #include "starguard/mesh.h"
 
 struct starg_mesh {
@@ -49,4 +47,4 @@ void starg_mesh_scaled_corner(const starg_mesh *mesh, size_t face, size_t k, int
 starg_status starg_mesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
                               uint32_t *faces, size_t face_count, starg_mesh **out);
 
-#endif
+STARG_DROP(starg_mesh, starg_mesh)

@@ -7,9 +7,6 @@
  * are rounded, as clearances are. Cost of a question: typically O(log n). */
 #include "mesh/solid.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/intersect.h"
 #include "geometry/vec3.h"
 
@@ -31,9 +28,9 @@ static bool is_length(double x) {
 }
 
 starg_status near_faces_check(starg_context *context, const starg_space_options *o, size_t faces) {
-    starg_status status = STARG_OK;
-    STARG_TRY(check_list(context, "over which", o->over, o->over_count, faces));
-    STARG_TRY(check_list(context, "near which", o->mount, o->mount_count, faces));
+    TRY(check_list(context, "over which", o->over, o->over_count, faces));
+    TRY(check_list(context, "near which", o->mount, o->mount_count, faces));
+    TRY(check_list(context, "through which views go, where", o->clear, o->clear_count, faces));
     if (o->over_count > 0 && !is_length(o->height))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "guards stand up to %g above faces; the height must be above zero",
@@ -45,32 +42,27 @@ starg_status near_faces_check(starg_context *context, const starg_space_options 
     for (int k = 0; k < 3; k++)
         if (!(fabs(o->up[k]) < 1e100))
             return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "what is up is not finite");
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status near_faces_make(starg_context *context, const starg_mesh *model,
                              const double *vertices, const uint32_t *list, size_t count,
                              near_faces *out) {
-    starg_status status = STARG_OK;
     if (count == 0)
         return STARG_OK;
-    STARG_NEW(context, STAGE, out->list, count);
-    STARG_NEW(context, STAGE, out->corners, 3 * count);
+    NEW(context, STAGE, out->list, count);
+    NEW(context, STAGE, out->corners, 3 * count);
     for (size_t i = 0; i < count; i++) {
         out->list[i] = list[i];
         memcpy(out->corners + 3 * i, model->faces + 3 * (size_t)list[i], 3 * sizeof *out->corners);
     }
     out->count = count;
-    status = bvh_create(context, vertices, out->corners, count, &out->tree);
-done:
-    return status;
+    return bvh_create(context, vertices, out->corners, count, &out->tree);
 }
 
-void near_faces_free(starg_context *context, near_faces *faces) {
+void near_faces_free(near_faces *faces) {
     bvh_free(faces->tree);
-    starg_release(context, faces->list);
-    starg_release(context, faces->corners);
+    RELEASE(faces->list, faces->corners);
     *faces = (near_faces){0};
 }
 

@@ -10,13 +10,9 @@
  * for the boxes of all that come after it. Without hubs the tree of all faces is asked.
  *
  * Cost: O(n log n) and the pairs, where faces are not long compared with their distances. */
-#include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
-#include "mesh/topology.h"
 
 static const char STAGE[] = "check";
 
@@ -85,12 +81,11 @@ typedef struct pairing {
 
 /* A face belongs to the first of its corners that is a hub. */
 static starg_status find_hubs(pairing *p) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = p->mesh;
-    uint32_t *valence = NULL;
-    STARG_NEW_ZERO(p->context, STAGE, valence, mesh->vertex_count);
-    STARG_NEW_ZERO(p->context, STAGE, p->order, mesh->vertex_count);
-    STARG_NEW(p->context, STAGE, p->hub, mesh->face_count);
+    SCOPED uint32_t *valence = NULL;
+    NEW_ZERO(p->context, STAGE, valence, mesh->vertex_count);
+    NEW_ZERO(p->context, STAGE, p->order, mesh->vertex_count);
+    NEW(p->context, STAGE, p->hub, mesh->face_count);
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         valence[mesh->faces[i]]++;
     p->count = 1;
@@ -102,9 +97,7 @@ static starg_status find_hubs(pairing *p) {
         if (p->hub[f] != NO_HUB && p->order[p->hub[f]] == 0)
             p->order[p->hub[f]] = (uint32_t)++p->count;
     }
-done:
-    starg_release(p->context, valence);
-    return status;
+    return STARG_OK;
 }
 
 static size_t group_of(const pairing *p, size_t face) {
@@ -112,17 +105,16 @@ static size_t group_of(const pairing *p, size_t face) {
 }
 
 static starg_status make_groups(pairing *p) {
-    starg_status status = STARG_OK;
     size_t faces = p->mesh->face_count, used = 0;
-    STARG_NEW_ZERO(p->context, STAGE, p->groups, p->count);
-    STARG_NEW(p->context, STAGE, p->list, faces);
+    NEW_ZERO(p->context, STAGE, p->groups, p->count);
+    NEW(p->context, STAGE, p->list, faces);
     for (size_t f = 0; f < faces; f++)
         p->groups[group_of(p, f)].count++;
     for (size_t g = 0; g < p->count; g++) {
         group *own = &p->groups[g];
         own->faces = p->list + used;
         used += own->count;
-        STARG_NEW(p->context, STAGE, own->corners, 3 * own->count);
+        NEW(p->context, STAGE, own->corners, 3 * own->count);
         own->count = 0;
     }
     for (size_t f = 0; f < faces; f++) {
@@ -131,10 +123,9 @@ static starg_status make_groups(pairing *p) {
         p->list[(size_t)(own->faces - p->list) + own->count++] = (uint32_t)f;
     }
     for (size_t g = 0; g < p->count; g++)
-        STARG_TRY(bvh_create(p->context, p->mesh->vertices, p->groups[g].corners,
-                             p->groups[g].count, &p->groups[g].tree));
-done:
-    return status;
+        TRY(bvh_create(p->context, p->mesh->vertices, p->groups[g].corners, p->groups[g].count,
+                       &p->groups[g].tree));
+    return STARG_OK;
 }
 
 static void free_groups(pairing *p) {
@@ -142,10 +133,7 @@ static void free_groups(pairing *p) {
         bvh_free(p->groups[g].tree);
         starg_release(p->context, p->groups[g].corners);
     }
-    starg_release(p->context, p->groups);
-    starg_release(p->context, p->list);
-    starg_release(p->context, p->hub);
-    starg_release(p->context, p->order);
+    RELEASE(p->groups, p->list, p->hub, p->order);
 }
 
 /* ---- visits ---- */
@@ -209,25 +197,20 @@ static void directions_of(const starg_mesh *mesh, uint32_t hub, uint32_t face, d
 
 /* Each direction box stands as a triangle without area. */
 static starg_status visit_hub(pairing *p, const group *own) {
-    starg_status status = STARG_OK;
-    double *corners = NULL;
-    uint32_t *faces = NULL;
-    bvh *tree = NULL;
+    SCOPED double *corners = NULL;
+    SCOPED uint32_t *faces = NULL;
+    SCOPED_BY(bvh_drop) bvh *tree = NULL;
     among m = {p, own, 0};
-    STARG_NEW(p->context, STAGE, corners, 6 * own->count);
-    STARG_NEW(p->context, STAGE, faces, 3 * own->count);
+    NEW(p->context, STAGE, corners, 6 * own->count);
+    NEW(p->context, STAGE, faces, 3 * own->count);
     for (uint32_t i = 0; i < own->count; i++) {
         directions_of(p->mesh, p->hub[own->faces[i]], own->faces[i], corners + 6 * (size_t)i);
         faces[3 * (size_t)i] = faces[3 * (size_t)i + 1] = 2 * i;
         faces[3 * (size_t)i + 2] = 2 * i + 1;
     }
-    STARG_TRY(bvh_create(p->context, corners, faces, own->count, &tree));
+    TRY(bvh_create(p->context, corners, faces, own->count, &tree));
     bvh_query_pairs(tree, visit_within, &m);
-done:
-    bvh_free(tree);
-    starg_release(p->context, corners);
-    starg_release(p->context, faces);
-    return status;
+    return STARG_OK;
 }
 
 /* The faces of later groups with those of this one. */

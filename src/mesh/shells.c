@@ -2,20 +2,18 @@
 /* Which shells lie in which.
  *
  * Problem: a shell lies in another if that has a nonzero winding number about it. Shells may touch
- * in corners and edges; one that crosses another, perhaps along edges alone, lies in none.
+ * in corners, edges and parts of faces; one that crosses another, perhaps along edges alone, lies
+ * in none.
  *
  * Method: winding numbers are counted along a vertical line, exactly, from points that are on no
- * other shell: just beside a corner, within a face (bvh_crossing_beside). No curve or corner of
- * another shell passes there, and no face overlaps this one, or the shells cross. Shells without
- * contacts are asked at one point, others also at all corners of faces in contact: there a shell
- * that crosses another along edges has points on both sides.
+ * other shell: just beside a corner, within a face (bvh_crossing_beside), unless a face of another
+ * shell overlaps this one there (bvh_covers_beside). Shells without contacts are asked at one
+ * point, others also at all corners of faces in contact: there a shell that crosses another along
+ * edges has points on both sides. A shell that others cover lies in none.
  *
  * Cost: O(log n) a shell and a contact, if few shells lie around one. */
 #include "mesh/examine.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 
@@ -37,6 +35,7 @@ typedef struct nesting {
     size_t count;
     uint32_t own;
     bool asked;                   /* a point has been asked before */
+    bool covered;                 /* the point is on another shell */
     const double *p[3];           /* the point: beside p[0], towards p[1], a little to p[2] */
     STARG_ARRAY(uint32_t) around; /* pairs: a cavity, and a shell that it lies in */
 } nesting;
@@ -61,6 +60,7 @@ static bool count_crossing(void *user, uint32_t triangle) {
         n->list[n->count++] = name;
     }
     other->winding += crossing;
+    n->covered = n->covered || bvh_covers_beside(n->tree, triangle, n->p) != 0;
     return true;
 }
 
@@ -70,27 +70,27 @@ static void ask(nesting *n, mesh_shell *shells, size_t face, size_t k) {
         n->p[i] = corner(n, face, k + i);
     const double *p = n->p[0];
     const bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
+    n->covered = false;
     bvh_query_box(n->tree, &line, count_crossing, n);
     for (size_t i = 0; i < n->count; i++) {
         other_shell *other = &n->others[n->list[i]];
-        if (n->asked && other->known != other->winding)
+        if (n->asked && !n->covered && other->known != other->winding)
             shells[n->own].crossed = shells[n->list[i]].crossed = true;
-        other->known = other->winding;
+        other->known = n->covered ? other->known : other->winding;
         other->winding = 0;
     }
-    n->asked = true;
+    n->asked = n->asked || !n->covered;
 }
 
 /* Asks about all others, and forgets. */
 static starg_status nest(starg_context *context, nesting *n, const uint32_t *faces, size_t count,
                          const uint8_t *touching, mesh_shell *shells) {
-    starg_status status = STARG_OK;
     mesh_shell *own = &shells[n->own];
-    size_t first = 0, listed = n->around.count;
+    size_t listed = n->around.count;
     n->asked = false;
-    while (first + 1 < count && !has_area(n, faces[first]))
-        first++;
-    ask(n, shells, faces[first], 0);
+    for (size_t i = 0; i < count && !n->asked; i++)
+        for (size_t k = 0; k < 3 && !n->asked && has_area(n, faces[i]); k++)
+            ask(n, shells, faces[i], k);
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < 3 && touching[faces[i]] && has_area(n, faces[i]); k++)
             ask(n, shells, faces[i], k);
@@ -102,14 +102,13 @@ static starg_status nest(starg_context *context, nesting *n, const uint32_t *fac
         *other = (other_shell){0};
         if (winding == 0)
             continue;
-        STARG_PUSH(context, STAGE, &n->around, n->own);
-        STARG_PUSH(context, STAGE, &n->around, n->list[n->count - 1]);
+        PUSH(context, STAGE, &n->around, n->own);
+        PUSH(context, STAGE, &n->around, n->list[n->count - 1]);
     }
     own->cavity = own->depth % 2 == 1;
     if (!own->cavity)
         n->around.count = listed;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The shells around a cavity lie in each other: the innermost one is the deepest. */
@@ -174,10 +173,6 @@ starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
     }
     find_innermost(&n, shells);
 done:
-    STARG_ARRAY_FREE(context, &n.around);
-    starg_release(context, n.others);
-    starg_release(context, n.list);
-    starg_release(context, start);
-    starg_release(context, sorted);
+    RELEASE(n.around.data, n.others, n.list, start, sorted);
     return status;
 }

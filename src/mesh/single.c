@@ -19,11 +19,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "core/memory.h"
-#include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "mesh/examine.h"
-#include "mesh/topology.h"
 
 static const double SHARE = 1e-4;     /* of the shortest edge, which a vertex may move by */
 static const double ALWAYS = 0x1p-20; /* of the diagonal */
@@ -128,23 +125,19 @@ static bool compare_pair(void *user, uint32_t a, uint32_t b) {
 }
 
 static starg_status compare_contacts(comparison *c) {
-    starg_status status = STARG_OK;
-    bvh *tree = NULL;
-    STARG_TRY(bvh_create(c->context, c->rounded->vertices, c->rounded->faces,
-                         c->rounded->face_count, &tree));
-    STARG_TRY(face_pairs_visit(c->context, c->rounded, tree, compare_pair, c));
-    STARG_TRY(starg_check_cancel(c->context, c->place->stage));
+    SCOPED_BY(bvh_drop) bvh *tree = NULL;
+    TRY(bvh_create(c->context, c->rounded->vertices, c->rounded->faces, c->rounded->face_count,
+                   &tree));
+    TRY(face_pairs_visit(c->context, c->rounded, tree, compare_pair, c));
+    TRY(starg_check_cancel(c->context, c->place->stage));
     if (c->met)
-        status = refuse(c, STARG_ELEMENT_FACE, c->pair, 2,
-                        "faces %u and %u, which are apart, would meet", c->pair[0], c->pair[1]);
-done:
-    bvh_free(tree);
-    return status;
+        return refuse(c, STARG_ELEMENT_FACE, c->pair, 2,
+                      "faces %u and %u, which are apart, would meet", c->pair[0], c->pair[1]);
+    return STARG_OK;
 }
 
 starg_status single_compare(starg_context *context, const starg_mesh *surface, double *rounded,
                             const single_place *place) {
-    starg_status status = STARG_OK;
     starg_mesh other = *surface;
     other.vertices = rounded;
     comparison c = {.context = context, .given = surface, .rounded = &other, .place = place};
@@ -153,12 +146,11 @@ starg_status single_compare(starg_context *context, const starg_mesh *surface, d
     uint32_t farthest = find_farthest(&c);
     if (move_of(&c, farthest) == 0)
         return STARG_OK;
-    STARG_TRY(compare_moves(&c, farthest));
-    STARG_TRY(compare_areas(&c));
+    TRY(compare_moves(&c, farthest));
+    TRY(compare_areas(&c));
     if (surface->face_count > 0)
-        STARG_TRY(compare_contacts(&c));
-done:
-    return status;
+        TRY(compare_contacts(&c));
+    return STARG_OK;
 }
 
 /* Narrowing what float cannot hold is undefined in C. */
@@ -180,7 +172,6 @@ starg_status single_check(starg_context *context, const starg_mesh *surface, con
     }
     status = single_compare(context, &shifted, rounded, place);
 done:
-    starg_release(context, shifted.vertices);
-    starg_release(context, rounded);
+    RELEASE(shifted.vertices, rounded);
     return status;
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What single precision, or another rounding, does to a surface; every writer of it asks
  * (mesh/single.c). */
-#ifndef STARG_MESH_SINGLE_H
-#define STARG_MESH_SINGLE_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -23,5 +22,3 @@ starg_status single_compare(starg_context *context, const starg_mesh *surface, d
 /* The same for vertices less `origin` (NULL: zero) as single precision holds them. */
 starg_status single_check(starg_context *context, const starg_mesh *surface, const double origin[3],
                           const single_place *place);
-
-#endif

@@ -3,11 +3,9 @@
 
 #include <stdio.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/grid.h"
-#include "mesh/topology.h"
 
 /* Findings that rule out a solid, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {
@@ -66,18 +64,15 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
  * *welded counts them. */
 static starg_status weld(starg_context *context, const starg_mesh *mesh, starg_mesh **out,
                          size_t *welded) {
-    starg_status status = STARG_OK;
-    uint32_t *first = NULL;
-    STARG_TRY(mesh_find_coincident(context, mesh, &first, welded));
+    SCOPED uint32_t *first = NULL;
+    TRY(mesh_find_coincident(context, mesh, &first, welded));
     if (*welded == 0)
-        goto done;
-    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
-                                mesh->face_count, out));
+        return STARG_OK;
+    TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
+                          mesh->face_count, out));
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         (*out)->faces[i] = first[mesh->faces[i]];
-done:
-    starg_release(context, first);
-    return status;
+    return STARG_OK;
 }
 
 /* Takes *other and its examination if it bounds a solid, which may have to be one that only touches
@@ -103,20 +98,18 @@ static starg_status take_if_usable(starg_context *context, starg_solid *solid, s
  * bound a solid; otherwise the mesh is examined as given. */
 static starg_status mend_vertices(starg_context *context, starg_solid *solid,
                                   mesh_examination *all) {
-    starg_status status = STARG_OK;
-    starg_mesh *welded = NULL, *parted = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *welded = NULL, *parted = NULL;
     size_t count = 0;
     if (all->check->findings[STARG_FINDING_DUPLICATE_VERTEX].count > 0 && !all->check->closed)
-        STARG_TRY(weld(context, solid->mesh, &welded, &count));
+        TRY(weld(context, solid->mesh, &welded, &count));
     starg_mesh **shared = welded != NULL ? &welded : &solid->mesh;
-    STARG_TRY(wings_part(context, *shared, &parted));
+    TRY(wings_part(context, *shared, &parted));
     size_t copies = parted != NULL ? parted->vertex_count - (*shared)->vertex_count : 0;
     if (parted == NULL && welded == NULL)
-        goto done;
-    STARG_TRY(
-        take_if_usable(context, solid, parted != NULL ? &parted : &welded, parted != NULL, all));
+        return STARG_OK;
+    TRY(take_if_usable(context, solid, parted != NULL ? &parted : &welded, parted != NULL, all));
     if (!all->check->usable)
-        goto done;
+        return STARG_OK;
     if (copies > 0) { /* the mesh as given is in `parted` now */
         solid->shared = welded != NULL ? welded : parted;
         *(welded != NULL ? &welded : &parted) = NULL;
@@ -130,10 +123,7 @@ static starg_status mend_vertices(starg_context *context, starg_solid *solid,
         starg_log(context, STARG_LOG_NOTICE,
                   "parts of the surface share %zu %s where they touch; each part got its own",
                   copies, copies == 1 ? "vertex" : "vertices");
-done:
-    starg_mesh_free(welded);
-    starg_mesh_free(parted);
-    return status;
+    return STARG_OK;
 }
 
 static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const mesh_shell *shells,
@@ -289,16 +279,14 @@ void starg_solid_free(starg_solid *solid) {
     starg_mesh_free(solid->shared);
     starg_check_free(context, solid->check);
     bvh_free(solid->tree);
-    starg_release(context, solid->obstacle_sizes);
-    starg_release(context, solid->other_side);
-    starg_release(context, solid->once_twin);
+    RELEASE(solid->obstacle_sizes, solid->other_side, solid->once_twin);
     flood_free(solid->reached);
     starg_release(context, solid->leak);
-    near_faces_free(context, &solid->over);
-    near_faces_free(context, &solid->mount);
-    starg_release(context, solid->importance);
-    starg_release(context, solid->targets[0]);
-    starg_release(context, solid->targets[1]);
+    near_faces_free(&solid->over);
+    near_faces_free(&solid->mount);
+    zones_free(&solid->zones);
+    RELEASE(solid->importance, solid->targets[0], solid->targets[1], solid->clear,
+            solid->clear_list, solid->times, solid->density);
     bvh_free(solid->model_tree);
     starg_mesh_free(solid->model);
     starg_release(context, solid);

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of a solid, for later stages. */
-#ifndef STARG_MESH_SOLID_H
-#define STARG_MESH_SOLID_H
+#pragma once
 
 #include "core/bits.h"
-#include "core/memory.h"
-#include "core/private.h"
 #include "geometry/bvh.h"
-#include "mesh/mesh.h"
+#include "mesh/patches.h"
+#include "mesh/zones.h"
 #include "starguard/solid.h"
 #include "starguard/space.h"
 
@@ -29,7 +27,7 @@ starg_status near_faces_check(starg_context *context, const starg_space_options 
 starg_status near_faces_make(starg_context *context, const starg_mesh *model,
                              const double *vertices, const uint32_t *list, size_t count,
                              near_faces *out);
-void near_faces_free(starg_context *context, near_faces *faces);
+void near_faces_free(near_faces *faces);
 
 /* What is up, as a unit vector. */
 void near_faces_up(const starg_space_options *options, double up[3]);
@@ -70,9 +68,18 @@ struct starg_solid {
     struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
     double *leak;                /* a way out of there, leak_points x 3; NULL: none is known */
     size_t leak_points;
+    zones zones;            /* in which they may stand, or may not */
     near_faces over, mount; /* faces that guards are bound to */
     double *importance;     /* by face; NULL: 1 each */
     uint64_t *targets[2];   /* bits of the faces, and of the vertices, to be seen; NULL: all */
+    uint64_t *clear;        /* bits of the faces that block no view; NULL: none */
+    uint32_t *clear_list;
+    uint32_t *times; /* by face: how many guards must see it; 0: as many as others; NULL: all so */
+    double *density; /* by face: pixels for each unit of length, as in starg_visibility_options;
+                        0: as others; NULL: all so */
+    const uint32_t *need; /* by column of the target: how many more guards must see it, borrowed; 0:
+                             it is no target; NULL: of all targets that is asked for */
+    const mesh_patches *patches; /* what is to be seen of each face, borrowed; NULL: all of it */
     starg_space_options space;
     starg_mesh *model; /* the model that distances are measured from, and its tree; NULL: `mesh` */
     bvh *model_tree;
@@ -83,13 +90,56 @@ static inline bool solid_is_target(const starg_solid *solid, bool vertices, size
     return solid->targets[vertices] == NULL || starg_bit_test(solid->targets[vertices], index);
 }
 
+/* The same of a column that is no vertex, and of a vertex; and are more guards needed there? */
+static inline bool solid_wants(const starg_solid *solid, bool vertices, size_t index,
+                               size_t column) {
+    return solid_is_target(solid, vertices, index) &&
+           (solid->need == NULL || solid->need[column] > 0);
+}
+
+/* Does a face block no view? */
+static inline bool solid_is_clear(const starg_solid *solid, size_t face) {
+    return solid->clear != NULL && starg_bit_test(solid->clear, face);
+}
+
+/* The columns of visibility rows are patches where the solid has some, else faces. */
+static inline size_t solid_patch_count(const starg_solid *solid) {
+    return solid->patches != NULL ? solid->patches->face.count : solid->mesh->face_count;
+}
+
+/* The face of a patch. */
+static inline size_t solid_patch_face(const starg_solid *solid, size_t patch) {
+    return solid->patches != NULL ? solid->patches->face.data[patch] : patch;
+}
+
+/* The first patch of a face; that of the next face follows its last. */
+static inline size_t solid_first_patch(const starg_solid *solid, size_t face) {
+    return solid->patches != NULL ? solid->patches->first[face] : face;
+}
+
+/* Are all patches of the face in a row? */
+static inline bool solid_holds_face(const starg_solid *solid, const uint64_t *row, size_t face) {
+    bool all = true;
+    for (size_t j = solid_first_patch(solid, face); j < solid_first_patch(solid, face + 1); j++)
+        all = all && starg_bit_test(row, j);
+    return all;
+}
+
+/* Corner k of a patch, rounded; a point has but one. */
+static inline const double *solid_patch_corner(const starg_solid *solid, size_t patch, size_t k) {
+    const starg_mesh *mesh = solid->mesh;
+    return solid->patches != NULL
+               ? patches_place(solid->patches, mesh, patches_corner(solid->patches, patch, k))
+               : mesh->vertices + 3 * (size_t)mesh->faces[3 * patch + k];
+}
+
 /* Do faces that stand twice count as seen from either side? */
 static inline bool solid_is_two_sided(const starg_solid *solid) {
     return solid->space.two_sided && solid->other_side != NULL;
 }
 
-/* Gives faces that count from either side the bits of their other sides, and clears the bits of a
- * row, by face or by vertex, that are no targets. */
+/* Gives patches that count from either side the bits of their other sides, and clears the bits of a
+ * row, by patch or by vertex, that are no targets. */
 void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row);
 
 /* Bounding box of all places where guards may stand. */
@@ -158,6 +208,7 @@ bool flood_locate(const flood_cells *cells, const double p[3], size_t at[3]);
 starg_status flood_create(starg_context *context, const starg_solid *scene, const double from[3],
                           double size, flood_cells **out);
 void flood_free(flood_cells *cells);
+STARG_DROP(flood, flood_cells)
 
 /* Is p in one of them? */
 bool flood_reaches(const flood_cells *cells, const double p[3]);
@@ -191,4 +242,4 @@ bool solid_buries(const starg_solid *solid, uint32_t vertex);
  * matter right before the face beside one, as where furniture stands on a floor. */
 bool solid_hides(const starg_solid *solid, uint32_t face);
 
-#endif
+STARG_DROP(starg_solid, starg_solid)

@@ -13,11 +13,7 @@
  * have no free space on their outer sides, apply only if the whole mesh is one, which is tested.
  *
  * Cost: that of the examinations. */
-#include <math.h>
-#include <string.h>
 
-#include "core/bits.h"
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/solid.h"
@@ -79,103 +75,87 @@ typedef struct parts {
 } parts;
 
 static void parts_free(parts *p) {
-    STARG_ARRAY_FREE(p->context, &p->vertices);
-    STARG_ARRAY_FREE(p->context, &p->faces);
-    STARG_ARRAY_FREE(p->context, &p->sheets);
+    RELEASE(p->vertices.data, p->faces.data, p->sheets.data);
 }
 
 static starg_status push_face(parts *p, const uint32_t *corners, uint32_t offset, bool reversed) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(p->context, STAGE, &p->faces, corners[0] + offset);
-    STARG_PUSH(p->context, STAGE, &p->faces, corners[reversed ? 2 : 1] + offset);
-    STARG_PUSH(p->context, STAGE, &p->faces, corners[reversed ? 1 : 2] + offset);
-done:
-    return status;
+    PUSH(p->context, STAGE, &p->faces, corners[0] + offset);
+    PUSH(p->context, STAGE, &p->faces, corners[reversed ? 2 : 1] + offset);
+    PUSH(p->context, STAGE, &p->faces, corners[reversed ? 1 : 2] + offset);
+    return STARG_OK;
 }
 
 static starg_status push_vertices(parts *p, const starg_mesh *mesh, uint32_t *offset) {
-    starg_status status = STARG_OK;
     *offset = (uint32_t)(p->vertices.count / 3);
     if (mesh->vertex_count + *offset >= UINT32_MAX / 4)
         return starg_fail(p->context, STARG_ERROR_RANGE, STAGE, "too many vertices");
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-        STARG_PUSH(p->context, STAGE, &p->vertices, mesh->vertices[i]);
-done:
-    return status;
+        PUSH(p->context, STAGE, &p->vertices, mesh->vertices[i]);
+    return STARG_OK;
 }
 
 static starg_status push_closed(parts *p, const starg_mesh *mesh, bool reversed) {
-    starg_status status = STARG_OK;
     uint32_t offset;
-    STARG_TRY(push_vertices(p, mesh, &offset));
+    TRY(push_vertices(p, mesh, &offset));
     for (size_t f = 0; f < mesh->face_count; f++)
-        STARG_TRY(push_face(p, mesh->faces + 3 * f, offset, reversed));
-done:
-    return status;
+        TRY(push_face(p, mesh->faces + 3 * f, offset, reversed));
+    return STARG_OK;
 }
 
 /* Corners at one position become one vertex: at its own corners a triangle blocks nothing. */
 static starg_status push_sheet(parts *p, const starg_mesh *mesh, bool reversed) {
-    starg_status status = STARG_OK;
-    uint32_t *first = NULL, offset;
+    SCOPED uint32_t *first = NULL;
+    uint32_t offset;
     size_t count;
-    STARG_TRY(mesh_find_coincident(p->context, mesh, &first, &count));
-    STARG_TRY(push_vertices(p, mesh, &offset));
+    TRY(mesh_find_coincident(p->context, mesh, &first, &count));
+    TRY(push_vertices(p, mesh, &offset));
     for (size_t f = 0; f < mesh->face_count; f++) {
         const uint32_t *given = mesh->faces + 3 * f;
         const uint32_t corners[3] = {first[given[0]], first[given[1]], first[given[2]]};
-        STARG_PUSH(p->context, STAGE, &p->sheets, (uint32_t)(p->faces.count / 3));
-        STARG_TRY(push_face(p, corners, offset, reversed));
+        PUSH(p->context, STAGE, &p->sheets, (uint32_t)(p->faces.count / 3));
+        TRY(push_face(p, corners, offset, reversed));
     }
-done:
-    starg_release(p->context, first);
-    return status;
+    return STARG_OK;
 }
 
 /* The halfedge across an edge of two faces that run along it in opposite ways, by halfedge; else
  * TOPOLOGY_NONE. Of faces that stand once, before their backs follow: the same of the backs is then
  * its mirror image. NULL: there are no sheets. */
 static starg_status pair_sheets(const parts *p, uint32_t **twin) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     const uint32_t *corner = p->faces.data;
     *twin = NULL;
     if (p->sheets.count == 0)
         return STARG_OK;
-    STARG_TRY(starg_mesh_create(p->context, p->vertices.data, p->vertices.count / 3, corner,
-                                p->faces.count / 3, &mesh));
-    STARG_TRY(topology_create(p->context, mesh, &topology));
-    STARG_NEW(p->context, STAGE, *twin, p->faces.count);
+    TRY(starg_mesh_create(p->context, p->vertices.data, p->vertices.count / 3, corner,
+                          p->faces.count / 3, &mesh));
+    TRY(topology_create(p->context, mesh, &topology));
+    NEW(p->context, STAGE, *twin, p->faces.count);
     for (uint32_t h = 0; h < p->faces.count; h++) {
         uint32_t t = topology->twin[h];
         bool back = t != TOPOLOGY_NONE && corner[t] == corner[corner_next(h)];
         (*twin)[h] = back ? t : TOPOLOGY_NONE;
     }
-done:
-    topology_free(topology);
-    starg_mesh_free(mesh);
-    return status;
+    return STARG_OK;
 }
 
 /* The backs of all sheets, and who is whose other side. */
 static starg_status push_backs(parts *p, uint32_t **other_side) {
-    starg_status status = STARG_OK;
     size_t count = p->faces.count / 3 + p->sheets.count;
     *other_side = NULL;
     if (p->sheets.count == 0)
         return STARG_OK;
-    STARG_NEW(p->context, STAGE, *other_side, count);
+    NEW(p->context, STAGE, *other_side, count);
     memset(*other_side, 0xff, count * sizeof **other_side);
     for (size_t i = 0; i < p->sheets.count; i++) {
         uint32_t front = p->sheets.data[i], back = (uint32_t)(p->faces.count / 3), corners[3];
         memcpy(corners, p->faces.data + 3 * (size_t)front, sizeof corners);
-        STARG_TRY(push_face(p, corners, 0, true));
+        TRY(push_face(p, corners, 0, true));
         (*other_side)[front] = back;
         (*other_side)[back] = front;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the model ---- */
@@ -183,23 +163,18 @@ done:
 /* A solid's faces face out of it, of its shells if the outside is free, or as given; those of the
  * scene face out of the free space. */
 static starg_status push_model(parts *p, const starg_mesh *model, const starg_space_options *o) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
     bool keeps = o->orientation == STARG_ORIENTATION_KEEP;
     if (o->soup) /* guards see the inner side of a face: of a soup that is its front */
         return push_sheet(p, model, true);
-    starg_time_rule former = starg_time_begin(p->context, STARG_TIME_FAILS);
-    STARG_TRY(solid_make_facing(p->context, model,
-                                keeps        ? SHELLS_AS_GIVEN
-                                : o->outside ? SHELLS_OUTWARD
-                                             : SHELLS_NESTED,
-                                &solid));
+    TIME_RULE(p->context, STARG_TIME_FAILS);
+    TRY(solid_make_facing(p->context, model,
+                          keeps        ? SHELLS_AS_GIVEN
+                          : o->outside ? SHELLS_OUTWARD
+                                       : SHELLS_NESTED,
+                          &solid));
     bool inward = keeps && starg_mesh_volume(solid->mesh) < 0;
-    status = push_closed(p, solid->mesh, inward != o->outside);
-done:
-    starg_time_end(p->context, former);
-    starg_solid_free(solid);
-    return status;
+    return push_closed(p, solid->mesh, inward != o->outside);
 }
 
 /* ---- obstacles ---- */
@@ -232,7 +207,6 @@ done:
 
 static starg_status push_obstacles(parts *p, const starg_mesh *model,
                                    const starg_mesh *const *obstacles, size_t count, bool bounded) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < count && bounded; i++)
         if (is_apart(model, obstacles[i]))
             return starg_fail(p->context, STARG_ERROR_ARGUMENT, STAGE,
@@ -241,9 +215,8 @@ static starg_status push_obstacles(parts *p, const starg_mesh *model,
                               i);
     for (int sheets = 0; sheets < 2; sheets++)
         for (size_t i = 0; i < count; i++)
-            STARG_TRY(push_obstacle(p, obstacles[i], sheets == 1));
-done:
-    return status;
+            TRY(push_obstacle(p, obstacles[i], sheets == 1));
+    return STARG_OK;
 }
 
 /* ---- the whole ---- */
@@ -287,53 +260,83 @@ done:
 
 static starg_status keep_model(starg_context *context, const starg_mesh *model,
                                starg_solid *scene) {
-    starg_status status = STARG_OK;
-    STARG_TRY(starg_mesh_create(context, model->vertices, model->vertex_count, model->faces,
-                                model->face_count, &scene->model));
-    status = bvh_create(context, scene->model->vertices, scene->model->faces,
-                        scene->model->face_count, &scene->model_tree);
-done:
-    return status;
+    TRY(starg_mesh_create(context, model->vertices, model->vertex_count, model->faces,
+                          model->face_count, &scene->model));
+    return bvh_create(context, scene->model->vertices, scene->model->faces,
+                      scene->model->face_count, &scene->model_tree);
 }
 
 /* Keeps its own lists of the faces that guards are bound to. */
 static starg_status bind_guards(starg_context *context, const starg_mesh *model,
                                 starg_solid *scene) {
-    starg_status status = STARG_OK;
     starg_space_options *o = &scene->space;
     const double *vertices = scene->mesh->vertices;
-    STARG_TRY(near_faces_make(context, model, vertices, o->over, o->over_count, &scene->over));
-    STARG_TRY(near_faces_make(context, model, vertices, o->mount, o->mount_count, &scene->mount));
+    TRY(near_faces_make(context, model, vertices, o->over, o->over_count, &scene->over));
+    TRY(near_faces_make(context, model, vertices, o->mount, o->mount_count, &scene->mount));
     o->over = scene->over.list;
     o->mount = scene->mount.list;
+    return STARG_OK;
+}
+
+/* Both sides of a face are. Then faces behind others may be the first to block a view. */
+static starg_status take_clear(starg_context *context, starg_solid *scene) {
+    starg_status status = STARG_OK;
+    starg_space_options *o = &scene->space;
+    const uint32_t *list = o->clear;
+    o->clear = NULL;
+    if (o->clear_count == 0)
+        return STARG_OK;
+    STARG_NEW_ZERO(context, STAGE, scene->clear, starg_bit_words(scene->mesh->face_count));
+    STARG_NEW(context, STAGE, scene->clear_list, o->clear_count);
+    for (size_t i = 0; i < o->clear_count; i++) {
+        scene->clear_list[i] = list[i];
+        starg_bit_set(scene->clear, list[i]);
+        if (scene->other_side != NULL && scene->other_side[list[i]] != TOPOLOGY_NONE)
+            starg_bit_set(scene->clear, scene->other_side[list[i]]);
+    }
+    o->clear = scene->clear_list;
+    scene->check->embedded = false;
+    status = o->clear_count < scene->model_faces
+                 ? starg_space_weigh(scene, NULL)
+                 : starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                              "all faces of the model are clear: nothing is to be seen");
 done:
+    return status;
+}
+
+/* What holds all zones in which guards may stand, is a box in which they stand. */
+static starg_status take_zones(starg_context *context, starg_solid *scene) {
+    starg_space_options *o = &scene->space;
+    starg_status status = zones_make(context, o->zones, o->zone_count, &scene->zones);
+    o->zones = NULL;
+    if (status != STARG_OK || !scene->zones.limits || is_bounded(o))
+        return status;
+    vec3_copy(scene->zones.all.lower, o->within);
+    vec3_copy(scene->zones.all.upper, o->within + 3);
     return status;
 }
 
 static starg_status note_sizes(starg_solid *scene, const starg_mesh *const *obstacles,
                                size_t count) {
-    starg_status status = STARG_OK;
-    STARG_NEW(scene->context, STAGE, scene->obstacle_sizes, 2 * count);
+    NEW(scene->context, STAGE, scene->obstacle_sizes, 2 * count);
     scene->obstacle_count = count;
     for (size_t i = 0; i < count; i++) {
         scene->obstacle_sizes[2 * i] = obstacles[i]->vertex_count;
         scene->obstacle_sizes[2 * i + 1] = obstacles[i]->face_count;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- targets ---- */
 
 /* The bits of the faces that matter, and of their corners. */
 static starg_status mark_targets(starg_solid *scene) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = scene->mesh;
     const size_t columns[2] = {mesh->face_count, mesh->vertex_count};
     for (int k = 0; k < 2; k++) {
         starg_release(scene->context, scene->targets[k]);
         scene->targets[k] = NULL;
-        STARG_NEW_ZERO(scene->context, STAGE, scene->targets[k], starg_bit_words(columns[k]));
+        NEW_ZERO(scene->context, STAGE, scene->targets[k], starg_bit_words(columns[k]));
     }
     for (size_t f = 0; f < mesh->face_count; f++) {
         if (!(scene->importance[f] > 0))
@@ -342,12 +345,10 @@ static starg_status mark_targets(starg_solid *scene) {
         for (size_t k = 0; k < 3; k++)
             starg_bit_set(scene->targets[1], mesh->faces[3 * f + k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_space_weigh(starg_solid *scene, const double *weights) {
-    starg_status status = STARG_OK;
     size_t faces = starg_space_model_faces(scene);
     double most = 0;
     for (size_t f = 0; f < faces && weights != NULL; f++) {
@@ -356,17 +357,58 @@ starg_status starg_space_weigh(starg_solid *scene, const double *weights) {
             return starg_fail_at(
                 scene->context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_FACE, &face, 1,
                 "face %zu has a weight of %g; it must be zero or more, and finite", f, weights[f]);
-        most = fmax(most, weights[f]);
+        most = solid_is_clear(scene, f) ? most : fmax(most, weights[f]);
     }
     if (weights != NULL && most == 0)
         return starg_fail(scene->context, STARG_ERROR_ARGUMENT, STAGE,
                           "all faces have a weight of 0: nothing is to be seen");
     if (scene->importance == NULL)
-        STARG_NEW_ZERO(scene->context, STAGE, scene->importance, scene->mesh->face_count);
+        NEW_ZERO(scene->context, STAGE, scene->importance, scene->mesh->face_count);
     for (size_t f = 0; f < faces; f++)
-        scene->importance[f] = weights != NULL ? weights[f] / most : 1;
-    status = mark_targets(scene);
+        scene->importance[f] = solid_is_clear(scene, f) ? 0
+                               : weights != NULL        ? weights[f] / most
+                                                        : 1;
+    return mark_targets(scene);
+}
+
+enum { DENSITY_NAMES = 5 }; /* as negative numbers */
+
+starg_status starg_space_require(starg_solid *scene, const starg_face_need *needs, size_t count) {
+    starg_status status = STARG_OK;
+    starg_context *context = scene->context;
+    size_t faces = starg_space_model_faces(scene), all = scene->mesh->face_count;
+    uint32_t *times = NULL;
+    double *density = NULL;
+    STARG_NEW_ZERO(context, STAGE, times, all);
+    STARG_NEW_ZERO(context, STAGE, density, all);
+    for (size_t i = 0; i < count; i++) {
+        const starg_face_need *need = &needs[i];
+        uint64_t face = need->face;
+        if (face >= faces || need->times > 1000 ||
+            !(need->density >= -DENSITY_NAMES && need->density < 1e100)) {
+            status =
+                starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_FACE, &face, 1,
+                              "face %u of %zu is to be seen by %u guards with the density %g; "
+                              "that is no face of the model, or beyond 1,000 guards",
+                              need->face, faces, need->times, need->density);
+            goto done;
+        }
+        times[face] = need->times;
+        density[face] = need->density;
+        if (scene->other_side != NULL && scene->other_side[face] != TOPOLOGY_NONE) {
+            times[scene->other_side[face]] = need->times;
+            density[scene->other_side[face]] = need->density;
+        }
+    }
+    starg_release(context, scene->times);
+    starg_release(context, scene->density);
+    scene->times = times;
+    scene->density = density;
+    times = NULL;
+    density = NULL;
 done:
+    starg_release(context, times);
+    starg_release(context, density);
     return status;
 }
 
@@ -374,14 +416,13 @@ done:
 
 /* A solid has an inside that cannot leak; a soup's is what is reached. */
 static starg_status reach_from(starg_context *context, starg_solid *scene) {
-    starg_status status = STARG_OK;
     const starg_space_options *o = &scene->space;
     const double *from = o->from;
     flood_leak leak;
-    STARG_TRY(flood_create(context, scene, from, o->cell, &scene->reached));
+    TRY(flood_create(context, scene, from, o->cell, &scene->reached));
     if (!o->soup)
         return STARG_OK;
-    STARG_TRY(flood_find_leak(scene->reached, &scene->tree->nodes[0].box, from, &leak));
+    TRY(flood_find_leak(scene->reached, &scene->tree->nodes[0].box, from, &leak));
     scene->leak = leak.way.data;
     scene->leak_points = leak.way.count / 3;
     if (scene->leak_points > 0)
@@ -394,8 +435,7 @@ static starg_status reach_from(starg_context *context, starg_solid *scene) {
                   : leak.outside ? ", through a gap hardly wider than a cube"
                                  : "through a gap hardly wider than a cube",
                   leak.place[0], leak.place[1], leak.place[2]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the call ---- */
@@ -403,18 +443,17 @@ done:
 starg_status starg_space_create(starg_context *context, const starg_mesh *model,
                                 const starg_mesh *const *obstacles, size_t obstacle_count,
                                 const starg_space_options *options, starg_solid **out) {
-    starg_status status = STARG_OK;
     starg_space_options defaults;
-    starg_solid *scene = NULL;
-    parts p = {.context = context};
+    SCOPED_BY(starg_solid_drop) starg_solid *scene = NULL;
+    SCOPED_BY(parts_free) parts p = {.context = context};
     *out = NULL;
     starg_space_options_default(&defaults);
     const starg_space_options *o = options != NULL ? options : &defaults;
-    STARG_TRY(check_options(context, o));
-    STARG_TRY(near_faces_check(context, o, model->face_count));
-    STARG_TRY(push_model(&p, model, o));
-    STARG_TRY(push_obstacles(&p, model, obstacles, obstacle_count, !o->outside && !o->soup));
-    STARG_NEW_ZERO(context, STAGE, scene, 1);
+    TRY(check_options(context, o));
+    TRY(near_faces_check(context, o, model->face_count));
+    TRY(push_model(&p, model, o));
+    TRY(push_obstacles(&p, model, obstacles, obstacle_count, !o->outside && !o->soup));
+    NEW_ZERO(context, STAGE, scene, 1);
     scene->context = context;
     scene->scene = true;
     scene->ambient = o->outside || o->soup ? 1 : 0;
@@ -422,25 +461,24 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     scene->model_vertices = model->vertex_count;
     scene->model_faces = model->face_count;
     scene->once_faces = p.faces.count / 3;
-    STARG_TRY(pair_sheets(&p, &scene->once_twin));
-    STARG_TRY(push_backs(&p, &scene->other_side));
-    STARG_TRY(starg_mesh_create(context, p.vertices.data, p.vertices.count / 3, p.faces.data,
-                                p.faces.count / 3, &scene->mesh));
-    STARG_TRY(examine(context, scene));
-    STARG_TRY(bind_guards(context, model, scene));
-    STARG_TRY(note_sizes(scene, obstacles, obstacle_count));
+    TRY(pair_sheets(&p, &scene->once_twin));
+    TRY(push_backs(&p, &scene->other_side));
+    TRY(starg_mesh_create(context, p.vertices.data, p.vertices.count / 3, p.faces.data,
+                          p.faces.count / 3, &scene->mesh));
+    TRY(examine(context, scene));
+    TRY(bind_guards(context, model, scene));
+    TRY(take_zones(context, scene));
+    TRY(take_clear(context, scene));
+    TRY(note_sizes(scene, obstacles, obstacle_count));
     if (obstacle_count > 0)
-        STARG_TRY(keep_model(context, model, scene));
+        TRY(keep_model(context, model, scene));
     if (scene->mesh->face_count > scene->model_faces)
-        STARG_TRY(starg_space_weigh(scene, NULL));
+        TRY(starg_space_weigh(scene, NULL));
     if (o->cell > 0)
-        STARG_TRY(reach_from(context, scene));
+        TRY(reach_from(context, scene));
     *out = scene;
     scene = NULL;
-done:
-    parts_free(&p);
-    starg_solid_free(scene);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- questions ---- */
@@ -467,6 +505,8 @@ bool starg_space_admits(const starg_solid *scene, const double p[3]) {
             return false;
     if (scene->reached != NULL && !flood_reaches(scene->reached, p))
         return false;
+    if (!zones_admit(&scene->zones, p))
+        return false;
     if (!near_faces_admit(&scene->over, &scene->mount, o, p))
         return false;
     if (o->standoff_least > 0 || o->standoff_most > 0) {
@@ -486,6 +526,8 @@ bool solid_bars(const starg_solid *solid, const bvh_box *box) {
     if (!solid->scene)
         return false;
     if (solid->reached != NULL && !flood_meets(solid->reached, box))
+        return true;
+    if (zones_bar(&solid->zones, box))
         return true;
     if (near_faces_bar(&solid->over, &solid->mount, o, box))
         return true;
@@ -557,12 +599,22 @@ uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t ha
 }
 
 void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row) {
-    const starg_mesh *mesh = solid->mesh;
-    for (size_t f = 0; !vertices && solid_is_two_sided(solid) && f < solid->model_faces; f++)
-        if (starg_bit_test(row, solid->other_side[f]))
-            starg_bit_set(row, f);
+    for (size_t f = 0; !vertices && solid_is_two_sided(solid) && f < solid->model_faces; f++) {
+        size_t front = solid_first_patch(solid, f), end = solid_first_patch(solid, f + 1);
+        size_t back = solid_first_patch(solid, solid->other_side[f]);
+        for (size_t i = front; i < end; i++)
+            if (starg_bit_test(row, back + i - front))
+                starg_bit_set(row, i);
+    }
     const uint64_t *targets = solid->targets[vertices];
-    size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
-    for (size_t w = 0; targets != NULL && w < starg_bit_words(columns); w++)
+    bool parted = !vertices && solid->patches != NULL;
+    size_t columns = vertices ? solid->mesh->vertex_count : solid_patch_count(solid);
+    for (size_t w = 0; targets != NULL && !parted && w < starg_bit_words(columns); w++)
         row[w] &= targets[w];
+    for (size_t i = 0; targets != NULL && parted && i < columns; i++)
+        if (!starg_bit_test(targets, solid->patches->face.data[i]))
+            starg_bit_clear(row, i);
+    for (size_t i = 0; solid->need != NULL && i < columns; i++)
+        if (solid->need[i] == 0)
+            starg_bit_clear(row, i);
 }

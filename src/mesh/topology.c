@@ -5,8 +5,6 @@
 
 #include <stdlib.h>
 
-#include "core/memory.h"
-
 /* A halfedge, stored at the lower of its two vertices. */
 typedef struct entry {
     uint32_t upper, halfedge;
@@ -120,9 +118,7 @@ starg_status topology_create(starg_context *context, const starg_mesh *mesh, mes
     number_components(result, parent);
     *out = result;
 done:
-    starg_release(context, start);
-    starg_release(context, entries);
-    starg_release(context, parent);
+    RELEASE(start, entries, parent);
     if (status != STARG_OK)
         topology_free(result);
     return status;
@@ -142,26 +138,20 @@ static void join_sides(const mesh_topology *topology, const starg_mesh *mesh, ui
 
 starg_status topology_count_one_sided(const mesh_topology *topology, const starg_mesh *mesh,
                                       size_t *count) {
-    starg_status status = STARG_OK;
-    uint32_t *parent = NULL;
+    SCOPED uint32_t *parent = NULL;
     *count = 0;
-    STARG_NEW(topology->context, "topology", parent, 2 * topology->face_count);
+    NEW(topology->context, "topology", parent, 2 * topology->face_count);
     sets_make(parent, 2 * topology->face_count);
     join_sides(topology, mesh, parent);
     for (uint32_t f = 0; f < topology->face_count; f++)
         *count += sets_find(parent, 2 * f) == sets_find(parent, 2 * f + 1);
-done:
-    starg_release(topology->context, parent);
-    return status;
+    return STARG_OK;
 }
 
 void topology_free(mesh_topology *topology) {
     if (topology == NULL)
         return;
-    starg_release(topology->context, topology->twin);
-    starg_release(topology->context, topology->ring);
-    starg_release(topology->context, topology->component);
-    starg_release(topology->context, topology);
+    RELEASE(topology->twin, topology->ring, topology->component, topology);
 }
 
 size_t topology_edge_faces(const mesh_topology *topology, uint32_t halfedge) {

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Adjacency of faces across edges, and connected components. */
-#ifndef STARG_MESH_TOPOLOGY_H
-#define STARG_MESH_TOPOLOGY_H
+#pragma once
 
-#include <stdint.h>
-
-#include "core/private.h"
 #include "geometry/intersect.h"
 #include "mesh/mesh.h"
 
@@ -37,6 +33,7 @@ typedef struct mesh_topology {
 starg_status topology_create(starg_context *context, const starg_mesh *mesh, mesh_topology **out)
     STARG_PRIVATE(topology_create);
 void topology_free(mesh_topology *topology) STARG_PRIVATE(topology_free);
+STARG_DROP(topology, mesh_topology)
 
 /* Number of halfedges on the edge of `halfedge`. */
 size_t topology_edge_faces(const mesh_topology *topology, uint32_t halfedge);
@@ -69,5 +66,3 @@ starg_status wings_part(starg_context *context, const starg_mesh *mesh, starg_me
 
 /* Contact of two triangles given by their corners; equal vertices are shared corners. Exact. */
 triangle_contact faces_contact(const double *vertices, const uint32_t a[3], const uint32_t b[3]);
-
-#endif

@@ -45,20 +45,18 @@ static starg_status grow(starg_weld *weld) {
 
 starg_status starg_weld_point(starg_weld *weld, const double point[3], starg_place place,
                               uint32_t *vertex) {
-    starg_status status = STARG_OK;
     /* adding 0 turns -0 into 0 and changes nothing else */
     const double p[3] = {point[0] + 0.0, point[1] + 0.0, point[2] + 0.0};
     size_t count = starg_builder_vertex_count(weld->builder);
     if (2 * (count + 1) > weld->size)
-        STARG_TRY(grow(weld));
+        TRY(grow(weld));
     uint32_t *slot = find(weld, p);
     if (*slot == 0) {
-        STARG_TRY(starg_builder_vertex(weld->builder, p, place));
+        TRY(starg_builder_vertex(weld->builder, p, place));
         *slot = (uint32_t)(count + 1);
     }
     *vertex = *slot - 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 void starg_weld_free(starg_weld *weld) {

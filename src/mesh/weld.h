@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Welding: merges points at exactly equal positions. */
-#ifndef STARG_MESH_WELD_H
-#define STARG_MESH_WELD_H
+#pragma once
 
 #include "mesh/formats/io.h"
 
@@ -16,5 +15,3 @@ typedef struct starg_weld {
 starg_status starg_weld_point(starg_weld *weld, const double point[3], starg_place place,
                               uint32_t *vertex);
 void starg_weld_free(starg_weld *weld);
-
-#endif

@@ -11,9 +11,6 @@
  * The order by angle is exact. Cost: O(n log n), and the square of the faces at an edge. */
 #include "mesh/topology.h"
 
-#include <string.h>
-
-#include "core/memory.h"
 #include "geometry/predicates.h"
 
 static const char STAGE[] = "topology";
@@ -60,7 +57,6 @@ static bool comes_before(const double a[3], const double b[3], const wing *x, co
 
 /* Lists the wings of an edge by angle. */
 static starg_status sort_wings(const pairing *s, uint32_t halfedge, wing_list *wings) {
-    starg_status status = STARG_OK;
     const uint32_t *faces = s->mesh->faces;
     uint32_t low = faces[halfedge], high = faces[corner_next(halfedge)], h = halfedge;
     if (low > high) {
@@ -74,7 +70,7 @@ static starg_status sort_wings(const pairing *s, uint32_t halfedge, wing_list *w
         wing own = {.halfedge = h,
                     .tip = position(s, faces[corner_previous(h)]),
                     .forward = faces[h] == low};
-        STARG_PUSH(s->topology->context, STAGE, wings, own);
+        PUSH(s->topology->context, STAGE, wings, own);
         h = s->topology->ring[h];
     } while (h != halfedge);
     const double *first = wings->data[0].tip;
@@ -88,16 +84,14 @@ static starg_status sort_wings(const pairing *s, uint32_t halfedge, wing_list *w
             wings->data[k] = wings->data[k - 1];
         wings->data[k] = own;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Matches wings like brackets on a circle: the second pass closes those left open. */
 static starg_status pair_wings(const pairing *s, const wing_list *wings) {
-    starg_status status = STARG_OK;
-    uint32_t *open = NULL;
+    SCOPED uint32_t *open = NULL;
     size_t depth = 0;
-    STARG_NEW(s->topology->context, STAGE, open, 2 * wings->count);
+    NEW(s->topology->context, STAGE, open, 2 * wings->count);
     for (size_t i = 0; i < 2 * wings->count; i++) {
         const wing *own = &wings->data[i % wings->count];
         if (s->topology->twin[own->halfedge] != TOPOLOGY_NONE)
@@ -110,9 +104,7 @@ static starg_status pair_wings(const pairing *s, const wing_list *wings) {
             s->topology->twin[own->halfedge] = partner;
         }
     }
-done:
-    starg_release(s->topology->context, open);
-    return status;
+    return STARG_OK;
 }
 
 static bool is_lowest(const mesh_topology *topology, uint32_t h) {
@@ -162,9 +154,8 @@ void wings_find_fans(const mesh_topology *topology, const starg_mesh *mesh, uint
 /* The vertex of each corner, and by vertex behind the given ones, of which it is a copy. */
 static starg_status part_fans(starg_context *context, const starg_mesh *mesh, uint32_t *fan,
                               uint32_t *faces, uint32_t *copied, size_t *copies) {
-    starg_status status = STARG_OK;
-    uint8_t *used = NULL;
-    STARG_NEW_ZERO(context, STAGE, used, mesh->vertex_count);
+    SCOPED uint8_t *used = NULL;
+    NEW_ZERO(context, STAGE, used, mesh->vertex_count);
     for (uint32_t h = 0; h < 3 * mesh->face_count; h++) {
         uint32_t root = sets_find(fan, h), vertex = mesh->faces[h];
         if (root != h) {
@@ -177,37 +168,27 @@ static starg_status part_fans(starg_context *context, const starg_mesh *mesh, ui
             faces[h] = vertex;
         }
     }
-done:
-    starg_release(context, used);
-    return status;
+    return STARG_OK;
 }
 
 starg_status wings_part(starg_context *context, const starg_mesh *mesh, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     size_t corners = 3 * mesh->face_count, copies = 0, count = mesh->vertex_count;
-    uint32_t *fan = NULL, *faces = NULL, *copied = NULL;
-    double *vertices = NULL;
+    SCOPED uint32_t *fan = NULL, *faces = NULL, *copied = NULL;
+    SCOPED double *vertices = NULL;
     *out = NULL;
-    STARG_TRY(wings_create(context, mesh, &topology));
-    STARG_NEW(context, STAGE, fan, corners);
-    STARG_NEW(context, STAGE, faces, corners);
-    STARG_NEW(context, STAGE, copied, corners);
+    TRY(wings_create(context, mesh, &topology));
+    NEW(context, STAGE, fan, corners);
+    NEW(context, STAGE, faces, corners);
+    NEW(context, STAGE, copied, corners);
     wings_find_fans(topology, mesh, fan);
-    STARG_TRY(part_fans(context, mesh, fan, faces, copied, &copies));
+    TRY(part_fans(context, mesh, fan, faces, copied, &copies));
     if (copies == 0)
-        goto done;
-    STARG_NEW(context, STAGE, vertices, 3 * (count + copies));
+        return STARG_OK;
+    NEW(context, STAGE, vertices, 3 * (count + copies));
     memcpy(vertices, mesh->vertices, 3 * count * sizeof *vertices);
     for (size_t i = 0; i < copies; i++)
         memcpy(vertices + 3 * (count + i), mesh->vertices + 3 * (size_t)copied[i],
                3 * sizeof *vertices);
-    status = starg_mesh_create(context, vertices, count + copies, faces, mesh->face_count, out);
-done:
-    topology_free(topology);
-    starg_release(context, fan);
-    starg_release(context, faces);
-    starg_release(context, copied);
-    starg_release(context, vertices);
-    return status;
+    return starg_mesh_create(context, vertices, count + copies, faces, mesh->face_count, out);
 }

@@ -14,9 +14,6 @@
  * Cost: 24 x SAMPLES^2 distances and 24 x SAMPLES locations. */
 #include "morph/align.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "geometry/vec3.h"
 #include "morph/rotation.h"
 
@@ -183,18 +180,15 @@ static double misfit(const aligner *a, const motion *m, const double rotation[9]
 
 /* Rounding can flip a nearly flat triangle: the surface then stays unchanged. */
 static starg_status turn(sphere *s, const double rotation[9]) {
-    starg_status status = STARG_OK;
-    double *before = NULL;
+    SCOPED double *before = NULL;
     size_t size = 3 * s->mesh->vertex_count;
-    STARG_NEW(s->context, STAGE, before, size);
+    NEW(s->context, STAGE, before, size);
     memcpy(before, s->directions, size * sizeof *before);
     for (size_t v = 0; v < s->mesh->vertex_count; v++)
         matrix_apply(rotation, before + 3 * v, s->directions + 3 * v);
     if (!sphere_is_positive(s))
         memcpy(s->directions, before, size * sizeof *before);
-done:
-    starg_release(s->context, before);
-    return status;
+    return STARG_OK;
 }
 
 /* Removes the closest pair from two lists of places; false if its distance exceeds `far`. */
@@ -219,12 +213,11 @@ static bool take_nearest(double (*from)[3], size_t from_count, double (*to)[3], 
 
 /* Pairs extremities that are close in space after the motion, nearest first. */
 static starg_status pair_extremities(const aligner *a, const motion *m, feature_pairs *out) {
-    starg_status status = STARG_OK;
     extremity_list from, to;
     double moved[EXTREMITIES_MOST][3], places[EXTREMITIES_MOST][3];
     size_t pair[2] = {0, 0};
-    STARG_TRY(extremities_find(a->from, &from));
-    STARG_TRY(extremities_find(a->to->sphere, &to));
+    TRY(extremities_find(a->from, &from));
+    TRY(extremities_find(a->to->sphere, &to));
     for (size_t i = 0; i < from.count; i++)
         move(m, a->from->mesh->vertices + 3 * (size_t)from.vertices[i], moved[i]);
     for (size_t i = 0; i < to.count; i++)
@@ -233,13 +226,11 @@ static starg_status pair_extremities(const aligner *a, const motion *m, feature_
         out->from[out->count] = from.vertices[pair[0]];
         out->to[out->count++] = to.vertices[pair[1]];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
                            feature_pairs *features) {
-    starg_status status = STARG_OK;
     const aligner a = {from, to, landmarks};
     const axes axes_from = principal_axes(from->mesh), axes_to = principal_axes(to->sphere->mesh);
     double best[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, least = INFINITY;
@@ -249,7 +240,7 @@ starg_status align_spheres(sphere *from, const locator *to, const landmark_list 
     for (int way = 0; way < (guided ? 1 : WAYS); way++) {
         motion m;
         double rotation[9];
-        STARG_TRY(starg_check_cancel(from->context, STAGE));
+        TRY(starg_check_cancel(from->context, STAGE));
         motion_of_way(&axes_from, &axes_to, way, &m);
         if (guided)
             motion_of_landmarks(from, to->sphere, landmarks, &m);
@@ -262,12 +253,10 @@ starg_status align_spheres(sphere *from, const locator *to, const landmark_list 
         }
     }
     if (landmarks->count == 0 && least < INFINITY) {
-        STARG_TRY(pair_extremities(&a, &best_motion, features));
+        TRY(pair_extremities(&a, &best_motion, features));
         const landmark_list pairs = {features->from, features->to, features->count};
         const aligner by_extremities = {from, to, &pairs};
         rotation_for(&by_extremities, &best_motion, best);
     }
-    STARG_TRY(turn(from, best));
-done:
-    return status;
+    return turn(from, best);
 }

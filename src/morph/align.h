@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rotates one spherical embedding to match another. */
-#ifndef STARG_MORPH_ALIGN_H
-#define STARG_MORPH_ALIGN_H
+#pragma once
 
 #include "morph/extremities.h"
 #include "morph/locate.h"
@@ -22,5 +21,3 @@ typedef struct feature_pairs {
  * that are close in space. Errors: MEMORY, CANCELLED. */
 starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
                            feature_pairs *features);
-
-#endif

@@ -11,25 +11,19 @@
 
 static starg_status go_from(starg_context *context, const starg_mesh *from, const starg_mesh *to,
                             double *largest) {
-    starg_status status = STARG_OK;
-    bvh *tree = NULL;
-    STARG_TRY(bvh_create(context, to->vertices, to->faces, to->face_count, &tree));
+    SCOPED_BY(bvh_drop) bvh *tree = NULL;
+    TRY(bvh_create(context, to->vertices, to->faces, to->face_count, &tree));
     for (size_t h = 0; h < 3 * from->face_count; h++) {
         *largest = fmax(*largest, bvh_distance(tree, from->vertices + 3 * (size_t)from->faces[h]));
         if (h % 4096 == 0)
-            STARG_TRY(starg_check_cancel(context, "distance"));
+            TRY(starg_check_cancel(context, "distance"));
     }
-done:
-    bvh_free(tree);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_mesh_apart(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                               double *largest) {
-    starg_status status = STARG_OK;
     *largest = 0;
-    STARG_TRY(go_from(context, a, b, largest));
-    STARG_TRY(go_from(context, b, a, largest));
-done:
-    return status;
+    TRY(go_from(context, a, b, largest));
+    return go_from(context, b, a, largest);
 }

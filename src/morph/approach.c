@@ -18,9 +18,6 @@
  * typically O(log n) a vertex of the surface in each round. */
 #include "morph/approach.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "geometry/bvh.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
@@ -49,13 +46,8 @@ typedef struct approaching {
 } approaching;
 
 static void free_all(approaching *a) {
-    starg_context *context = a->c->context;
     bvh_free(a->surface);
-    starg_release(context, a->places);
-    starg_release(context, a->targets);
-    starg_release(context, a->faces);
-    starg_release(context, a->first);
-    starg_release(context, a->around);
+    RELEASE(a->places, a->targets, a->faces, a->first, a->around);
 }
 
 static double *now_of(const approaching *a, size_t v) {
@@ -75,37 +67,31 @@ static double diagonal_of(const double *places, size_t count) {
 
 /* The mesh's faces, by vertices of the tetrahedra. */
 static starg_status list_faces(approaching *a, const starg_mesh *mesh) {
-    starg_status status = STARG_OK;
     starg_context *context = a->c->context;
-    uint32_t *own = NULL;
-    STARG_NEW(context, STAGE, own, mesh->vertex_count);
-    STARG_NEW(context, STAGE, a->faces, 3 * mesh->face_count);
+    SCOPED uint32_t *own = NULL;
+    NEW(context, STAGE, own, mesh->vertex_count);
+    NEW(context, STAGE, a->faces, 3 * mesh->face_count);
     for (uint32_t v = 0; v < a->c->fixed; v++)
         own[a->c->surface[v]] = v;
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         a->faces[i] = own[mesh->faces[i]];
-    STARG_TRY(bvh_create(context, a->places, a->faces, mesh->face_count, &a->surface));
-done:
-    starg_release(context, own);
-    return status;
+    return bvh_create(context, a->places, a->faces, mesh->face_count, &a->surface);
 }
 
 static starg_status list_around(approaching *a) {
-    starg_status status = STARG_OK;
     const unfold_problem *p = &a->p;
     size_t count = a->c->fixed;
-    STARG_NEW_ZERO(p->context, STAGE, a->first, count + 2);
+    NEW_ZERO(p->context, STAGE, a->first, count + 2);
     for (size_t i = 0; i < 4 * p->count; i++)
         if (p->tetrahedra[i] < count)
             a->first[p->tetrahedra[i] + 2]++;
     for (size_t v = 0; v < count; v++)
         a->first[v + 2] += a->first[v + 1];
-    STARG_NEW(p->context, STAGE, a->around, a->first[count + 1]);
+    NEW(p->context, STAGE, a->around, a->first[count + 1]);
     for (size_t i = 0; i < 4 * p->count; i++)
         if (p->tetrahedra[i] < count)
             a->around[a->first[p->tetrahedra[i] + 1]++] = (uint32_t)(i / 4);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Vertices away from their places are drawn to the nearest point of the surface. */
@@ -121,11 +107,10 @@ static void choose_targets(void *user) {
 }
 
 static starg_status begin(approaching *a, const starg_mesh *mesh, double strength) {
-    starg_status status = STARG_OK;
     deform_mesh *c = a->c;
     size_t size = 3 * c->fixed;
-    STARG_NEW(c->context, STAGE, a->places, size);
-    STARG_NEW(c->context, STAGE, a->targets, size);
+    NEW(c->context, STAGE, a->places, size);
+    NEW(c->context, STAGE, a->targets, size);
     memcpy(a->places, c->now.data, size * sizeof *a->places);
     memcpy(a->targets, c->now.data, size * sizeof *a->targets);
     a->diagonal = diagonal_of(a->places, c->fixed);
@@ -141,10 +126,8 @@ static starg_status begin(approaching *a, const starg_mesh *mesh, double strengt
                                         .length = LENGTH * a->diagonal,
                                         .move = choose_targets,
                                         .user = a}};
-    STARG_TRY(list_faces(a, mesh));
-    STARG_TRY(list_around(a));
-done:
-    return status;
+    TRY(list_faces(a, mesh));
+    return list_around(a);
 }
 
 /* ---- the end ---- */

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tetrahedra whose surface comes as near to B as they allow. */
-#ifndef STARG_MORPH_APPROACH_H
-#define STARG_MORPH_APPROACH_H
+#pragma once
 
 #include "morph/deform.h"
-#include "starguard/mesh.h"
 
 /* How far the surface is off B in the end. */
 typedef struct approach_result {
@@ -18,5 +16,3 @@ typedef struct approach_result {
  * c->surface refers to. Springs of a high strength (1 and more) keep the surface where it is, of a
  * low one let tetrahedra unfold. Errors: MEMORY, CANCELLED. */
 starg_status approach(deform_mesh *c, const starg_mesh *a, double strength, approach_result *out);
-
-#endif

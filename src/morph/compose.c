@@ -20,9 +20,7 @@
 #include "morph/compose.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "morph/composition.h"
 #include "morph/landmarks.h"
 
@@ -50,16 +48,14 @@ typedef struct composer {
 } composer;
 
 static starg_status coarsen(composer *p) {
-    starg_status status = STARG_OK;
     size_t least = LEAST_FACTOR * p->landmarks->count;
     const rings_limits limits = {.least = least > LEAST ? least : LEAST,
                                  .kept = p->c.kept,
                                  .directions = p->c.from->directions};
-    STARG_TRY(rings_reduce(p->c.from->rings, &limits));
+    TRY(rings_reduce(p->c.from->rings, &limits));
     sphere_list_alive(p->c.from);
     composition_locate_all(&p->c);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status meet(composer *p) {
@@ -71,54 +67,46 @@ static starg_status meet(composer *p) {
 }
 
 static starg_status better(composer *p, int steps) {
-    starg_status status = STARG_OK;
-    STARG_TRY(meet(p));
+    TRY(meet(p));
     if (p->c.from->rings->left < STEPS_MOST)
-        STARG_TRY(composition_flow(&p->c, steps));
-    STARG_TRY(composition_descend(&p->c, LEVEL_SWEEPS));
-done:
-    return status;
+        TRY(composition_flow(&p->c, steps));
+    return composition_descend(&p->c, LEVEL_SWEEPS);
 }
 
 static starg_status refine(composer *p) {
-    starg_status status = STARG_OK;
     sphere *s = p->c.from;
     double next = GROWTH * (double)s->rings->left;
-    starg_progress_begin(s->context, STAGE);
+    IN_STAGE(s->context, STAGE);
     while (s->rings->removals.count > 0) {
-        STARG_TRY(sphere_insert(s, &p->work));
+        TRY(sphere_insert(s, &p->work));
         uint32_t v = s->alive[s->rings->left - 1];
         composition_locate(&p->c, v, p->c.points[s->rings->of[v].data[0]].face);
         if ((double)s->rings->left >= next) {
-            STARG_TRY(better(p, LEVEL_STEPS));
+            TRY(better(p, LEVEL_STEPS));
             next = GROWTH * (double)s->rings->left;
         }
         starg_progress_step(s->context, s->rings->left, s->rings->vertex_count);
     }
-    STARG_TRY(meet(p));
-    STARG_TRY(composition_descend(&p->c, FINAL_SWEEPS));
+    TRY(meet(p));
+    TRY(composition_descend(&p->c, FINAL_SWEEPS));
     sphere_list_alive(s);
-done:
-    starg_progress_end(s->context);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status cycle(composer *p) {
-    starg_status status = STARG_OK;
     sphere *s = p->c.from;
     bool met = p->met;
-    STARG_TRY(coarsen(p));
-    STARG_TRY(meet(p));
-    STARG_TRY(composition_descend(&p->c, COARSE_SWEEPS));
-    STARG_TRY(better(p, COARSE_STEPS));
-    STARG_TRY(refine(p));
+    TRY(coarsen(p));
+    TRY(meet(p));
+    TRY(composition_descend(&p->c, COARSE_SWEEPS));
+    TRY(better(p, COARSE_STEPS));
+    TRY(refine(p));
     double energy = composition_energy(&p->c);
     if (energy < p->least || met != p->met) {
         p->least = energy;
         memcpy(p->best, s->directions, 3 * s->mesh->vertex_count * sizeof *p->best);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status compose_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
@@ -142,9 +130,6 @@ starg_status compose_spheres(sphere *from, const locator *to, const landmark_lis
     *met = p.met;
 done:
     sphere_work_free(context, &p.work);
-    starg_release(context, p.c.kept);
-    starg_release(context, p.c.points);
-    starg_release(context, p.c.images);
-    starg_release(context, p.best);
+    RELEASE(p.c.kept, p.c.points, p.c.images, p.best);
     return status;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Low-distortion map from one spherically embedded surface to another. */
-#ifndef STARG_MORPH_COMPOSE_H
-#define STARG_MORPH_COMPOSE_H
+#pragma once
 
 #include "morph/align.h"
 
@@ -11,5 +10,3 @@
  * CANCELLED. */
 starg_status compose_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
                              bool *met);
-
-#endif

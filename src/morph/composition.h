@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of compose.c: a map between two embedded surfaces under optimization. */
-#ifndef STARG_MORPH_COMPOSITION_H
-#define STARG_MORPH_COMPOSITION_H
+#pragma once
 
 #include "morph/align.h"
 #include "morph/walk.h"
@@ -61,5 +60,3 @@ starg_status composition_descend(composition *c, int sweeps);
 /* Moves all vertices together, as rigidly as possible, `steps` times, each followed by some descent
  * (flow.c). Errors: SOLVER, MEMORY, CANCELLED. */
 starg_status composition_flow(composition *c, int steps);
-
-#endif

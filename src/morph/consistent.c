@@ -12,10 +12,7 @@
  *
  * All visibility is exact; if B intersects itself, a guard still sees only what no face hides.
  * Cost: one skeleton, two visibility matrices and a set cover. */
-#include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
 #include "mesh/topology.h"
@@ -23,8 +20,6 @@
 #include "morph/rotation.h"
 #include "starguard/cover.h"
 #include "starguard/skeleton.h"
-#include "starguard/solid.h"
-#include "starguard/visibility.h"
 
 static const char STAGE[] = "consistent guards";
 static const double WHOLE = 1e-3; /* share of the global motion in a counterpart's */
@@ -183,8 +178,7 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
                             "no node of A's skeleton has a counterpart inside B; the map may be "
                             "too distorted. --method arap needs no guards");
 done:
-    starg_release(context, own);
-    starg_release(context, all);
+    RELEASE(own, all);
     return status;
 }
 
@@ -210,7 +204,6 @@ done:
 }
 
 static starg_status choose(guarding *g) {
-    starg_status status = STARG_OK;
     starg_morph *m = g->morph;
     starg_cover_problem problem;
     starg_cover_options options;
@@ -218,7 +211,7 @@ static starg_status choose(guarding *g) {
     starg_cover_options_default(&options);
     problem.rows = g->seen;
     options.max_nodes = MORPH_COVER_NODES;
-    STARG_TRY(starg_cover_solve(m->context, &problem, &options, &g->cover));
+    TRY(starg_cover_solve(m->context, &problem, &options, &g->cover));
     m->guard_count = g->cover->count;
     m->lower_bound = g->cover->lower_bound;
     if (m->guard_count == 0)
@@ -226,16 +219,15 @@ static starg_status choose(guarding *g) {
                           "no candidate sees a face of A and its image in B; the map may be too "
                           "distorted. --method arap needs no guards");
     for (int end = 0; end < 2; end++) {
-        STARG_NEW(m->context, STAGE, m->guards[end], 3 * m->guard_count);
-        STARG_NEW(m->context, STAGE, m->places[end], 3 * m->guard_count);
+        NEW(m->context, STAGE, m->guards[end], 3 * m->guard_count);
+        NEW(m->context, STAGE, m->places[end], 3 * m->guard_count);
         for (size_t i = 0; i < m->guard_count; i++) {
             const double *from = g->morph->candidates[end] + 3 * (size_t)g->cover->rows[i];
             vec3_copy(from, m->guards[end] + 3 * i);
             scale(m, end, from, m->places[end] + 3 * i);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- pieces ---- */
@@ -263,12 +255,11 @@ static uint32_t nearest_viewer(const guarding *g, size_t face) {
 
 /* Faces without a guard take a neighbour's, ring by ring. */
 static starg_status spread_pieces(starg_morph *m) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    uint32_t *queue = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED uint32_t *queue = NULL;
     size_t count = 0;
-    STARG_TRY(topology_create(m->context, m->mesh, &topology));
-    STARG_NEW(m->context, STAGE, queue, m->mesh->face_count);
+    TRY(topology_create(m->context, m->mesh, &topology));
+    NEW(m->context, STAGE, queue, m->mesh->face_count);
     for (uint32_t f = 0; f < m->mesh->face_count; f++)
         if (m->pieces[f] != UINT32_MAX)
             queue[count++] = f;
@@ -283,25 +274,19 @@ static starg_status spread_pieces(starg_morph *m) {
     for (size_t f = 0; f < m->mesh->face_count; f++) /* a shell that no guard sees */
         if (m->pieces[f] == UINT32_MAX)
             m->pieces[f] = 0;
-done:
-    topology_free(topology);
-    starg_release(m->context, queue);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status cut(guarding *g) {
-    starg_status status = STARG_OK;
     starg_morph *m = g->morph;
-    STARG_NEW(m->context, STAGE, m->pieces, m->mesh->face_count);
-    STARG_NEW(m->context, STAGE, m->guarded, m->mesh->face_count);
+    NEW(m->context, STAGE, m->pieces, m->mesh->face_count);
+    NEW(m->context, STAGE, m->guarded, m->mesh->face_count);
     for (size_t f = 0; f < m->mesh->face_count; f++) {
         m->pieces[f] = nearest_viewer(g, f);
         m->guarded[f] = m->pieces[f] != UINT32_MAX;
         m->unguarded += !m->guarded[f];
     }
-    STARG_TRY(spread_pieces(m));
-done:
-    return status;
+    return spread_pieces(m);
 }
 
 starg_status morph_guard(starg_morph *m, size_t candidates) {

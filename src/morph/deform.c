@@ -22,14 +22,10 @@
  * solves and some sweeps over the tetrahedra. */
 #include "morph/deform.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "geometry/linear_program.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "morph/morph.h"
-#include "morph/triplets.h"
 #include "morph/unfold.h"
 #include "tetra/tetmesh.h"
 
@@ -104,10 +100,9 @@ static bool is_thin(const deform_mesh *c, const double *places, size_t t) {
 }
 
 static starg_status list_about(walk *w) {
-    starg_status status = STARG_OK;
     const deform_mesh *c = w->c;
-    STARG_NEW_ZERO(c->context, STAGE, w->first, w->inner + 2);
-    STARG_NEW(c->context, STAGE, w->about, c->tetrahedra.count);
+    NEW_ZERO(c->context, STAGE, w->first, w->inner + 2);
+    NEW(c->context, STAGE, w->about, c->tetrahedra.count);
     for (size_t i = 0; i < c->tetrahedra.count; i++)
         if (c->tetrahedra.data[i] >= c->fixed)
             w->first[c->tetrahedra.data[i] - c->fixed + 2]++;
@@ -116,19 +111,17 @@ static starg_status list_about(walk *w) {
     for (size_t i = 0; i < c->tetrahedra.count; i++)
         if (c->tetrahedra.data[i] >= c->fixed)
             w->about[w->first[c->tetrahedra.data[i] - c->fixed + 1]++] = (uint32_t)(i / 4);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- displacement ---- */
 
 /* Graph Laplacian: an edge counts once per tetrahedron. */
 static starg_status make_system(walk *w) {
-    starg_status status = STARG_OK;
     const deform_mesh *c = w->c;
     size_t count = 0;
-    triplet *triplets = NULL;
-    STARG_NEW(c->context, STAGE, triplets, 24 * tetrahedron_count(c) + w->inner);
+    SCOPED triplet *triplets = NULL;
+    NEW(c->context, STAGE, triplets, 24 * tetrahedron_count(c) + w->inner);
     for (size_t t = 0; t < tetrahedron_count(c); t++)
         for (int e = 0; e < 12; e++) {
             size_t a = c->tetrahedra.data[4 * t + (size_t)DEFORM_EDGES[e / 2][e % 2]];
@@ -143,25 +136,20 @@ static starg_status make_system(walk *w) {
     for (uint32_t v = 0; v < w->inner; v++) /* vertices of no tetrahedron stay */
         if (w->first[v] == w->first[v + 1])
             triplets[count++] = (triplet){v, v, 1};
-    STARG_TRY(triplets_factorise(c->context, w->inner, triplets, count, &w->system));
-done:
-    starg_release(c->context, triplets);
-    return status;
+    return triplets_factorise(c->context, w->inner, triplets, count, &w->system);
 }
 
 static starg_status prepare(walk *w) {
-    starg_status status = STARG_OK;
     const deform_mesh *c = w->c;
     w->inner = c->rest.count / 3 - c->fixed;
-    STARG_NEW(c->context, STAGE, w->frame, 3 * w->m->mesh->vertex_count);
-    STARG_NEW(c->context, STAGE, w->next, c->rest.count);
-    STARG_NEW(c->context, STAGE, w->sides, 2 * w->inner);
-    STARG_NEW(c->context, STAGE, w->marked, w->inner);
-    STARG_TRY(list_about(w));
+    NEW(c->context, STAGE, w->frame, 3 * w->m->mesh->vertex_count);
+    NEW(c->context, STAGE, w->next, c->rest.count);
+    NEW(c->context, STAGE, w->sides, 2 * w->inner);
+    NEW(c->context, STAGE, w->marked, w->inner);
+    TRY(list_about(w));
     if (w->inner > 0)
-        STARG_TRY(make_system(w));
-done:
-    return status;
+        TRY(make_system(w));
+    return STARG_OK;
 }
 
 static void displace(walk *w, size_t axis) {
@@ -181,15 +169,13 @@ static void displace(walk *w, size_t axis) {
 }
 
 static starg_status predict(walk *w, double t) {
-    starg_status status = STARG_OK;
     const deform_mesh *c = w->c;
-    STARG_TRY(starg_morph_frame(w->m, t, w->frame));
+    TRY(starg_morph_frame(w->m, t, w->frame));
     for (size_t v = 0; v < c->fixed; v++)
         vec3_copy(w->frame + 3 * (size_t)c->surface[v], w->next + 3 * v);
     for (size_t axis = 0; axis < 3 && w->inner > 0; axis++)
         displace(w, axis);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- untangling ---- */
@@ -225,7 +211,6 @@ static double longest_about(const walk *w, uint32_t v) {
 
 /* Moves a vertex to the point farthest from all surrounding planes, if that is better. */
 static starg_status relocate(walk *w, uint32_t v) {
-    starg_status status = STARG_OK;
     size_t i = v - w->c->fixed, count = w->first[i + 1] - w->first[i];
     double unit = longest_about(w, v), before = INFINITY;
     linear_solution best;
@@ -237,8 +222,8 @@ static starg_status relocate(walk *w, uint32_t v) {
         make_row(w, v, w->about[w->first[i] + j], unit, row);
         before = fmin(before, row[4]);
         for (int k = 0; k < ROW; k++)
-            STARG_PUSH(w->c->context, STAGE, &w->rows, row[k]);
-        STARG_PUSH(w->c->context, STAGE, &w->order, 0);
+            PUSH(w->c->context, STAGE, &w->rows, row[k]);
+        PUSH(w->c->context, STAGE, &w->order, 0);
     }
     const linear_program program = {.dimension = 4,
                                     .rows = w->rows.data,
@@ -249,8 +234,7 @@ static starg_status relocate(walk *w, uint32_t v) {
     linear_program_solve(&program, w->order.data, NULL, &best);
     if (best.feasible && best.point[3] > before)
         vec3_along(w->next + 3 * (size_t)v, unit, best.point, w->next + 3 * (size_t)v);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Marks the inner vertices of inverted or thin tetrahedra; returns the number of inverted ones. */
@@ -271,23 +255,21 @@ static size_t examine(walk *w) {
 }
 
 static starg_status untangle(walk *w, size_t *inverted) {
-    starg_status status = STARG_OK;
     size_t least = SIZE_MAX;
     int idle = 0;
     *inverted = examine(w);
     for (int sweep = 0; sweep < SWEEPS && idle < PATIENCE; sweep++) {
-        STARG_TRY(starg_check_cancel(w->c->context, STAGE));
+        TRY(starg_check_cancel(w->c->context, STAGE));
         for (size_t v = 0; v < w->inner; v++)
             if (w->marked[v])
-                STARG_TRY(relocate(w, (uint32_t)(w->c->fixed + v)));
+                TRY(relocate(w, (uint32_t)(w->c->fixed + v)));
         *inverted = examine(w);
         if (*inverted == 0)
             break;
         idle = *inverted < least ? 0 : idle + 1;
         least = *inverted < least ? *inverted : least;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- chords ---- */
@@ -314,45 +296,35 @@ done:
 
 /* Interior edges with both ends on the surface. */
 static starg_status find_chords(const walk *w, const edge_list *surface, edge_list *out) {
-    starg_status status = STARG_OK;
     const deform_mesh *c = w->c;
     for (size_t i = 0; i < 6 * tetrahedron_count(c); i++) {
         uint32_t a = c->tetrahedra.data[4 * (i / 6) + (size_t)DEFORM_EDGES[i % 6][0]];
         uint32_t b = c->tetrahedra.data[4 * (i / 6) + (size_t)DEFORM_EDGES[i % 6][1]];
         deform_edge edge = deform_edge_of(a, b);
         if (a < c->fixed && b < c->fixed && !deform_edge_in(surface->data, surface->count, edge))
-            STARG_PUSH(c->context, STAGE, out, edge);
+            PUSH(c->context, STAGE, out, edge);
     }
     deform_edges_sort(out->data, &out->count);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status deform_free_surface(const starg_morph *m, deform_mesh *c) {
-    starg_status status = STARG_OK;
     const walk w = {.m = m, .c = c};
-    edge_list surface = {0}, chords = {0};
-    STARG_TRY(find_surface_edges(&w, &surface));
-    STARG_TRY(find_chords(&w, &surface, &chords));
-    STARG_TRY(deform_split(c, chords.data, chords.count));
-    STARG_TRY(deform_fill_flat(c));
-done:
-    STARG_ARRAY_FREE(c->context, &surface);
-    STARG_ARRAY_FREE(c->context, &chords);
-    return status;
+    SCOPED edge_list surface = {0}, chords = {0};
+    TRY(find_surface_edges(&w, &surface));
+    TRY(find_chords(&w, &surface, &chords));
+    TRY(deform_split(c, chords.data, chords.count));
+    return deform_fill_flat(c);
 }
 
 /* ---- harmonic extension ---- */
 
 starg_status deform_harmonic(const starg_morph *m, deform_mesh *c) {
-    starg_status status = STARG_OK;
-    walk w = {.m = m, .c = c};
-    STARG_TRY(prepare(&w));
-    STARG_TRY(predict(&w, 1));
+    SCOPED_BY(walk_free) walk w = {.m = m, .c = c};
+    TRY(prepare(&w));
+    TRY(predict(&w, 1));
     memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);
-done:
-    walk_free(&w);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- time steps ---- */
@@ -385,49 +357,42 @@ static starg_status unfold_step(walk *w, size_t *inverted) {
 }
 
 static starg_status try_step(walk *w, double to, double step, size_t *inverted) {
-    starg_status status = STARG_OK;
-    STARG_TRY(predict(w, to));
-    STARG_TRY(untangle(w, inverted));
+    TRY(predict(w, to));
+    TRY(untangle(w, inverted));
     if (*inverted > 0 && step <= SHORT_STEP)
-        STARG_TRY(unfold_step(w, inverted));
+        TRY(unfold_step(w, inverted));
     if (*inverted == 0 && w->path != NULL)
         *inverted = count_unproven(w);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_step(walk *w, double to) {
-    starg_status status = STARG_OK;
     starg_context *context = w->c->context;
     memcpy(w->c->now.data, w->next, w->c->now.count * sizeof *w->next);
     if (w->path == NULL)
         return STARG_OK;
-    STARG_PUSH(context, STAGE, &w->path->times, to);
+    PUSH(context, STAGE, &w->path->times, to);
     for (size_t i = 0; i < w->c->now.count; i++)
-        STARG_PUSH(context, STAGE, &w->path->places, w->next[i]);
-done:
-    return status;
+        PUSH(context, STAGE, &w->path->places, w->next[i]);
+    return STARG_OK;
 }
 
 starg_status deform(const starg_morph *m, deform_mesh *c, deform_path *path, size_t *inverted,
                     double *reached) {
-    starg_status status = STARG_OK;
-    walk w = {.m = m, .c = c, .path = path};
+    SCOPED_BY(walk_free) walk w = {.m = m, .c = c, .path = path};
     double longest = path != NULL ? LONGEST_PROVEN : LONGEST_STEP, step = longest;
     *reached = 0;
-    STARG_TRY(prepare(&w));
+    TRY(prepare(&w));
     while (*reached < 1 && step >= SHORTEST_STEP) {
         double to = fmin(1, *reached + step);
-        STARG_TRY(try_step(&w, to, step, inverted));
+        TRY(try_step(&w, to, step, inverted));
         if (*inverted > 0) {
             step /= 2;
             continue;
         }
-        STARG_TRY(take_step(&w, to));
+        TRY(take_step(&w, to));
         *reached = to;
         step = fmin(longest, 2 * step);
     }
-done:
-    walk_free(&w);
-    return status;
+    return STARG_OK;
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Mesh deformation: tetrahedra that follow a morph. */
-#ifndef STARG_MORPH_DEFORM_H
-#define STARG_MORPH_DEFORM_H
+#pragma once
 
-#include "core/context.h"
 #include "core/memory.h"
 #include "starguard/morph.h"
 
@@ -66,5 +64,3 @@ static inline void deform_free(deform_mesh *c) {
     STARG_ARRAY_FREE(c->context, &c->now);
     STARG_ARRAY_FREE(c->context, &c->tetrahedra);
 }
-
-#endif

@@ -4,7 +4,6 @@
  * A vertex moves straight along the second surface against the gradient of its triangles' energy
  * (distortion.c), by the longest of some halved steps that lowers it. Steps are measured on the
  * surface, not on the sphere, so that they have one scale. Cost of a sweep: O(edges). */
-#include <math.h>
 
 #include "geometry/vec3.h"
 #include "morph/composition.h"
@@ -53,15 +52,13 @@ static void descend(composition *c, uint32_t v) {
 }
 
 starg_status composition_descend(composition *c, int sweeps) {
-    starg_status status = STARG_OK;
     const sphere *s = c->from;
     c->floor = FLOOR * starg_mesh_area(s->mesh) / (double)s->rings->left;
     for (int i = 0; i < sweeps; i++) {
-        STARG_TRY(starg_check_cancel(s->context, STAGE));
+        TRY(starg_check_cancel(s->context, STAGE));
         for (size_t k = 0; k < s->rings->left; k++)
             if (!c->kept[s->alive[k]])
                 descend(c, s->alive[k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }

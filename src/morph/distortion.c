@@ -5,12 +5,9 @@
  * linear map to the flat triangle of its corners' images (symmetric Dirichlet), both surfaces
  * scaled to equal area; plus a small share of the roundness of its spherical triangle, squared
  * edges over area, which is infinite where that flips: it keeps room for moves. */
-#include <math.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
 #include "morph/composition.h"
-#include "sphere/sphere.h"
 
 static const double ROUND = 0.05; /* weight of roundness */
 

@@ -10,8 +10,6 @@
  * log n). */
 #include "morph/extremities.h"
 
-#include <math.h>
-
 #include "geometry/vec3.h"
 #include "mesh/levels/heap.h"
 
@@ -29,10 +27,9 @@ typedef struct search {
 } search;
 
 static starg_status spread_from(search *s, uint32_t source) {
-    starg_status status = STARG_OK;
     const rings *r = s->sphere->rings;
     uint32_t v = source;
-    STARG_TRY(starg_check_cancel(r->context, STAGE));
+    TRY(starg_check_cancel(r->context, STAGE));
     for (size_t i = 0; i < r->vertex_count; i++)
         s->distance[i] = INFINITY;
     s->distance[source] = 0;
@@ -49,8 +46,7 @@ static starg_status spread_from(search *s, uint32_t source) {
         }
     for (size_t i = 0; i < r->vertex_count; i++)
         s->nearest[i] = fmin(s->nearest[i], s->distance[i]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static uint32_t largest(const double *values, size_t count) {
@@ -62,23 +58,20 @@ static uint32_t largest(const double *values, size_t count) {
 }
 
 static starg_status measure(search *s) {
-    starg_status status = STARG_OK;
     size_t count = s->sphere->rings->vertex_count;
     for (size_t i = 0; i < count; i++)
         s->nearest[i] = INFINITY;
-    STARG_TRY(
-        spread_from(s, 0)); /* the first base must not depend on the numbering: it is dropped */
+    TRY(spread_from(s, 0)); /* the first base must not depend on the numbering: it is dropped */
     uint32_t base = largest(s->distance, count);
     for (size_t i = 0; i < count; i++)
         s->nearest[i] = INFINITY;
     for (int k = 0; k < BASES; k++) {
-        STARG_TRY(spread_from(s, base));
+        TRY(spread_from(s, base));
         for (size_t i = 0; i < count; i++)
             s->sum[i] += s->distance[i];
         base = largest(s->nearest, count);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_peak(const search *s, uint32_t v) {
@@ -100,7 +93,6 @@ static size_t next_peak(const search *s, double floor, double apart) {
 }
 
 static starg_status collect(search *s, extremity_list *out) {
-    starg_status status = STARG_OK;
     size_t count = s->sphere->rings->vertex_count;
     double mean = 0, apart = 0;
     for (size_t i = 0; i < count; i++) {
@@ -112,12 +104,11 @@ static starg_status collect(search *s, extremity_list *out) {
         if (extremity == count)
             break;
         out->vertices[out->count++] = (uint32_t)extremity;
-        STARG_TRY(spread_from(s, (uint32_t)extremity));
+        TRY(spread_from(s, (uint32_t)extremity));
         if (out->count == 1)
             apart = APART * s->distance[largest(s->distance, count)];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status extremities_find(const sphere *s, extremity_list *out) {
@@ -134,8 +125,6 @@ starg_status extremities_find(const sphere *s, extremity_list *out) {
     STARG_TRY(collect(&work, out));
 done:
     heap_free(work.heap);
-    starg_release(context, work.distance);
-    starg_release(context, work.nearest);
-    starg_release(context, work.sum);
+    RELEASE(work.distance, work.nearest, work.sum);
     return status;
 }

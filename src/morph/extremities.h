@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Extremities, the ends of a shape's limbs: features for orientation. */
-#ifndef STARG_MORPH_EXTREMITIES_H
-#define STARG_MORPH_EXTREMITIES_H
+#pragma once
 
 #include "sphere/sphere.h"
 
@@ -14,5 +13,3 @@ typedef struct extremity_list {
 
 /* Finds the extremities of a surface, most extreme first. Errors: MEMORY, CANCELLED. */
 starg_status extremities_find(const sphere *s, extremity_list *out);
-
-#endif

@@ -14,10 +14,7 @@
  * shorter than pi are used instead if they tear less over all edges.
  *
  * Cost: O(faces log faces). */
-#include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/levels/heap.h"
 #include "mesh/topology.h"
@@ -236,9 +233,7 @@ static starg_status unwrap(starg_morph *m) {
 done:
     topology_free(topology);
     heap_free(p.heap);
-    starg_release(m->context, p.keys);
-    starg_release(m->context, p.before);
-    starg_release(m->context, p.fixed);
+    RELEASE(p.keys, p.before, p.fixed);
     return status;
 }
 
@@ -260,14 +255,13 @@ static double variation(const starg_morph *m, const mesh_topology *topology,
 
 /* Uses the shortest vectors if those along the tree tear more. */
 static starg_status keep_smoother(starg_morph *m) {
-    starg_status status = STARG_OK;
     static const double zero[3];
-    mesh_topology *topology = NULL;
-    double *along = NULL, *shortest = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED double *along = NULL, *shortest = NULL;
     size_t count = m->mesh->face_count;
-    STARG_TRY(topology_create(m->context, m->mesh, &topology));
-    STARG_NEW(m->context, STAGE, along, 3 * count);
-    STARG_NEW(m->context, STAGE, shortest, 3 * count);
+    TRY(topology_create(m->context, m->mesh, &topology));
+    NEW(m->context, STAGE, along, 3 * count);
+    NEW(m->context, STAGE, shortest, 3 * count);
     for (size_t f = 0; f < count; f++) {
         vec3_copy(m->faces[f].rotation, along + 3 * f);
         vec3_copy(m->faces[f].rotation, shortest + 3 * f);
@@ -276,23 +270,16 @@ static starg_status keep_smoother(starg_morph *m) {
     if (variation(m, topology, shortest) < variation(m, topology, along))
         for (size_t f = 0; f < count; f++)
             vec3_copy(shortest + 3 * f, m->faces[f].rotation);
-done:
-    topology_free(topology);
-    starg_release(m->context, along);
-    starg_release(m->context, shortest);
-    return status;
+    return STARG_OK;
 }
 
 starg_status morph_prepare_faces(starg_morph *m) {
-    starg_status status = STARG_OK;
     double whole[9];
-    STARG_NEW(m->context, STAGE, m->faces, m->mesh->face_count);
+    NEW(m->context, STAGE, m->faces, m->mesh->face_count);
     whole_rotation(m, whole);
     rotation_to_vector(whole, m->turn);
     for (size_t f = 0; f < m->mesh->face_count; f++)
         decompose(m, whole, f, &m->faces[f]);
-    STARG_TRY(unwrap(m));
-    STARG_TRY(keep_smoother(m));
-done:
-    return status;
+    TRY(unwrap(m));
+    return keep_smoother(m);
 }

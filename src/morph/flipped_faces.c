@@ -11,12 +11,9 @@
  * there. The remaining difference to B is part of the residual, and is added last (residual.c).
  *
  * Cost: two checks of a surface and a sparse system of the flipped faces. */
-#include <string.h>
 
-#include "core/memory.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
-#include "starguard/check.h"
 
 static const char STAGE[] = "morph";
 enum {
@@ -49,33 +46,28 @@ done:
 
 /* Adds the faces that share a vertex with a flipped one. */
 static starg_status widen(starg_morph *m) {
-    starg_status status = STARG_OK;
-    uint8_t *touched = NULL;
-    STARG_NEW_ZERO(m->context, STAGE, touched, m->mesh->vertex_count);
+    SCOPED uint8_t *touched = NULL;
+    NEW_ZERO(m->context, STAGE, touched, m->mesh->vertex_count);
     for (size_t i = 0; i < 3 * m->mesh->face_count; i++)
         if (m->flipped[i / 3])
             touched[m->mesh->faces[i]] = 1;
     for (size_t i = 0; i < 3 * m->mesh->face_count; i++)
         if (touched[m->mesh->faces[i]])
             m->flipped[i / 3] = 1;
-done:
-    starg_release(m->context, touched);
-    return status;
+    return STARG_OK;
 }
 
 /* Numbers the flipped faces. */
 static starg_status find_flipped(starg_morph *m, uint32_t **number, size_t *count) {
-    starg_status status = STARG_OK;
-    STARG_NEW_ZERO(m->context, STAGE, m->flipped, m->mesh->face_count);
-    STARG_NEW(m->context, STAGE, *number, m->mesh->face_count);
-    STARG_TRY(mark(m, m->images, 1));
-    STARG_TRY(mark(m, m->mesh->vertices, 0));
+    NEW_ZERO(m->context, STAGE, m->flipped, m->mesh->face_count);
+    NEW(m->context, STAGE, *number, m->mesh->face_count);
+    TRY(mark(m, m->images, 1));
+    TRY(mark(m, m->mesh->vertices, 0));
     for (int ring = 0; ring < RINGS; ring++)
-        STARG_TRY(widen(m));
+        TRY(widen(m));
     for (size_t f = 0; f < m->mesh->face_count; f++)
         (*number)[f] = m->flipped[f] ? (uint32_t)(*count)++ : NONE;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- filling ---- */
@@ -93,9 +85,9 @@ static double *part_of(const filling *f, size_t face, int part) {
 }
 
 static starg_status make_system(const filling *f, sparse_factors **out) {
-    starg_status status = STARG_OK;
-    triplet *triplets = NULL, *next;
-    STARG_NEW(f->m->context, STAGE, triplets, FACE_TRIPLETS * f->count);
+    SCOPED triplet *triplets = NULL;
+    triplet *next;
+    NEW(f->m->context, STAGE, triplets, FACE_TRIPLETS * f->count);
     next = triplets;
     for (size_t h = 0; h < 3 * f->m->mesh->face_count; h++) {
         uint32_t own = f->number[h / 3], twin = f->topology->twin[h];
@@ -109,11 +101,7 @@ static starg_status make_system(const filling *f, sparse_factors **out) {
         if (f->number[twin / 3] != NONE)
             *next++ = (triplet){own, f->number[twin / 3], -1};
     }
-    STARG_TRY(
-        triplets_factorise(f->m->context, f->count, triplets, (size_t)(next - triplets), out));
-done:
-    starg_release(f->m->context, triplets);
-    return status;
+    return triplets_factorise(f->m->context, f->count, triplets, (size_t)(next - triplets), out);
 }
 
 /* Sums the given values around the flipped faces, and a little of their own. */
@@ -131,11 +119,10 @@ static void sum_given(const filling *f, int part, double *sums) {
 }
 
 static starg_status fill(const filling *f) {
-    starg_status status = STARG_OK;
-    double *values = NULL;
-    sparse_factors *system = NULL;
-    STARG_NEW(f->m->context, STAGE, values, 2 * f->count);
-    STARG_TRY(make_system(f, &system));
+    SCOPED double *values = NULL;
+    SCOPED_BY(sparse_drop) sparse_factors *system = NULL;
+    NEW(f->m->context, STAGE, values, 2 * f->count);
+    TRY(make_system(f, &system));
     for (int part = 0; part < PARTS; part++) {
         sum_given(f, part, values);
         sparse_solve(system, values, values + f->count);
@@ -143,23 +130,15 @@ static starg_status fill(const filling *f) {
             if (f->number[face] != NONE)
                 *part_of(f, face, part) = values[f->number[face]];
     }
-done:
-    sparse_free(system);
-    starg_release(f->m->context, values);
-    return status;
+    return STARG_OK;
 }
 
 starg_status morph_fill_flipped(starg_morph *m) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    uint32_t *number = NULL;
-    STARG_TRY(find_flipped(m, &number, &m->flipped_count));
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED uint32_t *number = NULL;
+    TRY(find_flipped(m, &number, &m->flipped_count));
     if (m->flipped_count == 0)
-        goto done;
-    STARG_TRY(topology_create(m->context, m->mesh, &topology));
-    STARG_TRY(fill(&(filling){m, topology, number, m->flipped_count}));
-done:
-    topology_free(topology);
-    starg_release(m->context, number);
-    return status;
+        return STARG_OK;
+    TRY(topology_create(m->context, m->mesh, &topology));
+    return fill(&(filling){m, topology, number, m->flipped_count});
 }

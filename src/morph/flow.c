@@ -13,9 +13,7 @@
  * first.
  *
  * Cost: one factorization; per step three solves and O(edges). */
-#include <math.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "morph/composition.h"
 #include "morph/triplets.h"
@@ -71,12 +69,12 @@ static triplet *put_triangle(const flow *f, const uint32_t corner[3], triplet *n
 }
 
 static starg_status make_system(flow *f) {
-    starg_status status = STARG_OK;
     const sphere *s = f->c->from;
     size_t triangles = 2 * f->count - 4; /* Euler, genus 0 */
-    triplet *triplets = NULL, *next;
+    SCOPED triplet *triplets = NULL;
+    triplet *next;
     uint32_t corner[3];
-    STARG_NEW(s->context, STAGE, triplets, 3 * TRIPLETS * triangles + f->count);
+    NEW(s->context, STAGE, triplets, 3 * TRIPLETS * triangles + f->count);
     next = triplets;
     for (uint32_t k = 0; k < f->count; k++) {
         uint32_t v = s->alive[k];
@@ -85,11 +83,8 @@ static starg_status make_system(flow *f) {
             if (triangle_at(s, v, i, corner))
                 next = put_triangle(f, corner, next);
     }
-    STARG_TRY(
-        triplets_factorise(s->context, f->count, triplets, (size_t)(next - triplets), &f->system));
-done:
-    starg_release(s->context, triplets);
-    return status;
+    return triplets_factorise(s->context, f->count, triplets, (size_t)(next - triplets),
+                              &f->system);
 }
 
 /* ---- local step ---- */
@@ -230,9 +225,7 @@ starg_status composition_flow(composition *c, int steps) {
     for (int i = 0; i < steps; i++)
         STARG_TRY(flow_step(&f));
 done:
-    starg_release(context, f.slot);
-    starg_release(context, f.sides);
-    starg_release(context, f.work);
+    RELEASE(f.slot, f.sides, f.work);
     sparse_free(f.system);
     return status;
 }

@@ -8,14 +8,12 @@
  * along.
  *
  * Cost: O(guards^2 + faces). */
-#include <math.h>
 
-#include "core/memory.h"
+#include "core/bits.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
 #include "morph/rotation.h"
-#include "starguard/bits.h"
 
 static const char STAGE[] = "consistent guards";
 static const double APART = 1e3; /* added to the length of edges between pieces without contact */
@@ -41,16 +39,13 @@ static void add_pieces(starg_morph *m) {
 }
 
 static starg_status find_neighbours(const starg_morph *m, starg_bits **out) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    STARG_TRY(topology_create(m->context, m->mesh, &topology));
-    STARG_TRY(starg_bits_create(m->context, m->guard_count, m->guard_count, out));
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    TRY(topology_create(m->context, m->mesh, &topology));
+    TRY(starg_bits_create(m->context, m->guard_count, m->guard_count, out));
     for (size_t h = 0; h < 3 * m->mesh->face_count; h++)
         if (topology->twin[h] != TOPOLOGY_NONE)
             starg_bits_set(*out, m->pieces[h / 3], m->pieces[topology->twin[h] / 3]);
-done:
-    topology_free(topology);
-    return status;
+    return STARG_OK;
 }
 
 /* Offset and change of a guard from its parent. */
@@ -79,11 +74,11 @@ static uint32_t largest_piece(const starg_morph *m) {
 }
 
 static starg_status grow_tree(starg_morph *m, const starg_bits *neighbours) {
-    starg_status status = STARG_OK;
-    double *least = NULL;
-    uint32_t *above = NULL, last = largest_piece(m);
-    STARG_NEW(m->context, STAGE, least, m->guard_count);
-    STARG_NEW(m->context, STAGE, above, m->guard_count);
+    SCOPED double *least = NULL;
+    SCOPED uint32_t *above = NULL;
+    uint32_t last = largest_piece(m);
+    NEW(m->context, STAGE, least, m->guard_count);
+    NEW(m->context, STAGE, above, m->guard_count);
     for (size_t i = 0; i < m->guard_count; i++)
         least[i] = INFINITY;
     m->guard_paths[last].parent = last;
@@ -106,20 +101,13 @@ static starg_status grow_tree(starg_morph *m, const starg_bits *neighbours) {
         attach_guard(m, next, above[next]);
         last = next;
     }
-done:
-    starg_release(m->context, least);
-    starg_release(m->context, above);
-    return status;
+    return STARG_OK;
 }
 
 starg_status morph_prepare_guards(starg_morph *m) {
-    starg_status status = STARG_OK;
-    starg_bits *neighbours = NULL;
-    STARG_NEW_ZERO(m->context, STAGE, m->guard_paths, m->guard_count);
+    SCOPED_BY(starg_bits_drop) starg_bits *neighbours = NULL;
+    NEW_ZERO(m->context, STAGE, m->guard_paths, m->guard_count);
     add_pieces(m);
-    STARG_TRY(find_neighbours(m, &neighbours));
-    STARG_TRY(grow_tree(m, neighbours));
-done:
-    starg_bits_free(neighbours);
-    return status;
+    TRY(find_neighbours(m, &neighbours));
+    return grow_tree(m, neighbours);
 }

@@ -4,6 +4,7 @@
  *
  * Both use the candidates of the common problem, so the only difference is that a pair must see at
  * both ends. Cost: that of guarding with given candidates. */
+#include "mesh/solid.h"
 #include "morph/morph.h"
 
 static const char STAGE[] = "consistent guards";
@@ -16,35 +17,28 @@ static starg_status check_method(const starg_morph *m) {
 }
 
 starg_status starg_morph_guards_result(const starg_morph *m, int end, starg_guards **out) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
     *out = NULL;
-    STARG_TRY(check_method(m));
-    STARG_TRY(morph_solid(m, end, &solid));
-    STARG_TRY(starg_guards_given(m->context, solid, m->guards[end != 0], m->guard_count, out));
+    TRY(check_method(m));
+    TRY(morph_solid(m, end, &solid));
+    TRY(starg_guards_given(m->context, solid, m->guards[end != 0], m->guard_count, out));
     (*out)->candidate_count = m->candidate_count;
     (*out)->lower_bound = m->lower_bound;
     (*out)->optimal = m->lower_bound == m->guard_count;
-done:
-    starg_solid_free(solid);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_morph_guards_separate(const starg_morph *m, int end, starg_guards **out) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
     starg_guard_options options;
     *out = NULL;
-    STARG_TRY(check_method(m));
+    TRY(check_method(m));
     starg_guard_options_default(&options);
     options.method = STARG_GUARD_ILP;
     options.candidates = STARG_CANDIDATES_GIVEN;
     options.points = m->candidates[end != 0];
     options.point_count = options.candidate_count = m->candidate_count;
     options.max_nodes = MORPH_COVER_NODES;
-    STARG_TRY(morph_solid(m, end, &solid));
-    STARG_TRY(starg_guard(m->context, solid, &options, out));
-done:
-    starg_solid_free(solid);
-    return status;
+    TRY(morph_solid(m, end, &solid));
+    return starg_guard(m->context, solid, &options, out);
 }

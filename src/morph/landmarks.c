@@ -12,11 +12,7 @@
  * O(landmarks^3 + landmarks n). */
 #include "morph/landmarks.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "geometry/vec3.h"
-#include "sphere/sphere.h"
 
 static const char STAGE[] = "landmarks";
 enum { ROUNDS = 400, PATIENCE = 12, SWEEPS = 3, HALVINGS = 5 };
@@ -157,7 +153,6 @@ static starg_status advance_round(warp *w, double longest, bool *moved) {
 }
 
 static starg_status approach(warp *w, bool *met) {
-    starg_status status = STARG_OK;
     int stuck = 0;
     for (int round = 0; round < ROUNDS && stuck < PATIENCE; round++) {
         bool moved;
@@ -165,11 +160,10 @@ static starg_status approach(warp *w, bool *met) {
         *met = longest == 0;
         if (*met || longest < 0)
             break;
-        STARG_TRY(advance_round(w, longest, &moved));
+        TRY(advance_round(w, longest, &moved));
         stuck = moved ? 0 : stuck + 1;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list *landmarks,
@@ -188,9 +182,7 @@ starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list 
         w.pinned[landmarks->from[i]] = 1;
     STARG_TRY(approach(&w, met));
 done:
-    starg_release(context, w.matrix);
-    starg_release(context, w.before);
-    starg_release(context, w.pinned);
+    RELEASE(w.matrix, w.before, w.pinned);
     return status;
 }
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Landmarks on the sphere, and files of them. */
-#ifndef STARG_MORPH_LANDMARKS_H
-#define STARG_MORPH_LANDMARKS_H
+#pragma once
 
 #include "morph/align.h"
 
@@ -13,5 +12,3 @@ starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list 
 
 /* Fails with MESH and names the landmark farthest from its counterpart. */
 starg_status landmarks_contradict(sphere *from, const sphere *to, const landmark_list *landmarks);
-
-#endif

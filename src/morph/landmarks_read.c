@@ -3,13 +3,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "geometry/bvh.h"
 #include "mesh/formats/io.h"
-#include "mesh/mesh.h"
 #include "morph/parse_numbers.h"
 #include "starguard/morph.h"
 
@@ -123,8 +119,7 @@ done:
     starg_c_locale_leave(&locale);
     bvh_free(trees[0]);
     bvh_free(trees[1]);
-    starg_release(context, bytes);
-    STARG_ARRAY_FREE(context, &list);
+    RELEASE(bytes, list.data);
     return status;
 }
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Point location on a spherical embedding. */
-#ifndef STARG_MORPH_LOCATE_H
-#define STARG_MORPH_LOCATE_H
+#pragma once
 
 #include "mesh/topology.h"
 #include "sphere/sphere.h"
@@ -19,5 +18,3 @@ void locator_free(locator *l);
  * the barycentric coordinates of its central projection into the flat triangle. `start` is the face
  * to begin at. */
 uint32_t locate(const locator *l, const double direction[3], uint32_t start, double coordinates[3]);
-
-#endif

@@ -8,18 +8,15 @@
  * surfaces. */
 #include "morph/map.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "morph/compose.h"
 #include "morph/landmarks.h"
 #include "morph/overlay.h"
+#include "morph/solid_stars.h"
 
 static const char STAGE[] = "map";
+enum { ATTEMPTS = 4 };    /* of centers of star-shaped solids */
 enum { SAME_SHARE = 20 }; /* fraction of faces that may differ between poses: one in so many */
 
 void starg_map_options_default(starg_map_options *options) {
@@ -51,12 +48,9 @@ done:
 void starg_map_free(starg_context *context, starg_map *map) {
     if (map == NULL)
         return;
-    starg_release(context, map->faces);
-    starg_release(context, map->coordinates);
-    starg_release(context, map->directions);
-    starg_release(context, map->target_directions);
-    starg_release(context, map->pairs);
-    map_free_overlay(context, &map->overlay);
+    RELEASE(map->faces, map->coordinates, map->directions, map->target_directions, map->pairs,
+            map->centers);
+    map_free_overlay(&map->overlay);
     starg_release(context, map);
 }
 
@@ -92,8 +86,8 @@ static starg_status fill_identity(starg_context *context, const starg_mesh *b, s
 }
 
 starg_status map_unit_copy(starg_context *context, const starg_mesh *mesh, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    double *vertices = NULL, lower[3], upper[3];
+    SCOPED double *vertices = NULL;
+    double lower[3], upper[3];
     starg_mesh_bounds(mesh, lower, upper);
     double extent = 0;
     for (int k = 0; k < 3; k++)
@@ -101,15 +95,12 @@ starg_status map_unit_copy(starg_context *context, const starg_mesh *mesh, starg
     *out = NULL;
     if (!(extent > 0))
         return starg_fail(context, STARG_ERROR_MESH, STAGE, "all vertices of a mesh coincide");
-    STARG_NEW(context, STAGE, vertices, 3 * mesh->vertex_count);
+    NEW(context, STAGE, vertices, 3 * mesh->vertex_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
         vertices[i] = (mesh->vertices[i] - lower[i % 3]) / extent -
                       0.5 * (upper[i % 3] - lower[i % 3]) / extent;
-    STARG_TRY(starg_mesh_create(context, vertices, mesh->vertex_count, mesh->faces,
-                                mesh->face_count, out));
-done:
-    starg_release(context, vertices);
-    return status;
+    return starg_mesh_create(context, vertices, mesh->vertex_count, mesh->faces, mesh->face_count,
+                             out);
 }
 
 void map_place(const starg_mesh *mesh, size_t count, const uint32_t *faces,
@@ -181,7 +172,6 @@ static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
 
 static starg_status map_same(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                              size_t different, const starg_map_options *options, starg_map **out) {
-    starg_status status = STARG_OK;
     if (different > 0)
         starg_log(context, STARG_LOG_NOTICE,
                   "%zu of %zu faces differ; treating the surfaces as poses of one model, vertex by "
@@ -193,10 +183,8 @@ static starg_status map_same(starg_context *context, const starg_mesh *a, const 
                               "the surfaces have the same faces, which maps vertex i to vertex i, "
                               "but landmark %zu pairs %u with %u",
                               i, options->landmarks[2 * i], options->landmarks[2 * i + 1]);
-    STARG_TRY(make_map(context, a, b, STARG_MAP_SAME, out));
-    STARG_TRY(fill_identity(context, b, *out));
-done:
-    return status;
+    TRY(make_map(context, a, b, STARG_MAP_SAME, out));
+    return fill_identity(context, b, *out);
 }
 
 /* ---- maps by spherical embeddings ---- */
@@ -208,17 +196,13 @@ typedef struct spread {
 
 static starg_status spread_surface(starg_context *context, const starg_mesh *mesh, const char *name,
                                    spread *out) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
     /* it may touch itself: only shared topology counts */
-    STARG_TRY(solid_make_in_time(context, mesh, &solid));
-    STARG_TRY(solid_must_not_share(context, solid, STAGE));
-    STARG_TRY(check_surface(context, starg_solid_check(solid), name));
-    STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
-    STARG_TRY(sphere_create(context, out->unit, &out->sphere));
-done:
-    starg_solid_free(solid);
-    return status;
+    TRY(solid_make_in_time(context, mesh, &solid));
+    TRY(solid_must_not_share(context, solid, STAGE));
+    TRY(check_surface(context, starg_solid_check(solid), name));
+    TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
+    return sphere_create(context, out->unit, &out->sphere);
 }
 
 static void spread_free(spread *s) {
@@ -249,11 +233,10 @@ static void reorder(const starg_mesh *solid, const starg_mesh *b, uint32_t face,
 
 static starg_status place_vertices(const sphere *from, const locator *to, const starg_mesh *b,
                                    const landmark_list *marks, starg_map *map) {
-    starg_status status = STARG_OK;
     uint32_t face = 0;
     for (size_t v = 0; v < map->vertex_count; v++) {
         double *coordinates = map->coordinates + 3 * v;
-        STARG_TRY(starg_check_cancel(from->context, STAGE));
+        TRY(starg_check_cancel(from->context, STAGE));
         face = locate(to, from->directions + 3 * v, face, coordinates);
         map->faces[v] = face;
         reorder(to->sphere->mesh, b, face, coordinates);
@@ -263,119 +246,168 @@ static starg_status place_vertices(const sphere *from, const locator *to, const 
         at_vertex(b, marks->to[i], &map->faces[v], map->coordinates + 3 * v);
     }
     map->landmark_count = marks->count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status copy_doubles(starg_context *context, const double *from, size_t count,
                                  double **out) {
-    starg_status status = STARG_OK;
-    STARG_NEW(context, STAGE, *out, count);
+    NEW(context, STAGE, *out, count);
     memcpy(*out, from, count * sizeof **out);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Keeps what makes the map a bijection. */
 static starg_status keep_directions(starg_context *context, const sphere *from, const sphere *to,
                                     starg_map *map) {
-    starg_status status = STARG_OK;
     size_t count = from->mesh->vertex_count, target_count = to->mesh->vertex_count;
-    STARG_TRY(copy_doubles(context, from->directions, 3 * count, &map->directions));
+    TRY(copy_doubles(context, from->directions, 3 * count, &map->directions));
     map->direction_count = count;
-    STARG_TRY(copy_doubles(context, to->directions, 3 * target_count, &map->target_directions));
+    TRY(copy_doubles(context, to->directions, 3 * target_count, &map->target_directions));
     map->target_direction_count = target_count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status keep_pairs(starg_context *context, const landmark_list *marks, starg_map *map) {
-    starg_status status = STARG_OK;
     if (marks->count == 0)
         return STARG_OK;
-    STARG_NEW(context, STAGE, map->pairs, 2 * marks->count);
+    NEW(context, STAGE, map->pairs, 2 * marks->count);
     map->pair_count = marks->count;
     for (size_t i = 0; i < marks->count; i++) {
         map->pairs[2 * i] = marks->from[i];
         map->pairs[2 * i + 1] = marks->to[i];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Splits the pairs into two lists. */
 static starg_status split_landmarks(starg_context *context, const starg_map_options *options,
                                     uint32_t **lists, landmark_list *out) {
-    starg_status status = STARG_OK;
     size_t count = options->landmark_count;
-    STARG_NEW(context, STAGE, *lists, 2 * count);
+    NEW(context, STAGE, *lists, 2 * count);
     for (size_t i = 0; i < 2 * count; i++)
         (*lists)[i % 2 * count + i / 2] = options->landmarks[i];
     *out = (landmark_list){*lists, *lists + count, count};
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Composes both embeddings. Without landmarks, extremities are matched if possible; they are
  * guesses, so contradictions between them are not an error. */
 static starg_status compose(sphere *from, const locator *to, const landmark_list *marks,
                             const feature_pairs *features) {
-    starg_status status = STARG_OK;
-    double *before = NULL;
+    SCOPED double *before = NULL;
     size_t size = 3 * from->mesh->vertex_count;
     const landmark_list extremities = {features->from, features->to, features->count};
     bool met = false;
-    STARG_NEW(from->context, STAGE, before, size);
+    NEW(from->context, STAGE, before, size);
     memcpy(before, from->directions, size * sizeof *before);
     if (extremities.count > 0)
-        STARG_TRY(compose_spheres(from, to, &extremities, &met));
+        TRY(compose_spheres(from, to, &extremities, &met));
     if (met)
-        goto done;
+        return STARG_OK;
     memcpy(from->directions, before, size * sizeof *before);
-    STARG_TRY(compose_spheres(from, to, marks, &met));
+    TRY(compose_spheres(from, to, marks, &met));
     if (!met)
-        status = landmarks_contradict(from, to->sphere, marks);
-done:
-    starg_release(from->context, before);
-    return status;
+        return landmarks_contradict(from, to->sphere, marks);
+    return STARG_OK;
 }
 
 static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                   const starg_map_options *options, starg_map **out) {
-    starg_status status = STARG_OK;
-    spread from = {0}, to = {0};
-    locator where = {0};
-    uint32_t *lists = NULL;
+    SCOPED_BY(spread_free) spread from = {0}, to = {0};
+    SCOPED_BY(locator_free) locator where = {0};
+    SCOPED uint32_t *lists = NULL;
     landmark_list marks;
     feature_pairs features;
-    STARG_TRY(split_landmarks(context, options, &lists, &marks));
-    STARG_TRY(spread_surface(context, a, "A", &from));
-    STARG_TRY(spread_surface(context, b, "B", &to));
-    STARG_TRY(locator_create(context, to.sphere, &where));
-    STARG_TRY(align_spheres(from.sphere, &where, &marks, &features));
-    STARG_TRY(compose(from.sphere, &where, &marks, &features));
-    STARG_TRY(make_map(context, a, b, STARG_MAP_SPHERE, out));
-    STARG_TRY(place_vertices(from.sphere, &where, b, &marks, *out));
-    STARG_TRY(keep_directions(context, from.sphere, to.sphere, *out));
-    STARG_TRY(keep_pairs(context, &marks, *out));
+    TRY(split_landmarks(context, options, &lists, &marks));
+    TRY(spread_surface(context, a, "A", &from));
+    TRY(spread_surface(context, b, "B", &to));
+    TRY(locator_create(context, to.sphere, &where));
+    TRY(align_spheres(from.sphere, &where, &marks, &features));
+    TRY(compose(from.sphere, &where, &marks, &features));
+    TRY(make_map(context, a, b, STARG_MAP_SPHERE, out));
+    TRY(place_vertices(from.sphere, &where, b, &marks, *out));
+    TRY(keep_directions(context, from.sphere, to.sphere, *out));
+    return keep_pairs(context, &marks, *out);
+}
+
+/* ---- maps of star-shaped solids ---- */
+
+/* Directions of the vertices from a point of the kernel. */
+static starg_status look_from(starg_context *context, const starg_mesh *mesh, const char *name,
+                              uint64_t attempt, double center[3], double **directions,
+                              bool *found) {
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    TRY(solid_make_in_time(context, mesh, &solid));
+    TRY(solid_must_not_share(context, solid, STAGE));
+    TRY(check_surface(context, starg_solid_check(solid), name));
+    TRY(stars_center(context, starg_solid_mesh(solid), attempt, center, found));
+    if (!*found)
+        return STARG_OK;
+    NEW(context, STAGE, *directions, 3 * mesh->vertex_count);
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        vec3_subtract(mesh->vertices + 3 * v, center, *directions + 3 * v);
+    return STARG_OK;
+}
+
+/* Points in the same direction correspond. No map: a solid is not star-shaped, or the overlay has
+ * no room in doubles. *moved: it had to be made. */
+static starg_status map_by_kernels(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                   uint64_t attempt, bool *moved, starg_map **out) {
+    starg_status status = STARG_OK;
+    starg_map *map = NULL;
+    double centers[6];
+    bool found;
+    *moved = false;
+    STARG_TRY(make_map(context, a, b, STARG_MAP_SPHERE, &map));
+    STARG_TRY(look_from(context, a, "A", attempt, centers, &map->directions, &found));
+    if (found)
+        STARG_TRY(
+            look_from(context, b, "B", attempt, centers + 3, &map->target_directions, &found));
+    if (!found)
+        goto done;
+    map->direction_count = a->vertex_count;
+    map->target_direction_count = b->vertex_count;
+    STARG_TRY(copy_doubles(context, centers, 6, &map->centers));
+    memset(map->faces, 0, map->vertex_count * sizeof *map->faces); /* until the overlay tells */
+    memset(map->coordinates, 0, 3 * map->vertex_count * sizeof *map->coordinates);
+    status = map_overlay(context, a, b, map, moved);
+    if (status == STARG_ERROR_SOLVER || status == STARG_ERROR_MESH) {
+        status = STARG_OK;
+        goto done;
+    }
+    STARG_TRY(status);
+    *out = map;
+    map = NULL;
 done:
-    starg_release(context, lists);
-    locator_free(&where);
-    spread_free(&from);
-    spread_free(&to);
+    starg_map_free(context, map);
     return status;
+}
+
+/* From centers that leave room, if there are any: edges that nearly coincide do not, from others.
+ */
+static starg_status map_stars(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                              starg_map **out) {
+    starg_map *next = NULL;
+    bool moved = true;
+    for (uint64_t attempt = 0; attempt < ATTEMPTS && moved; attempt++) {
+        TRY(map_by_kernels(context, a, b, attempt, &moved, &next));
+        if (next == NULL || (*out != NULL && moved)) {
+            starg_map_free(context, next);
+        } else {
+            starg_map_free(context, *out);
+            *out = next;
+        }
+        next = NULL;
+    }
+    return STARG_OK;
 }
 
 starg_status map_share_directions(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                   starg_map *map) {
-    starg_status status = STARG_OK;
-    spread own = {0};
-    STARG_TRY(spread_surface(context, a, "A", &own));
-    STARG_TRY(overlay_share(context, a, b, own.sphere->directions));
-    STARG_TRY(keep_directions(context, own.sphere, own.sphere, map));
-done:
-    spread_free(&own);
-    return status;
+    SCOPED_BY(spread_free) spread own = {0};
+    TRY(spread_surface(context, a, "A", &own));
+    TRY(overlay_share(context, a, b, own.sphere->directions));
+    return keep_directions(context, own.sphere, own.sphere, map);
 }
 
 starg_status starg_map_create(starg_context *context, const starg_mesh *a, const starg_mesh *b,
@@ -391,7 +423,9 @@ starg_status starg_map_create(starg_context *context, const starg_mesh *a, const
     size_t different = different_faces(a, b);
     if (different <= a->face_count / SAME_SHARE)
         STARG_TRY(map_same(context, a, b, different, options, &map));
-    else
+    else if (options->solid && options->landmark_count == 0)
+        STARG_TRY(map_stars(context, a, b, &map));
+    if (map == NULL)
         STARG_TRY(map_by_sphere(context, a, b, options, &map));
     STARG_TRY(map_measure(context, a, b, map));
     *out = map;

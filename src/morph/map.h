@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of a map. */
-#ifndef STARG_MORPH_MAP_H
-#define STARG_MORPH_MAP_H
+#pragma once
 
 #include "core/fields.h"
 #include "starguard/morph.h"
@@ -22,10 +21,13 @@ void map_place(const starg_mesh *mesh, size_t count, const uint32_t *faces,
 starg_status map_share_directions(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                   starg_map *map);
 
+/* starg_map_overlay; *moved: corners had to be moved, so that not all are in the directions of the
+ * map (map_overlay.c). */
+starg_status map_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                         starg_map *map, bool *moved);
+
 /* Frees its arrays (map_overlay.c). */
-void map_free_overlay(starg_context *context, starg_overlay *overlay);
+void map_free_overlay(starg_overlay *overlay);
 
 /* A copy scaled to a unit cube about the origin. Errors: MESH (no extent), MEMORY. */
 starg_status map_unit_copy(starg_context *context, const starg_mesh *mesh, starg_mesh **out);
-
-#endif

@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "core/record.h"
 #include "mesh/mesh.h"
 #include "morph/map.h"
@@ -276,21 +275,19 @@ static starg_status check_overlay(starg_context *context, const starg_mesh *a, c
 
 static starg_status check_map(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                               starg_map *map) {
-    starg_status status = STARG_OK;
     if (map->vertex_count != a->vertex_count)
         return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
                           "the map has %zu entries in \"points\", but A has %zu vertices; it "
                           "belongs to another pair of models",
                           map->vertex_count, a->vertex_count);
-    STARG_TRY(check_target(context, b, map));
-    STARG_TRY(check_overlay(context, a, b, &map->overlay));
+    TRY(check_target(context, b, map));
+    TRY(check_overlay(context, a, b, &map->overlay));
     map->kind = STARG_MAP_GIVEN;
     map->target_vertices = b->vertex_count;
     map->target_faces = b->face_count;
     for (size_t v = 0; v < map->vertex_count; v++)
-        STARG_TRY(check_point(context, map, v));
-done:
-    return status;
+        TRY(check_point(context, map, v));
+    return STARG_OK;
 }
 
 starg_status starg_map_read(starg_context *context, const char *path, const starg_mesh *a,

@@ -2,9 +2,6 @@
 /* Distortion of a map: the singular values of the linear maps between faces and their images. */
 #include "morph/map.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 

@@ -1,21 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The overlay of a map: cells of the two triangulations on the sphere (overlay.c), with room
  * between their corners (overlay_room.c), cut into triangles. */
-#include <string.h>
 
-#include "core/memory.h"
-#include "mesh/mesh.h"
 #include "morph/map.h"
 #include "morph/overlay.h"
 
 static const char STAGE[] = "overlay";
 
-void map_free_overlay(starg_context *context, starg_overlay *overlay) {
-    starg_release(context, overlay->faces);
-    starg_release(context, overlay->own_faces);
-    starg_release(context, overlay->target_faces);
-    starg_release(context, overlay->own_coordinates);
-    starg_release(context, overlay->target_coordinates);
+void map_free_overlay(starg_overlay *overlay) {
+    RELEASE(overlay->faces, overlay->own_faces, overlay->target_faces, overlay->own_coordinates,
+            overlay->target_coordinates);
     *overlay = (starg_overlay){0};
 }
 
@@ -27,15 +21,13 @@ void starg_overlay_positions(const starg_overlay *overlay, const starg_mesh *mes
 
 static starg_status allocate(starg_context *context, size_t vertices, size_t faces,
                              starg_overlay *out) {
-    starg_status status = STARG_OK;
     *out = (starg_overlay){.vertex_count = vertices, .face_count = faces};
-    STARG_NEW(context, STAGE, out->faces, 3 * faces);
-    STARG_NEW(context, STAGE, out->own_faces, vertices);
-    STARG_NEW(context, STAGE, out->target_faces, vertices);
-    STARG_NEW_ZERO(context, STAGE, out->own_coordinates, 3 * vertices);
-    STARG_NEW_ZERO(context, STAGE, out->target_coordinates, 3 * vertices);
-done:
-    return status;
+    NEW(context, STAGE, out->faces, 3 * faces);
+    NEW(context, STAGE, out->own_faces, vertices);
+    NEW(context, STAGE, out->target_faces, vertices);
+    NEW_ZERO(context, STAGE, out->own_coordinates, 3 * vertices);
+    NEW_ZERO(context, STAGE, out->target_coordinates, 3 * vertices);
+    return STARG_OK;
 }
 
 /* ---- the same faces ---- */
@@ -52,13 +44,11 @@ static void place_at_vertices(const starg_mesh *mesh, uint32_t *faces, double *c
 
 static starg_status overlay_same(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                  starg_overlay *out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(allocate(context, a->vertex_count, a->face_count, out));
+    TRY(allocate(context, a->vertex_count, a->face_count, out));
     memcpy(out->faces, a->faces, 3 * a->face_count * sizeof *out->faces);
     place_at_vertices(a, out->own_faces, out->own_coordinates);
     place_at_vertices(b, out->target_faces, out->target_coordinates);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
@@ -91,13 +81,12 @@ static void write_place(const overlay_side *side, const overlay_place *place, ui
 }
 
 static starg_status write_overlay(const sphere_overlay *own, starg_overlay *out) {
-    starg_status status = STARG_OK;
     size_t triangles = 0, next = 0;
     const overlay_side *a = &own->side[0];
     bool turned = a->faces[1] != a->mesh->faces[1];
     for (size_t c = 0; c < own->cells.count; c++)
         triangles += own->cells.data[c].count - 2;
-    STARG_TRY(allocate(own->context, own->nodes.count, triangles, out));
+    TRY(allocate(own->context, own->nodes.count, triangles, out));
     for (size_t i = 0; i < own->nodes.count; i++) {
         const overlay_node *node = &own->nodes.data[i];
         write_place(a, &node->place[0], &out->own_faces[i], out->own_coordinates + 3 * i);
@@ -112,18 +101,16 @@ static starg_status write_overlay(const sphere_overlay *own, starg_overlay *out)
             out->faces[next++] = cell->corner[turned ? i : i + 1];
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the map ---- */
 
 /* Marks the vertices of a mesh that nodes of the overlay are at. */
 static starg_status check_vertices(const sphere_overlay *own, int s) {
-    starg_status status = STARG_OK;
-    uint8_t *found = NULL;
+    SCOPED uint8_t *found = NULL;
     const starg_mesh *mesh = own->side[s].mesh;
-    STARG_NEW_ZERO(own->context, STAGE, found, mesh->vertex_count);
+    NEW_ZERO(own->context, STAGE, found, mesh->vertex_count);
     for (size_t i = 0; i < own->nodes.count; i++) {
         uint64_t key = own->nodes.data[i].key[s];
         if (key != OVERLAY_NONE && key >= OVERLAY_VERTEX)
@@ -131,18 +118,14 @@ static starg_status check_vertices(const sphere_overlay *own, int s) {
     }
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const uint64_t element = v;
-        if (found[v] != 1) {
-            status = starg_fail_at(own->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX,
-                                   &element, 1,
-                                   "the map's directions are not those of a bijection: the "
-                                   "triangles do not cover vertex %zu of %c once",
-                                   v, 'A' + s);
-            goto done;
-        }
+        if (found[v] != 1)
+            return starg_fail_at(own->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX,
+                                 &element, 1,
+                                 "the map's directions are not those of a bijection: the "
+                                 "triangles do not cover vertex %zu of %c once",
+                                 v, 'A' + s);
     }
-done:
-    starg_release(own->context, found);
-    return status;
+    return STARG_OK;
 }
 
 /* A's vertices have the first places of the overlay that are theirs. */
@@ -159,27 +142,25 @@ static void move_images(const sphere_overlay *own, const starg_overlay *found, s
 }
 
 static starg_status overlay_directions(starg_context *context, const starg_mesh *a,
-                                       const starg_mesh *b, starg_map *map, starg_overlay *out) {
-    starg_status status = STARG_OK;
+                                       const starg_mesh *b, starg_map *map, starg_overlay *out,
+                                       bool *moved) {
     const starg_mesh *const meshes[2] = {a, b};
     const double *const directions[2] = {map->directions, map->target_directions};
-    sphere_overlay *own = NULL;
-    STARG_TRY(overlay_create(context, meshes, directions, &own));
+    SCOPED_BY(overlay_drop) sphere_overlay *own = NULL;
+    TRY(overlay_create(context, meshes, directions, &own));
     for (int s = 0; s < 2; s++)
-        STARG_TRY(check_vertices(own, s));
-    STARG_TRY(overlay_make_room(own));
-    STARG_TRY(write_overlay(own, out));
+        TRY(check_vertices(own, s));
+    TRY(overlay_make_room(own, moved));
+    TRY(write_overlay(own, out));
     move_images(own, out, map);
-done:
-    overlay_free(own);
-    return status;
+    return STARG_OK;
 }
 
-starg_status starg_map_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
-                               starg_map *map) {
+starg_status map_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                         starg_map *map, bool *moved) {
     starg_status status = STARG_OK;
     starg_overlay found = {0};
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    *moved = false;
     bool same = keeps_vertices(map, b);
     if (same && has_same_faces(a, b)) {
         STARG_TRY(overlay_same(context, a, b, &found));
@@ -192,14 +173,22 @@ starg_status starg_map_overlay(starg_context *context, const starg_mesh *a, cons
                                 "an overlay needs its directions, which 'starguard map' writes");
             goto done;
         }
-        STARG_TRY(overlay_directions(context, a, b, map, &found));
+        STARG_TRY(overlay_directions(context, a, b, map, &found, moved));
         STARG_TRY(map_measure(context, a, b, map));
     }
-    map_free_overlay(context, &map->overlay);
+    map_free_overlay(&map->overlay);
     map->overlay = found;
     found = (starg_overlay){0};
 done:
+    map_free_overlay(&found);
+    return status;
+}
+
+starg_status starg_map_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                               starg_map *map) {
+    bool moved;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    starg_status status = map_overlay(context, a, b, map, &moved);
     starg_time_end(context, former);
-    map_free_overlay(context, &found);
     return status;
 }

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Measures a frame of a morph: exact counts of intersections, folds, and drifts. */
-#include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
-#include "starguard/check.h"
 
 static const char STAGE[] = "measure";
 static const double COLLAPSED = 1e-6; /* relative to the smaller area at the ends */
@@ -33,9 +29,8 @@ static bool is_flipped(const starg_mesh *mesh, const mesh_topology *topology,
 
 static starg_status count_faces(const starg_morph *m, const double *scaled,
                                 starg_frame_measures *out) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    STARG_TRY(topology_create(m->context, m->mesh, &topology));
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    TRY(topology_create(m->context, m->mesh, &topology));
     for (size_t f = 0; f < m->mesh->face_count; f++) {
         const uint32_t *corner = m->mesh->faces + 3 * f;
         double own[3], first[3], last[3];
@@ -48,18 +43,14 @@ static starg_status count_faces(const starg_morph *m, const double *scaled,
                          !is_flipped(m->mesh, topology, m->mesh->vertices, f) &&
                          !is_flipped(m->mesh, topology, m->images, f);
     }
-done:
-    topology_free(topology);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status size_of(const starg_morph *m, const double *positions, double *volume,
                             double *area) {
     starg_mesh *mesh = NULL;
-    starg_status status = starg_mesh_create(m->context, positions, m->mesh->vertex_count,
-                                            m->mesh->faces, m->mesh->face_count, &mesh);
-    if (status != STARG_OK)
-        return status;
+    TRY(starg_mesh_create(m->context, positions, m->mesh->vertex_count, m->mesh->faces,
+                          m->mesh->face_count, &mesh));
     *volume = starg_mesh_volume(mesh);
     *area = starg_mesh_area(mesh);
     starg_mesh_free(mesh);

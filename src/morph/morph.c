@@ -13,10 +13,6 @@
 #include "morph/morph.h"
 #include "core/fields.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/solid_path.h"
@@ -30,6 +26,8 @@ static const char *const METHODS[] = {"star", "arap", "linear", "spherical", "so
 static const starg_field OPTIONS[] = {
     {.key = "method",
      .option = "method",
+     .group = "search",
+     .brief = "star, arap, linear or solid",
      .kind = STARG_FIELD_CHOICE,
      FIELD_MEMBER(starg_morph_options, method),
      .words = METHODS,
@@ -40,6 +38,7 @@ static const starg_field OPTIONS[] = {
              "solid: tetrahedra inside are never inverted, at any time (needs TetGen)."},
     {.key = "candidates",
      .option = "candidates",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_morph_options, candidates),
      .least = 1,
@@ -62,9 +61,7 @@ void starg_morph_options_default(starg_morph_options *options) {
 
 static starg_status check_input(starg_context *context, const starg_mesh *a, const double *images,
                                 const starg_morph_options *options) {
-    starg_status status = fields_check(context, STAGE, &OPTIONS_TABLE, options);
-    if (status != STARG_OK)
-        return status;
+    TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     if (a->face_count == 0)
         return starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no faces");
     for (size_t i = 0; i < 3 * a->vertex_count; i++) {
@@ -101,21 +98,17 @@ static bool is_closed(const mesh_topology *topology) {
 
 /* The scale that brings A to the volume of the images; 1 if either volume is negligible. */
 static starg_status find_growth(starg_morph *m, double *growth) {
-    starg_status status = STARG_OK;
-    starg_mesh *other = NULL;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *other = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     *growth = 1;
-    STARG_TRY(starg_mesh_create(m->context, m->images, m->mesh->vertex_count, m->mesh->faces,
-                                m->mesh->face_count, &other));
-    STARG_TRY(topology_create(m->context, m->mesh, &topology));
+    TRY(starg_mesh_create(m->context, m->images, m->mesh->vertex_count, m->mesh->faces,
+                          m->mesh->face_count, &other));
+    TRY(topology_create(m->context, m->mesh, &topology));
     double ratio = starg_mesh_volume(other) / starg_mesh_volume(m->mesh);
     if (is_closed(topology) && starg_mesh_volume(m->mesh) > 0 && ratio * GROWTH_MOST > 1 &&
         ratio < GROWTH_MOST)
         *growth = cbrt(ratio);
-done:
-    topology_free(topology);
-    starg_mesh_free(other);
-    return status;
+    return STARG_OK;
 }
 
 double morph_size(const starg_morph *m, double t) {
@@ -160,37 +153,38 @@ done:
 
 starg_status starg_morph_create(starg_context *context, const starg_mesh *a, const double *images,
                                 const starg_morph_options *options, starg_morph **out) {
-    starg_status status = STARG_OK;
     starg_morph_options defaults;
-    starg_morph *m = NULL;
+    SCOPED_BY(starg_morph_drop) starg_morph *m = NULL;
+    bool stars = false; /* all is prepared */
     starg_morph_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(check_input(context, a, images, options));
-    STARG_NEW_ZERO(context, STAGE, m, 1);
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(check_input(context, a, images, options));
+    NEW_ZERO(context, STAGE, m, 1);
     m->context = context;
     m->method = options->method;
-    STARG_TRY(take_ends(m, a, images));
-    if (morph_has_guards(m))
-        STARG_TRY(morph_guard(m, options->candidates));
-    if (morph_is_rigid(m))
-        STARG_TRY(morph_prepare_faces(m));
-    if (m->method == STARG_MORPH_STAR) {
-        STARG_TRY(morph_fill_flipped(m));
-        STARG_TRY(morph_prepare_guards(m));
-    }
-    if (morph_is_rigid(m))
-        STARG_TRY(morph_prepare_rigid(m));
+    TRY(take_ends(m, a, images));
+    m->seen_from = options->centers;
     if (m->method == STARG_MORPH_SOLID)
-        STARG_TRY(morph_prepare_solid(m));
+        TRY(morph_prepare_stars(m, &stars));
+    if (morph_has_guards(m))
+        TRY(morph_guard(m, options->candidates));
+    if (morph_is_rigid(m) && !stars)
+        TRY(morph_prepare_faces(m));
+    if (m->method == STARG_MORPH_STAR) {
+        TRY(morph_fill_flipped(m));
+        TRY(morph_prepare_guards(m));
+    }
+    if (morph_is_rigid(m) && !stars)
+        TRY(morph_prepare_rigid(m));
+    if (m->method == STARG_MORPH_SOLID && !stars)
+        TRY(morph_prepare_solid(m));
+    m->seen_from = NULL;
     *out = m;
     m = NULL;
-done:
-    starg_time_end(context, former);
-    starg_morph_free(m);
-    return status;
+    return STARG_OK;
 }
 
 void starg_morph_free(starg_morph *m) {
@@ -203,7 +197,7 @@ void starg_morph_free(starg_morph *m) {
                             m->flipped,       m->late};
     starg_mesh_free(m->mesh);
     sparse_free(m->system);
-    solid_path_free(m->context, m->solid);
+    solid_path_free(m->solid);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(m->context, blocks[i]);
     starg_release(m->context, m);
@@ -219,32 +213,29 @@ static void unscale(const starg_morph *m, double t, double *positions) {
 }
 
 starg_status starg_morph_frame(const starg_morph *m, double t, double *positions) {
-    starg_status status = STARG_OK;
     size_t count = 3 * m->mesh->vertex_count;
     if (!(t >= 0 && t <= 1))
         return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE,
                           "time is %g; it must be in [0, 1]", t);
-    starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
-    STARG_TRY(starg_check_cancel(m->context, STAGE));
+    TIME_RULE(m->context, STARG_TIME_FAILS);
+    TRY(starg_check_cancel(m->context, STAGE));
     if (t == 0 || t == 1) {
         memcpy(positions, t == 0 ? m->source : m->target, count * sizeof *positions);
-        goto done;
+        return STARG_OK;
     }
     if (m->method == STARG_MORPH_LINEAR) {
         for (size_t i = 0; i < count; i++)
             positions[i] = (1 - t) * m->source[i] + t * m->target[i];
-        goto done;
+        return STARG_OK;
     }
     if (m->method == STARG_MORPH_SOLID) {
         morph_frame_solid(m, t, positions);
-        goto done;
+        return STARG_OK;
     }
-    STARG_TRY(m->method == STARG_MORPH_SPHERICAL ? morph_frame_spherical(m, t, positions)
-                                                 : morph_frame_rigid(m, t, positions));
+    TRY(m->method == STARG_MORPH_SPHERICAL ? morph_frame_spherical(m, t, positions)
+                                           : morph_frame_rigid(m, t, positions));
     unscale(m, t, positions);
-done:
-    starg_time_end(m->context, former);
-    return status;
+    return STARG_OK;
 }
 
 size_t starg_morph_guard_count(const starg_morph *m) {

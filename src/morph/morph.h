@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of a morph. */
-#ifndef STARG_MORPH_MORPH_H
-#define STARG_MORPH_MORPH_H
+#pragma once
 
 #include "mesh/mesh.h"
 #include "morph/triplets.h"
 #include "starguard/morph.h"
-#include "starguard/solid.h"
 
 /* Branch-and-bound nodes for guards. */
 enum { MORPH_COVER_NODES = 2000 };
@@ -62,6 +60,7 @@ struct starg_morph {
     uint8_t *guarded;                    /* per face: its guard sees it at both ends */
     guard_path *guard_paths;
     struct solid_path *solid; /* NULL for other methods */
+    const double *seen_from;  /* 2 x 3, of the options; only while it is made */
 };
 
 /* Chooses corresponding guards and pieces (consistent.c). */
@@ -101,9 +100,9 @@ starg_status morph_prepare_guards(starg_morph *m);
 /* Spherical coordinates about the guards (spherical.c). */
 starg_status morph_frame_spherical(const starg_morph *m, double t, double *out);
 
-/* The path of tetrahedra, along the frames of the rigid morph; shapes at t in (0, 1)
- * (solid_path.c).
- */
+/* The path of tetrahedra: cones of two star-shaped ends, which prepares all (*found), or along the
+ * frames of the rigid morph, which come first; shapes at t in (0, 1) (solid_path.c). */
+starg_status morph_prepare_stars(starg_morph *m, bool *found);
 starg_status morph_prepare_solid(starg_morph *m);
 void morph_frame_solid(const starg_morph *m, double t, double *out);
 
@@ -117,4 +116,4 @@ static inline bool morph_has_guards(const starg_morph *m) {
     return m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_SPHERICAL;
 }
 
-#endif
+STARG_DROP(starg_morph, starg_morph)

@@ -19,7 +19,6 @@
 #include "morph/overlay.h"
 
 #include <float.h>
-#include <math.h>
 
 #include "core/rng.h"
 #include "geometry/predicates.h"
@@ -66,19 +65,16 @@ static starg_status check_side(starg_context *context, const overlay_side *side,
 
 static starg_status make_side(starg_context *context, const starg_mesh *mesh,
                               const double *directions, int index, overlay_side *side) {
-    starg_status status = STARG_OK;
     size_t size = 3 * mesh->face_count;
     *side = (overlay_side){.mesh = mesh, .directions = directions};
-    STARG_NEW(context, STAGE, side->faces, size);
+    NEW(context, STAGE, side->faces, size);
     memcpy(side->faces, mesh->faces, size * sizeof *side->faces);
     if (face_sign(side, 0) < 0)
         reverse_faces(side);
     starg_mesh oriented = *mesh;
     oriented.faces = side->faces;
-    STARG_TRY(topology_create(context, &oriented, &side->topology));
-    STARG_TRY(check_side(context, side, index));
-done:
-    return status;
+    TRY(topology_create(context, &oriented, &side->topology));
+    return check_side(context, side, index);
 }
 
 /* ---- one pair of faces ---- */
@@ -283,15 +279,13 @@ static bool is_crowded(size_t used, size_t slots) {
 }
 
 static starg_status grow_slots(starg_context *context, uint32_t **slots, size_t *count) {
-    starg_status status = STARG_OK;
     uint32_t *fresh = NULL;
     size_t wanted = *count == 0 ? 1024 : 2 * *count;
-    STARG_NEW_ZERO(context, STAGE, fresh, wanted);
+    NEW_ZERO(context, STAGE, fresh, wanted);
     starg_release(context, *slots);
     *slots = fresh;
     *count = wanted;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The slot of a node, or the free one for it. A vertex has one place on the other side, so that the
@@ -309,21 +303,19 @@ static uint32_t *node_slot(const spreader *s, const uint64_t key[2]) {
 }
 
 static starg_status find_node(spreader *s, const overlay_node *node, uint32_t *index) {
-    starg_status status = STARG_OK;
     sphere_overlay *own = s->own;
     if (is_crowded(own->nodes.count, s->slot_count)) {
-        STARG_TRY(grow_slots(own->context, &s->slots, &s->slot_count));
+        TRY(grow_slots(own->context, &s->slots, &s->slot_count));
         for (uint32_t i = 0; i < own->nodes.count; i++)
             *node_slot(s, own->nodes.data[i].key) = i + 1;
     }
     uint32_t *slot = node_slot(s, node->key);
     if (*slot == 0) {
-        STARG_PUSH(own->context, STAGE, &own->nodes, *node);
+        PUSH(own->context, STAGE, &own->nodes, *node);
         *slot = (uint32_t)own->nodes.count;
     }
     *index = *slot - 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- spreading ---- */
@@ -336,21 +328,19 @@ static uint32_t *pair_slot(const spreader *s, uint64_t pair) {
 }
 
 static starg_status reach(spreader *s, uint32_t a, uint32_t b) {
-    starg_status status = STARG_OK;
     starg_context *context = s->own->context;
     uint64_t pair = (uint64_t)a << 32 | b;
     if (is_crowded(s->pairs.count, s->pair_slot_count)) {
-        STARG_TRY(grow_slots(context, &s->pair_slots, &s->pair_slot_count));
+        TRY(grow_slots(context, &s->pair_slots, &s->pair_slot_count));
         for (uint32_t i = 0; i < s->pairs.count; i++)
             *pair_slot(s, s->pairs.data[i]) = i + 1;
     }
     uint32_t *slot = pair_slot(s, pair);
     if (*slot != 0)
         return STARG_OK;
-    STARG_PUSH(context, STAGE, &s->pairs, pair);
+    PUSH(context, STAGE, &s->pairs, pair);
     *slot = (uint32_t)s->pairs.count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The face of a side beyond the edges of a way; the face itself if none is of this side. */
@@ -363,7 +353,6 @@ static uint32_t face_beyond(const overlay_side *side, int s, uint32_t face, unsi
 
 /* Makes the cell of a pair, and reaches its neighbours. */
 static starg_status make_cell(spreader *s, const pair_meeting *pair) {
-    starg_status status = STARG_OK;
     sphere_overlay *own = s->own;
     overlay_cell cell = {.face = {pair->face[0], pair->face[1]}};
     size_t next[15] = {0};
@@ -372,14 +361,13 @@ static starg_status make_cell(spreader *s, const pair_meeting *pair) {
     size_t at = 0;
     do {
         const overlay_node node = make_node(own, pair, &pair->at[at]);
-        STARG_TRY(find_node(s, &node, &cell.corner[cell.count++]));
-        STARG_TRY(reach(s, face_beyond(&own->side[0], 0, cell.face[0], along[at]),
-                        face_beyond(&own->side[1], 1, cell.face[1], along[at])));
+        TRY(find_node(s, &node, &cell.corner[cell.count++]));
+        TRY(reach(s, face_beyond(&own->side[0], 0, cell.face[0], along[at]),
+                  face_beyond(&own->side[1], 1, cell.face[1], along[at])));
         at = next[at];
     } while (at != 0 && cell.count < OVERLAY_CORNERS);
-    STARG_PUSH(own->context, STAGE, &own->cells, cell);
-done:
-    return status;
+    PUSH(own->context, STAGE, &own->cells, cell);
+    return STARG_OK;
 }
 
 /* The first face of B that shares a part of face 0 of A with an interior. */
@@ -396,17 +384,15 @@ static starg_status begin(spreader *s) {
 }
 
 static starg_status spread(spreader *s) {
-    starg_status status = STARG_OK;
-    STARG_TRY(begin(s));
+    TRY(begin(s));
     for (size_t i = 0; i < s->pairs.count; i++) {
         pair_meeting pair = {
             .face = {(uint32_t)(s->pairs.data[i] >> 32), (uint32_t)s->pairs.data[i]}};
-        STARG_TRY(starg_check_cancel(s->own->context, STAGE));
+        TRY(starg_check_cancel(s->own->context, STAGE));
         find_meetings(s->own, &pair);
-        STARG_TRY(make_cell(s, &pair));
+        TRY(make_cell(s, &pair));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status overlay_create(starg_context *context, const starg_mesh *const meshes[2],
@@ -424,9 +410,7 @@ starg_status overlay_create(starg_context *context, const starg_mesh *const mesh
     *out = own;
     own = NULL;
 done:
-    starg_release(context, s.slots);
-    starg_release(context, s.pair_slots);
-    STARG_ARRAY_FREE(context, &s.pairs);
+    RELEASE(s.slots, s.pair_slots, s.pairs.data);
     overlay_free(own);
     return status;
 }
@@ -438,7 +422,5 @@ void overlay_free(sphere_overlay *own) {
         starg_release(own->context, own->side[i].faces);
         topology_free(own->side[i].topology);
     }
-    STARG_ARRAY_FREE(own->context, &own->nodes);
-    STARG_ARRAY_FREE(own->context, &own->cells);
-    starg_release(own->context, own);
+    RELEASE(own->nodes.data, own->cells.data, own);
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of the overlay of two triangulations of the sphere. */
-#ifndef STARG_MORPH_OVERLAY_H
-#define STARG_MORPH_OVERLAY_H
+#pragma once
 
-#include "core/memory.h"
 #include "mesh/topology.h"
 
 enum { OVERLAY_CORNERS = 6 }; /* of the intersection of two triangles, at most */
@@ -48,6 +46,7 @@ typedef struct sphere_overlay {
 starg_status overlay_create(starg_context *context, const starg_mesh *const meshes[2],
                             const double *const directions[2], sphere_overlay **out);
 void overlay_free(sphere_overlay *own);
+STARG_DROP(overlay, sphere_overlay)
 
 /* Changes the directions of an embedding of A so that the faces of B, on the same vertices, are
  * positive as well, as far as it can (overlay_share.c). Errors: MEMORY, CANCELLED. */
@@ -55,8 +54,6 @@ starg_status overlay_share(starg_context *context, const starg_mesh *a, const st
                            double *directions);
 
 /* Moves nodes within their faces and along their edges so that the cells can be cut into triangles
- * about their first corners, exactly positive on both sides (overlay_room.c). Errors: SOLVER (too
- * thin for doubles), MEMORY, CANCELLED. */
-starg_status overlay_make_room(sphere_overlay *own);
-
-#endif
+ * about their first corners, exactly positive on both sides (overlay_room.c); *moved: any had to.
+ * Errors: SOLVER (too thin for doubles), MEMORY, CANCELLED. */
+starg_status overlay_make_room(sphere_overlay *own, bool *moved);

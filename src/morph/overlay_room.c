@@ -12,7 +12,6 @@
  * has only convex cells. Few faces have bad cells, and a few steps do, so that the overlay stays
  * where it was in all others. Cost: O(cells) for each round. */
 #include <float.h>
-#include <math.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -205,11 +204,12 @@ static double size_of(const starg_mesh *mesh) {
     return size;
 }
 
-starg_status overlay_make_room(sphere_overlay *own) {
+starg_status overlay_make_room(sphere_overlay *own, bool *moved) {
     starg_status status = STARG_OK;
     starg_context *context = own->context;
     room r = {.own = own};
     size_t broken = 0, bad = 1;
+    *moved = false;
     for (int s = 0; s < 2; s++) {
         r.size[s] = size_of(own->side[s].mesh);
         STARG_NEW(context, STAGE, r.position[s], 3 * own->nodes.count);
@@ -221,6 +221,7 @@ starg_status overlay_make_room(sphere_overlay *own) {
         broken = examine(&r, &bad);
         if (bad == 0)
             break;
+        *moved = true;
         for (int i = 0; i < STEPS; i++) {
             step(&r, 0);
             step(&r, 1);
@@ -235,8 +236,7 @@ starg_status overlay_make_room(sphere_overlay *own) {
                             broken, own->cells.count);
 done:
     for (int s = 0; s < 2; s++) {
-        starg_release(context, r.position[s]);
-        starg_release(context, r.bad[s]);
+        RELEASE(r.position[s], r.bad[s]);
     }
     starg_release(context, r.sum);
     return status;

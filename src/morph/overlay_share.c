@@ -11,8 +11,6 @@
  */
 #include "morph/overlay.h"
 
-#include <math.h>
-
 #include "geometry/linear_program.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -45,22 +43,20 @@ static void add_faces(common *c, const starg_mesh *mesh) {
 }
 
 static starg_status gather(common *c, const starg_mesh *a, const starg_mesh *b) {
-    starg_status status = STARG_OK;
     size_t count = a->face_count + b->face_count;
-    STARG_NEW(c->context, STAGE, c->faces, 3 * count);
+    NEW(c->context, STAGE, c->faces, 3 * count);
     add_faces(c, a);
     add_faces(c, b);
-    STARG_NEW_ZERO(c->context, STAGE, c->start, c->vertex_count + 2);
-    STARG_NEW(c->context, STAGE, c->at, 3 * count);
-    STARG_NEW(c->context, STAGE, c->moving, c->vertex_count);
+    NEW_ZERO(c->context, STAGE, c->start, c->vertex_count + 2);
+    NEW(c->context, STAGE, c->at, 3 * count);
+    NEW(c->context, STAGE, c->moving, c->vertex_count);
     for (size_t i = 0; i < 3 * count; i++)
         c->start[c->faces[i] + 2]++;
     for (size_t v = 2; v < c->vertex_count + 2; v++)
         c->start[v] += c->start[v - 1];
     for (size_t i = 0; i < 3 * count; i++)
         c->at[c->start[c->faces[i] + 1]++] = (uint32_t)i;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static const double *direction_of(const common *c, uint32_t corner) {
@@ -97,7 +93,6 @@ static void widen(common *c) {
 /* The side of a face opposite to a corner: rows of "at least t from its plane, on the inner side".
  */
 static starg_status add_row(common *c, uint32_t corner) {
-    starg_status status = STARG_OK;
     double n[3];
     vec3_cross(direction_of(c, corner_next(corner)), direction_of(c, corner_previous(corner)), n);
     double length = vec3_length(n);
@@ -106,10 +101,9 @@ static starg_status add_row(common *c, uint32_t corner) {
     double scale = -1 / (length * sqrt(2));
     const double row[5] = {scale * n[0], scale * n[1], scale * n[2], sqrt(0.5), 0};
     for (int k = 0; k < 5; k++)
-        STARG_PUSH(c->context, STAGE, &c->rows, row[k]);
-    STARG_PUSH(c->context, STAGE, &c->order, 0);
-done:
-    return status;
+        PUSH(c->context, STAGE, &c->rows, row[k]);
+    PUSH(c->context, STAGE, &c->order, 0);
+    return STARG_OK;
 }
 
 static double least_distance(const common *c, const double x[3]) {
@@ -120,12 +114,11 @@ static double least_distance(const common *c, const double x[3]) {
 }
 
 static starg_status move(common *c, uint32_t v) {
-    starg_status status = STARG_OK;
     double *x = c->directions + 3 * (size_t)v, moved[3];
     linear_solution solution;
     c->rows.count = c->order.count = 0;
     for (size_t i = c->start[v]; i < c->start[v + 1]; i++)
-        STARG_TRY(add_row(c, c->at[i]));
+        TRY(add_row(c, c->at[i]));
     const linear_program program = {.dimension = 4,
                                     .rows = c->rows.data,
                                     .count = c->order.count,
@@ -140,8 +133,7 @@ static starg_status move(common *c, uint32_t v) {
         moved[k] = solution.point[k] / length;
     if (least_distance(c, moved) > least_distance(c, x))
         vec3_copy(moved, x);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status overlay_share(starg_context *context, const starg_mesh *a, const starg_mesh *b,
@@ -157,11 +149,6 @@ starg_status overlay_share(starg_context *context, const starg_mesh *a, const st
                 STARG_TRY(move(&c, v));
     }
 done:
-    starg_release(context, c.faces);
-    starg_release(context, c.start);
-    starg_release(context, c.at);
-    starg_release(context, c.moving);
-    STARG_ARRAY_FREE(context, &c.rows);
-    STARG_ARRAY_FREE(context, &c.order);
+    RELEASE(c.faces, c.start, c.at, c.moving, c.rows.data, c.order.data);
     return status;
 }

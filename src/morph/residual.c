@@ -8,9 +8,7 @@
  * high power of t. Without folds the residual is rounding error and is not split.
  *
  * Cost: one more sparse factorization. */
-#include <math.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "morph/morph.h"
 
@@ -20,11 +18,10 @@ static const double LEAST_MASS = 1e-18; /* of a vertex whose faces have no area 
 enum { LATE = 8 };                      /* the power of t */
 
 static starg_status make_system(const starg_morph *m, double *masses, sparse_factors **out) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = m->mesh;
-    triplet *triplets = NULL, *next;
-    STARG_NEW(m->context, STAGE, triplets,
-              3 * EDGE_TRIPLETS * mesh->face_count + mesh->vertex_count);
+    SCOPED triplet *triplets = NULL;
+    triplet *next;
+    NEW(m->context, STAGE, triplets, 3 * EDGE_TRIPLETS * mesh->face_count + mesh->vertex_count);
     next = triplets;
     for (size_t f = 0; f < mesh->face_count; f++) {
         const uint32_t *c = mesh->faces + 3 * f;
@@ -41,24 +38,20 @@ static starg_status make_system(const starg_morph *m, double *masses, sparse_fac
         masses[v] = fmax(masses[v], LEAST_MASS);
         *next++ = (triplet){v, v, masses[v]};
     }
-    STARG_TRY(triplets_factorise(m->context, mesh->vertex_count, triplets,
-                                 (size_t)(next - triplets), out));
-done:
-    starg_release(m->context, triplets);
-    return status;
+    return triplets_factorise(m->context, mesh->vertex_count, triplets, (size_t)(next - triplets),
+                              out);
 }
 
 starg_status morph_part_residual(starg_morph *m) {
-    starg_status status = STARG_OK;
     size_t count = m->mesh->vertex_count;
-    double *masses = NULL, *values = NULL;
-    sparse_factors *system = NULL;
+    SCOPED double *masses = NULL, *values = NULL;
+    SCOPED_BY(sparse_drop) sparse_factors *system = NULL;
     if (m->flipped_count == 0)
         return STARG_OK;
-    STARG_NEW_ZERO(m->context, STAGE, masses, count);
-    STARG_NEW(m->context, STAGE, values, 2 * count);
-    STARG_NEW(m->context, STAGE, m->late, 3 * count);
-    STARG_TRY(make_system(m, masses, &system));
+    NEW_ZERO(m->context, STAGE, masses, count);
+    NEW(m->context, STAGE, values, 2 * count);
+    NEW(m->context, STAGE, m->late, 3 * count);
+    TRY(make_system(m, masses, &system));
     for (size_t k = 0; k < 3; k++) {
         for (size_t v = 0; v < count; v++)
             values[v] = masses[v] * m->residual[3 * v + k];
@@ -68,11 +61,7 @@ starg_status morph_part_residual(starg_morph *m) {
             m->residual[3 * v + k] = values[v];
         }
     }
-done:
-    sparse_free(system);
-    starg_release(m->context, masses);
-    starg_release(m->context, values);
-    return status;
+    return STARG_OK;
 }
 
 void morph_add_residual(const starg_morph *m, double t, double *out) {

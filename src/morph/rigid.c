@@ -13,10 +13,7 @@
  * The difference to B at t = 1, the non-rigid part of [YL11], is added (residual.c).
  *
  * Cost of a frame: O(faces) and three solves. */
-#include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
@@ -91,41 +88,36 @@ static triplet *put_guards(const starg_morph *m, triplet *next) {
 /* Components are named by their lowest unknown, which is fixed, as is any unknown without
  * weights. */
 static starg_status name_parts(starg_morph *m, const triplet *triplets, size_t count) {
-    starg_status status = STARG_OK;
-    STARG_NEW(m->context, STAGE, m->component, m->unknowns);
+    NEW(m->context, STAGE, m->component, m->unknowns);
     sets_make(m->component, m->unknowns);
     for (size_t i = 0; i < count; i++)
         if (triplets[i].value != 0)
             sets_join(m->component, triplets[i].row, triplets[i].column);
     for (uint32_t v = 0; v < m->unknowns; v++)
         m->component[v] = sets_find(m->component, v);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status make_system(starg_morph *m) {
-    starg_status status = STARG_OK;
     size_t faces = m->mesh->face_count, most;
-    triplet *triplets = NULL, *next;
+    SCOPED triplet *triplets = NULL;
+    triplet *next;
     m->tree_guards = m->method == STARG_MORPH_STAR ? m->guard_count : 0;
     m->unknowns = m->mesh->vertex_count + m->tree_guards;
     most = FACE_TRIPLETS * faces + EDGE_TRIPLETS * m->tree_guards + m->unknowns;
-    STARG_NEW(m->context, STAGE, m->weights, FACE_WEIGHTS * faces);
-    STARG_NEW(m->context, STAGE, triplets, most);
+    NEW(m->context, STAGE, m->weights, FACE_WEIGHTS * faces);
+    NEW(m->context, STAGE, triplets, most);
     next = triplets;
     for (size_t f = 0; f < faces; f++) {
         weigh_face(m, f, m->weights + FACE_WEIGHTS * f);
         next = put_face(m, f, next);
     }
     next = put_guards(m, next);
-    STARG_TRY(name_parts(m, triplets, (size_t)(next - triplets)));
+    TRY(name_parts(m, triplets, (size_t)(next - triplets)));
     for (uint32_t v = 0; v < m->unknowns; v++)
         *next++ = (triplet){v, v, m->component[v] == v ? 1 : 0};
-    STARG_TRY(triplets_factorise(m->context, m->unknowns, triplets, (size_t)(next - triplets),
-                                 &m->system));
-done:
-    starg_release(m->context, triplets);
-    return status;
+    return triplets_factorise(m->context, m->unknowns, triplets, (size_t)(next - triplets),
+                              &m->system);
 }
 
 /* ---- frames ---- */
@@ -198,10 +190,9 @@ static void add_guards(const starg_morph *m, const double whole[9], double t, co
 
 /* Translates every component so that the mean of its unknowns moves straight from A to B. */
 static starg_status center_parts(const starg_morph *m, double t, const sides *s) {
-    starg_status status = STARG_OK;
     size_t count = m->mesh->vertex_count;
-    double *sums = NULL;
-    STARG_NEW_ZERO(m->context, STAGE, sums, 4 * m->unknowns);
+    SCOPED double *sums = NULL;
+    NEW_ZERO(m->context, STAGE, sums, 4 * m->unknowns);
     for (size_t v = 0; v < m->unknowns; v++) {
         const double *p = v < count ? m->mesh->vertices + 3 * v : m->places[0] + 3 * (v - count);
         const double *q = v < count ? m->images + 3 * v : m->places[1] + 3 * (v - count);
@@ -214,9 +205,7 @@ static starg_status center_parts(const starg_morph *m, double t, const sides *s)
         const double *sum = sums + 4 * (size_t)m->component[v];
         add(s, v, 1 / sum[3], sum);
     }
-done:
-    starg_release(m->context, sums);
-    return status;
+    return STARG_OK;
 }
 
 /* All unknowns at t; `out` receives the vertices. */
@@ -237,28 +226,22 @@ static starg_status rigid_part(const starg_morph *m, double t, double *out) {
         for (size_t c = 0; c < 3; c++)
             out[3 * v + c] = s.values[c * s.count + v];
 done:
-    starg_release(m->context, s.values);
-    starg_release(m->context, work);
+    RELEASE(s.values, work);
     return status;
 }
 
 starg_status morph_prepare_rigid(starg_morph *m) {
-    starg_status status = STARG_OK;
     size_t size = 3 * m->mesh->vertex_count;
-    STARG_TRY(make_system(m));
-    STARG_NEW(m->context, STAGE, m->residual, size);
-    STARG_TRY(rigid_part(m, 1, m->residual));
+    TRY(make_system(m));
+    NEW(m->context, STAGE, m->residual, size);
+    TRY(rigid_part(m, 1, m->residual));
     for (size_t i = 0; i < size; i++)
         m->residual[i] = m->images[i] - m->residual[i];
-    STARG_TRY(morph_part_residual(m));
-done:
-    return status;
+    return morph_part_residual(m);
 }
 
 starg_status morph_frame_rigid(const starg_morph *m, double t, double *out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(rigid_part(m, t, out));
+    TRY(rigid_part(m, t, out));
     morph_add_residual(m, t, out);
-done:
-    return status;
+    return STARG_OK;
 }

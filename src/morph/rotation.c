@@ -2,7 +2,6 @@
 /* Rotations from 3 x 3 matrices, for morphing [ACOL00]. */
 #include "morph/rotation.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "geometry/vec3.h"

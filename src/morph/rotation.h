@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* 3 x 3 matrices, row-major: rotations, and the rotational part of other maps. */
-#ifndef STARG_MORPH_ROTATION_H
-#define STARG_MORPH_ROTATION_H
+#pragma once
 
 /* Eigenvalues of a symmetric matrix in descending order, unit eigenvectors in the columns of
  * `vectors`, a right-handed frame. By Jacobi rotations. */
@@ -24,5 +23,3 @@ void matrix_multiply_transposed(const double a[9], const double b[9], double out
 
 /* out = m v; out may be v. */
 void matrix_apply(const double m[9], const double v[3], double out[3]);
-
-#endif

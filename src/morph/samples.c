@@ -3,10 +3,7 @@
  * number or a vector. '#' begins a comment. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "mesh/formats/io.h"
 #include "morph/parse_numbers.h"
 #include "starguard/solidmap.h"
@@ -32,7 +29,6 @@ static starg_status fail_line(const reader *r, const char *what) {
 }
 
 static starg_status take_line(reader *r, char *line) {
-    starg_status status = STARG_OK;
     double values[VALUES_MOST] = {0};
     size_t found = parse_numbers(line, values, VALUES_MOST);
     r->line++;
@@ -46,28 +42,25 @@ static starg_status take_line(reader *r, char *line) {
     for (size_t k = 0; k < POINT; k++) {
         if (!(fabs(values[k]) < STARG_COORDINATE_LIMIT))
             return fail_line(r, "has a coordinate that is not below 1e100 in magnitude");
-        STARG_PUSH(r->context, STAGE, &r->points, values[k]);
+        PUSH(r->context, STAGE, &r->points, values[k]);
     }
     for (size_t k = POINT; k < found; k++)
-        STARG_PUSH(r->context, STAGE, &r->values, values[k]);
-done:
-    return status;
+        PUSH(r->context, STAGE, &r->values, values[k]);
+    return STARG_OK;
 }
 
 static starg_status take_lines(reader *r, char *bytes, size_t size) {
-    starg_status status = STARG_OK;
     if (memchr(bytes, '\0', size) != NULL)
         return fail_line(r, "is not text");
     for (char *line = bytes, *next; line != NULL; line = next) {
         next = strchr(line, '\n');
         if (next != NULL)
             *next++ = '\0';
-        STARG_TRY(take_line(r, line));
+        TRY(take_line(r, line));
     }
     if (r->columns == 0)
         return starg_fail(r->context, STARG_ERROR_FORMAT, STAGE, "'%.200s' has no points", r->path);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_samples_read(starg_context *context, const char *path, starg_samples **out) {
@@ -90,25 +83,21 @@ starg_status starg_samples_read(starg_context *context, const char *path, starg_
     *out = samples;
 done:
     starg_c_locale_leave(&locale);
-    starg_release(context, bytes);
-    STARG_ARRAY_FREE(context, &r.points);
-    STARG_ARRAY_FREE(context, &r.values);
+    RELEASE(bytes, r.points.data, r.values.data);
     return status;
 }
 
 void starg_samples_free(starg_context *context, starg_samples *samples) {
+    (void)context;
     if (samples == NULL)
         return;
-    starg_release(context, samples->points);
-    starg_release(context, samples->values);
-    starg_release(context, samples);
+    RELEASE(samples->points, samples->values, samples);
 }
 
 starg_status starg_samples_write(starg_context *context, const starg_samples *samples,
                                  const char *path) {
-    starg_status status = STARG_OK;
     starg_output output;
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    TRY(starg_output_open(context, STAGE, path, &output));
     for (size_t i = 0; i < samples->count; i++) {
         const double *p = samples->points + POINT * i;
         fprintf(output.stream, "%.17g %.17g %.17g", p[0], p[1], p[2]);
@@ -116,7 +105,5 @@ starg_status starg_samples_write(starg_context *context, const starg_samples *sa
             fprintf(output.stream, " %.17g", samples->values[samples->width * i + k]);
         fputc('\n', output.stream);
     }
-    STARG_TRY(starg_output_commit(&output));
-done:
-    return status;
+    return starg_output_commit(&output);
 }

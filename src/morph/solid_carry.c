@@ -8,10 +8,7 @@
  * the Jacobian of the tetrahedron.
  *
  * Cost: O(1) for a point, if tetrahedra are about as large as cells. */
-#include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "starguard/solidmap.h"
@@ -77,7 +74,6 @@ static size_t visit(locator *l, bool fill) {
 }
 
 static starg_status make_grid(starg_context *context, locator *l) {
-    starg_status status = STARG_OK;
     const starg_solid_map *map = l->map;
     double per_axis = ceil(cbrt((double)map->count));
     size_t total = 1;
@@ -92,14 +88,13 @@ static starg_status make_grid(starg_context *context, locator *l) {
         l->width[k] = upper / (double)l->side[k] - l->lower[k] / (double)l->side[k];
         total *= l->side[k];
     }
-    STARG_NEW_ZERO(context, STAGE, l->first, total + 2);
+    NEW_ZERO(context, STAGE, l->first, total + 2);
     size_t count = visit(l, false);
-    STARG_NEW(context, STAGE, l->items, count);
+    NEW(context, STAGE, l->items, count);
     for (size_t i = 0; i < total; i++)
         l->first[i + 2] += l->first[i + 1];
     visit(l, true);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- points ---- */
@@ -213,7 +208,6 @@ starg_status starg_solid_map_carry(starg_context *context, const starg_solid_map
     carried = NULL;
 done:
     starg_samples_free(context, carried);
-    starg_release(context, l.first);
-    starg_release(context, l.items);
+    RELEASE(l.first, l.items);
     return status;
 }

@@ -10,6 +10,7 @@ enum { STEPS = 400, STEPS_MOST = 1000000 };
 static const starg_field OPTIONS[] = {
     {.key = "steps",
      .option = "steps",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_solid_map_options, steps),
      .most = STEPS_MOST,
@@ -18,6 +19,7 @@ static const starg_field OPTIONS[] = {
      .help = "With --solid: steps of descent in each solid that lower the distortion."},
     {.key = "density",
      .option = "density",
+     .group = "search",
      .kind = STARG_FIELD_REAL,
      FIELD_MEMBER(starg_solid_map_options, density),
      .high = DENSITY_MOST,

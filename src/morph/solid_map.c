@@ -1,33 +1,35 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Maps between solids: the same tetrahedra in two places.
  *
- * Problem: the surface of B is given in A's connectivity. Find tetrahedra with that boundary that
- * are positive in A and in B, for surfaces of any genus; so that the map that is linear on each is
- * a homeomorphism of the solids.
+ * Problem: the surfaces of A and B are given with the same faces, or with a map and its overlay.
+ * Find tetrahedra with that boundary that are positive in A and in B; so that the map that is
+ * linear on each is a homeomorphism of the solids.
  *
- * Stages: fill A (solids.c); let the tetrahedra follow an as-rigid-as-possible morph to B
- * (deform.c), and where that ends too soon, put the surface into place and unfold (unfold.c); where
- * B in A's faces meets itself or tetrahedra stay inverted, come as near to it as they allow
- * (approach.c); lower the distortion by moving inner vertices in B, then in A; find pieces that are
- * star-shaped in both (star/compatible/compatible.c); measure. With an overlay of the surfaces: as
- * before to B in A's connectivity, which may meet itself; then divide the tetrahedra along the
- * overlay (solid_overlay.c), and put its corners into place on B.
+ * Stages with an overlay: cones about a point of each kernel (solid_stars.c), or in pieces that are
+ * star-shaped in both (star/compatible/cones.c). If there are none, to B in A's connectivity as
+ * below, which may meet itself; then divide the tetrahedra along the overlay (solid_overlay.c), and
+ * put its corners into place on B.
+ *
+ * With equal faces, of any genus: fill A (solids.c); let the tetrahedra follow an
+ * as-rigid-as-possible morph to B (deform.c), and where that ends too soon, put the surface into
+ * place and unfold (unfold.c). If B in A's faces need not be met: where it meets itself or
+ * tetrahedra stay inverted, come as near to it as they allow (approach.c).
+ *
+ * Then lower the distortion by moving inner vertices in B, then in A; find pieces that are
+ * star-shaped in both (star/compatible/compatible.c), or join those of cones; measure.
  *
  * Invariant: at the end all tetrahedra are positive in both, by exact signs. Their boundary in A,
  * and in B where the surface has its final place, is checked to be embedded; so the tetrahedra fill
  * both. Cost: that of its stages. */
-#include "starguard/solidmap.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "morph/solid_map.h"
 #include "core/fields.h"
-#include "core/memory.h"
 #include "geometry/singular_values.h"
 #include "geometry/vec3.h"
+#include "mesh/solid.h"
 #include "morph/approach.h"
 #include "morph/morph.h"
-#include "morph/solid_map.h"
+#include "morph/solid_stars.h"
 #include "morph/solids.h"
 #include "morph/unfold.h"
 #include "star/compatible/compatible.h"
@@ -56,36 +58,30 @@ static unfold_problem problem_of(deform_mesh *c, int free_end) {
 
 /* The edges of inverted tetrahedra that are not on the surface. */
 static starg_status split_inverted(deform_mesh *c) {
-    starg_status status = STARG_OK;
     const unfold_problem p = problem_of(c, 1);
-    STARG_ARRAY(deform_edge) edges = {0};
+    SCOPED STARG_ARRAY(deform_edge) edges = {0};
     for (size_t i = 0; i < 6 * p.count; i++) {
         uint32_t a = p.tetrahedra[i / 6 * 4 + (size_t)DEFORM_EDGES[i % 6][0]];
         uint32_t b = p.tetrahedra[i / 6 * 4 + (size_t)DEFORM_EDGES[i % 6][1]];
         if ((a >= c->fixed || b >= c->fixed) && !unfold_is_positive(&p, i / 6))
-            STARG_PUSH(c->context, STAGE, &edges, deform_edge_of(a, b));
+            PUSH(c->context, STAGE, &edges, deform_edge_of(a, b));
     }
     deform_edges_sort(edges.data, &edges.count);
-    STARG_TRY(deform_split(c, edges.data, edges.count));
-done:
-    STARG_ARRAY_FREE(c->context, &edges);
-    return status;
+    return deform_split(c, edges.data, edges.count);
 }
 
 /* Puts the surface into place at once, and all vertices inside along with it; then moves these
  * until nothing is inverted. Where that does not do, there are more of them. */
 static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, size_t *inverted) {
-    starg_status status = STARG_OK;
-    STARG_TRY(deform_harmonic(m, c));
+    TRY(deform_harmonic(m, c));
     for (int round = 0; round < ROUNDS; round++) {
         const unfold_problem p = problem_of(c, 1);
-        STARG_TRY(unfold(&p, UNFOLD_STEPS, inverted));
+        TRY(unfold(&p, UNFOLD_STEPS, inverted));
         if (*inverted == 0 || *inverted > p.count / FEW) /* not a matter of single vertices */
             break;
-        STARG_TRY(split_inverted(c));
+        TRY(split_inverted(c));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status fail_inverted(const deform_mesh *c, size_t inverted) {
@@ -98,17 +94,15 @@ static starg_status fail_inverted(const deform_mesh *c, size_t inverted) {
 
 /* Along a morph, or at once, to B itself. */
 static starg_status spread(const starg_morph *m, deform_mesh *c, size_t *inverted) {
-    starg_status status = STARG_OK;
     double reached = 0;
     *inverted = 0;
     if (m->method == STARG_MORPH_ARAP)
-        STARG_TRY(deform(m, c, NULL, inverted, &reached));
+        TRY(deform(m, c, NULL, inverted, &reached));
     else
         memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
     if (reached < 1)
-        STARG_TRY(unfold_at_end(m, c, inverted));
-done:
-    return status;
+        TRY(unfold_at_end(m, c, inverted));
+    return STARG_OK;
 }
 
 static starg_status spread_exactly(const starg_morph *m, deform_mesh *c) {
@@ -127,19 +121,14 @@ static starg_status make_morph(starg_context *context, const starg_mesh *a, cons
 
 /* Does the surface of the tetrahedra in B meet itself? */
 static starg_status image_meets_itself(const starg_mesh *a, const deform_mesh *c, bool *out) {
-    starg_status status = STARG_OK;
-    starg_morph *last = NULL;
-    double *images = NULL;
-    STARG_NEW(c->context, STAGE, images, 3 * a->vertex_count);
+    SCOPED_BY(starg_morph_drop) starg_morph *last = NULL;
+    SCOPED double *images = NULL;
+    NEW(c->context, STAGE, images, 3 * a->vertex_count);
     memcpy(images, a->vertices, 3 * a->vertex_count * sizeof *images);
     for (size_t v = 0; v < c->fixed; v++)
         vec3_copy(c->now.data + 3 * v, images + 3 * (size_t)c->surface[v]);
-    STARG_TRY(make_morph(c->context, a, images, STARG_MORPH_LINEAR, &last));
-    STARG_TRY(solids_last_meets_itself(last, out));
-done:
-    starg_morph_free(last);
-    starg_release(c->context, images);
-    return status;
+    TRY(make_morph(c->context, a, images, STARG_MORPH_LINEAR, &last));
+    return solids_last_meets_itself(last, out);
 }
 
 static starg_status fail_nearly(const deform_mesh *c, const approach_result *off) {
@@ -179,59 +168,50 @@ done:
 
 /* To B itself if that is possible, else near it. */
 static starg_status spread_or_approach(const starg_morph *m, deform_mesh *c, approach_result *off) {
-    starg_status status = STARG_OK;
     size_t inverted = 0;
     bool meets_itself;
-    STARG_TRY(solids_last_meets_itself(m, &meets_itself));
+    TRY(solids_last_meets_itself(m, &meets_itself));
     if (!meets_itself)
-        STARG_TRY(spread(m, c, &inverted));
+        TRY(spread(m, c, &inverted));
     if (meets_itself || inverted > 0)
-        STARG_TRY(spread_nearly(m, c, off));
-done:
-    return status;
+        TRY(spread_nearly(m, c, off));
+    return STARG_OK;
 }
 
 static starg_status relax(deform_mesh *c, size_t steps) {
-    starg_status status = STARG_OK;
     for (int end = 1; end >= 0; end--) {
         const unfold_problem p = problem_of(c, end);
-        STARG_TRY(unfold_relax(&p, steps));
+        TRY(unfold_relax(&p, steps));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- results ---- */
 
 static starg_status copy_guards(starg_context *context, const starg_decomposition *d,
                                 double **out) {
-    starg_status status = STARG_OK;
-    STARG_NEW(context, STAGE, *out, 3 * d->piece_count);
+    NEW(context, STAGE, *out, 3 * d->piece_count);
     for (size_t p = 0; p < d->piece_count; p++)
         vec3_copy(d->pieces[p].guard, *out + 3 * p);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_pieces(starg_context *context, const starg_decomposition *const pieces[2],
                                 starg_solid_map *map) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *a = pieces[0]->mesh, *b = pieces[1]->mesh;
     map->vertex_count = a->vertex_count;
     map->count = a->count;
     map->piece_count = pieces[0]->piece_count;
-    STARG_NEW(context, STAGE, map->vertices, 3 * a->vertex_count);
-    STARG_NEW(context, STAGE, map->images, 3 * a->vertex_count);
-    STARG_NEW(context, STAGE, map->tetrahedra, 4 * a->count);
-    STARG_NEW(context, STAGE, map->labels, a->count);
+    NEW(context, STAGE, map->vertices, 3 * a->vertex_count);
+    NEW(context, STAGE, map->images, 3 * a->vertex_count);
+    NEW(context, STAGE, map->tetrahedra, 4 * a->count);
+    NEW(context, STAGE, map->labels, a->count);
     memcpy(map->vertices, a->vertices, 3 * a->vertex_count * sizeof *map->vertices);
     memcpy(map->images, b->vertices, 3 * a->vertex_count * sizeof *map->images);
     memcpy(map->tetrahedra, a->tetrahedra, 4 * a->count * sizeof *map->tetrahedra);
     memcpy(map->labels, pieces[0]->labels, a->count * sizeof *map->labels);
-    STARG_TRY(copy_guards(context, pieces[0], &map->guards));
-    STARG_TRY(copy_guards(context, pieces[1], &map->guard_images));
-done:
-    return status;
+    TRY(copy_guards(context, pieces[0], &map->guards));
+    return copy_guards(context, pieces[1], &map->guard_images);
 }
 
 /* Edges from the last corner, in units of 2^exponent. */
@@ -282,15 +262,11 @@ static void measure(starg_solid_map *map) {
     map->above_10 = fmin(high / all, 1);
 }
 
-starg_status solid_map_finish(starg_context *context, const deform_mesh *c, bool cut,
-                              starg_solid_map **out) {
+/* Both ends in pieces, measured. */
+static starg_status take_result(starg_context *context, starg_decomposition *const pieces[2],
+                                starg_solid_map **out) {
     starg_status status = STARG_OK;
-    starg_tetmesh *places[2] = {NULL, NULL};
-    starg_decomposition *pieces[2] = {NULL, NULL};
     starg_solid_map *map = NULL;
-    STARG_TRY(solids_place(c, c->rest.data, &places[0]));
-    STARG_TRY(solids_place(c, c->now.data, &places[1]));
-    STARG_TRY(compatible_decompose(context, places[0], places[1], cut, pieces));
     STARG_NEW_ZERO(context, STAGE, map, 1);
     STARG_TRY(take_pieces(context, (const starg_decomposition *const *)pieces, map));
     measure(map);
@@ -298,10 +274,47 @@ starg_status solid_map_finish(starg_context *context, const deform_mesh *c, bool
     map = NULL;
 done:
     starg_solid_map_free(context, map);
+    return status;
+}
+
+static starg_status place_both(const deform_mesh *c, starg_tetmesh *out[2]) {
+    TRY(solids_place(c, c->rest.data, &out[0]));
+    return solids_place(c, c->now.data, &out[1]);
+}
+
+static void free_both(starg_context *context, starg_tetmesh *places[2],
+                      starg_decomposition *pieces[2]) {
     for (int end = 0; end < 2; end++) {
         starg_tetmesh_free(places[end]);
         starg_decomposition_free(context, pieces[end]);
     }
+}
+
+starg_status solid_map_finish(starg_context *context, const deform_mesh *c, bool cut,
+                              starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    starg_tetmesh *places[2] = {NULL, NULL};
+    starg_decomposition *pieces[2] = {NULL, NULL};
+    STARG_TRY(place_both(c, places));
+    STARG_TRY(compatible_decompose(context, places[0], places[1], cut, pieces));
+    STARG_TRY(take_result(context, pieces, out));
+done:
+    free_both(context, places, pieces);
+    return status;
+}
+
+starg_status solid_map_finish_cones(starg_context *context, const deform_mesh *c,
+                                    const uint32_t *labels, size_t count, starg_solid_map **out) {
+    starg_status status = STARG_OK;
+    starg_tetmesh *places[2] = {NULL, NULL};
+    starg_decomposition *pieces[2] = {NULL, NULL};
+    const double *const guards[2] = {c->rest.data + c->rest.count - 3 * count,
+                                     c->now.data + c->now.count - 3 * count};
+    STARG_TRY(place_both(c, places));
+    STARG_TRY(compatible_join(context, places[0], places[1], labels, guards, count, pieces));
+    STARG_TRY(take_result(context, pieces, out));
+done:
+    free_both(context, places, pieces);
     return status;
 }
 
@@ -315,35 +328,33 @@ static starg_status check_options(starg_context *context, const starg_solid_map_
     return fields_check(context, STAGE, starg_solid_map_options_fields(), *options);
 }
 
+/* How near the images must be met: there, or near them if the surface folds. */
+typedef enum ending { ENDS_THERE, ENDS_NEAR } ending;
+
+/* Both ends have A's faces. */
 static starg_status make_map(starg_context *context, const starg_mesh *a, const double *images,
-                             starg_morph_method method, const starg_solid_map_options *options,
-                             starg_solid_map **out) {
-    starg_status status = STARG_OK;
+                             starg_morph_method method, ending wanted,
+                             const starg_solid_map_options *options, starg_solid_map **out) {
     starg_solid_map_options defaults;
-    starg_morph *m = NULL;
-    starg_solid *solid = NULL;
-    uint32_t *surface = NULL;
+    SCOPED_BY(starg_morph_drop) starg_morph *m = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED uint32_t *surface = NULL;
     approach_result off = {0};
-    deform_mesh c = {.context = context};
-    STARG_TRY(check_options(context, &options, &defaults));
-    STARG_TRY(make_morph(context, a, images, method, &m));
-    STARG_TRY(solids_fill_first(m, options->density, &c, &solid, &surface));
-    if (method == STARG_MORPH_ARAP) {
-        STARG_TRY(spread_or_approach(m, &c, &off));
-    } else { /* a ball or a cube, exactly */
-        STARG_TRY(solids_check_last(m));
-        STARG_TRY(spread_exactly(m, &c));
+    SCOPED_BY(deform_free) deform_mesh c = {.context = context};
+    TRY(check_options(context, &options, &defaults));
+    TRY(make_morph(context, a, images, method, &m));
+    TRY(solids_fill_first(m, options->density, &c, &solid, &surface));
+    if (wanted == ENDS_NEAR) {
+        TRY(spread_or_approach(m, &c, &off));
+    } else {
+        TRY(solids_check_last(m));
+        TRY(spread_exactly(m, &c));
     }
-    STARG_TRY(relax(&c, options->steps));
-    STARG_TRY(solid_map_finish(context, &c, true, out));
+    TRY(relax(&c, options->steps));
+    TRY(solid_map_finish(context, &c, true, out));
     (*out)->strayed = off.strayed;
     (*out)->farthest = off.farthest;
-done:
-    deform_free(&c);
-    starg_solid_free(solid);
-    starg_release(context, surface);
-    starg_morph_free(m);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
@@ -351,7 +362,7 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
                                     starg_solid_map **out) {
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = make_map(context, a, images, STARG_MORPH_ARAP, options, out);
+    starg_status status = make_map(context, a, images, STARG_MORPH_ARAP, ENDS_NEAR, options, out);
     starg_time_end(context, former);
     return status;
 }
@@ -392,10 +403,78 @@ done:
     starg_morph_free(last);
     starg_mesh_free(divided);
     starg_solid_free(solid);
-    starg_release(context, images);
-    starg_release(context, surface);
+    RELEASE(images, surface);
     c->surface = NULL;
     return status;
+}
+
+/* Pieces of cones. The last vertices see one piece each. */
+typedef struct cone_labels {
+    uint32_t *labels; /* per tetrahedron; NULL: there are none */
+    size_t count;
+} cone_labels;
+
+/* Pieces that are star-shaped in both ends, if they are found. */
+static starg_status spread_pieces(const starg_mesh *divided, const double *images, deform_mesh *c,
+                                  cone_labels *out) {
+    starg_status status = STARG_OK;
+    const double *const places[2] = {divided->vertices, images};
+    compatible_cones cones = {0};
+    size_t left;
+    STARG_TRY(compatible_fill(c->context, places, divided->vertex_count, divided->faces,
+                              divided->face_count, &cones, &left));
+    if (left > 0)
+        goto done;
+    c->fixed = cones.surface_count;
+    for (size_t i = 0; i < 3 * cones.vertex_count; i++) {
+        STARG_PUSH(c->context, STAGE, &c->rest, cones.places[0][i]);
+        STARG_PUSH(c->context, STAGE, &c->now, cones.places[1][i]);
+    }
+    for (size_t i = 0; i < 4 * cones.count; i++)
+        STARG_PUSH(c->context, STAGE, &c->tetrahedra, cones.tetrahedra[i]);
+    *out = (cone_labels){cones.labels, cones.piece_count};
+    cones.labels = NULL;
+done:
+    compatible_cones_free(c->context, &cones);
+    return status;
+}
+
+/* Cones about a point of each kernel, or else in pieces. */
+static starg_status spread_cones(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                 const starg_map *map, deform_mesh *c, cone_labels *out) {
+    starg_status status = STARG_OK;
+    const starg_overlay *overlay = &map->overlay;
+    starg_mesh *divided = NULL;
+    double *places[2] = {NULL, NULL};
+    uint32_t *surface = NULL;
+    bool found;
+    for (int end = 0; end < 2; end++) {
+        STARG_NEW(context, STAGE, places[end], 3 * overlay->vertex_count);
+        starg_overlay_positions(overlay, end == 0 ? a : b, end, places[end]);
+    }
+    STARG_TRY(starg_mesh_create(context, places[0], overlay->vertex_count, overlay->faces,
+                                overlay->face_count, &divided));
+    STARG_TRY(stars_fill(divided, places[1], map->centers, c, &surface, &found));
+    c->surface = NULL;
+    if (found) {
+        STARG_NEW_ZERO(context, STAGE, out->labels, c->tetrahedra.count / 4);
+        out->count = 1;
+    } else if (map->kind != STARG_MAP_SAME) {
+        STARG_TRY(spread_pieces(divided, places[1], c, out));
+    }
+done:
+    starg_mesh_free(divided);
+    RELEASE(places[0], places[1], surface);
+    return status;
+}
+
+/* Is the overlay that of equal faces, at whose vertices nothing is divided? */
+static bool divides_nothing(const starg_overlay *overlay, const starg_mesh *a,
+                            const starg_mesh *b) {
+    return overlay->vertex_count == a->vertex_count && overlay->vertex_count == b->vertex_count &&
+           overlay->face_count == a->face_count &&
+           memcmp(overlay->faces, a->faces, 3 * a->face_count * sizeof *a->faces) == 0 &&
+           memcmp(overlay->faces, b->faces, 3 * a->face_count * sizeof *a->faces) == 0;
 }
 
 static starg_status make_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
@@ -403,6 +482,7 @@ static starg_status make_overlay(starg_context *context, const starg_mesh *a, co
                                  starg_solid_map **out) {
     starg_status status = STARG_OK;
     starg_solid_map_options defaults;
+    cone_labels cones = {0};
     deform_mesh c = {.context = context};
     STARG_TRY(check_options(context, &options, &defaults));
     if (map->overlay.face_count == 0) {
@@ -410,10 +490,18 @@ static starg_status make_overlay(starg_context *context, const starg_mesh *a, co
                             "the map has no overlay; starg_map_overlay makes one");
         goto done;
     }
-    STARG_TRY(spread_overlay(context, a, b, map, options->density, &c));
+    if (divides_nothing(&map->overlay, a, b))
+        return make_map(context, a, b->vertices, STARG_MORPH_ARAP, ENDS_THERE, options, out);
+    STARG_TRY(spread_cones(context, a, b, map, &c, &cones));
+    if (cones.labels == NULL)
+        STARG_TRY(spread_overlay(context, a, b, map, options->density, &c));
     STARG_TRY(relax(&c, options->steps));
-    STARG_TRY(solid_map_finish(context, &c, true, out));
+    if (cones.labels != NULL)
+        STARG_TRY(solid_map_finish_cones(context, &c, cones.labels, cones.count, out));
+    else
+        STARG_TRY(solid_map_finish(context, &c, true, out));
 done:
+    starg_release(context, cones.labels);
     deform_free(&c);
     return status;
 }
@@ -432,14 +520,9 @@ starg_status starg_solid_map_overlay(starg_context *context, const starg_mesh *a
 starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,
                                 starg_solid_shape shape, const starg_solid_map_options *options,
                                 starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    double *images = NULL;
+    SCOPED double *images = NULL;
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(solid_map_shape(context, a, shape, &images));
-    STARG_TRY(make_map(context, a, images, STARG_MORPH_LINEAR, options, out));
-done:
-    starg_time_end(context, former);
-    starg_release(context, images);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(solid_map_shape(context, a, shape, &images));
+    return make_map(context, a, images, STARG_MORPH_LINEAR, ENDS_THERE, options, out);
 }

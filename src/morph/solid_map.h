@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of maps between solids. */
-#ifndef STARG_MORPH_SOLID_MAP_H
-#define STARG_MORPH_SOLID_MAP_H
+#pragma once
 
 #include "morph/deform.h"
 #include "starguard/solidmap.h"
@@ -16,6 +15,11 @@ starg_status solid_map_shape(starg_context *context, const starg_mesh *a, starg_
 starg_status solid_map_finish(starg_context *context, const deform_mesh *c, bool cut,
                               starg_solid_map **out);
 
+/* The same for cones: a label for each tetrahedron, and the last `count` vertices see one piece
+ * each. Errors: MEMORY, CANCELLED. */
+starg_status solid_map_finish_cones(starg_context *context, const deform_mesh *c,
+                                    const uint32_t *labels, size_t count, starg_solid_map **out);
+
 /* Exponents of the extents of both places, as units of length. */
 void solid_map_exponents(const starg_solid_map *map, int out[2]);
 
@@ -23,5 +27,3 @@ void solid_map_exponents(const starg_solid_map *map, int out[2]);
  * those units. */
 double solid_map_ratio(const starg_solid_map *map, size_t t, const int exponents[2],
                        double *volume);
-
-#endif

@@ -13,7 +13,6 @@
  * Invariant: all are positive in A, by exact signs, and their surface is the overlay. In the other
  * place they are as positive as they were, up to rounding. Cost: O(n log n). */
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -55,8 +54,7 @@ static void subdivision_free(subdivision *s) {
     void *const blocks[] = {s->own, s->renumbered, s->faces, s->first, s->triangles};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(s->context, blocks[i]);
-    STARG_ARRAY_FREE(s->context, &s->points);
-    STARG_ARRAY_FREE(s->context, &s->tetrahedra);
+    RELEASE(s->points.data, s->tetrahedra.data);
 }
 
 /* ---- faces ---- */
@@ -93,15 +91,13 @@ static uint32_t find_face(const subdivision *s, uint32_t a, uint32_t b, uint32_t
 }
 
 static starg_status list_faces(subdivision *s) {
-    starg_status status = STARG_OK;
-    STARG_NEW(s->context, STAGE, s->faces, s->a->face_count);
+    NEW(s->context, STAGE, s->faces, s->a->face_count);
     for (size_t f = 0; f < s->a->face_count; f++) {
         const uint32_t *corner = s->a->faces + 3 * f;
         s->faces[f] = key_of(s->own[corner[0]], s->own[corner[1]], s->own[corner[2]], f);
     }
     qsort(s->faces, s->a->face_count, sizeof *s->faces, by_corners);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Adds the corners of the simplex of A that a vertex of the overlay is inside of, if they are new.
@@ -129,29 +125,24 @@ static uint32_t face_of(const subdivision *s, size_t triangle) {
 }
 
 static starg_status file_triangles(subdivision *s) {
-    starg_status status = STARG_OK;
     const starg_overlay *overlay = s->overlay;
     size_t faces = s->a->face_count;
-    uint32_t *where = NULL;
-    STARG_NEW(s->context, STAGE, where, overlay->face_count);
-    STARG_NEW_ZERO(s->context, STAGE, s->first, faces + 2);
-    STARG_NEW(s->context, STAGE, s->triangles, overlay->face_count);
+    SCOPED uint32_t *where = NULL;
+    NEW(s->context, STAGE, where, overlay->face_count);
+    NEW_ZERO(s->context, STAGE, s->first, faces + 2);
+    NEW(s->context, STAGE, s->triangles, overlay->face_count);
     for (size_t t = 0; t < overlay->face_count; t++) {
         where[t] = face_of(s, t);
-        if (where[t] == NONE) {
-            status = starg_fail(s->context, STARG_ERROR_MESH, STAGE,
-                                "triangle %zu of the overlay is in no face of A", t);
-            goto done;
-        }
+        if (where[t] == NONE)
+            return starg_fail(s->context, STARG_ERROR_MESH, STAGE,
+                              "triangle %zu of the overlay is in no face of A", t);
         s->first[where[t] + 2]++;
     }
     for (size_t f = 0; f < faces; f++)
         s->first[f + 2] += s->first[f + 1];
     for (size_t t = 0; t < overlay->face_count; t++)
         s->triangles[s->first[where[t] + 1]++] = (uint32_t)t;
-done:
-    starg_release(s->context, where);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- vertices ---- */
@@ -164,21 +155,18 @@ static int by_place(const void *left, const void *right) {
 }
 
 static starg_status list_vertices(subdivision *s) {
-    starg_status status = STARG_OK;
-    STARG_NEW(s->context, STAGE, s->own, s->a->vertex_count);
+    NEW(s->context, STAGE, s->own, s->a->vertex_count);
     memset(s->own, 0xff, s->a->vertex_count * sizeof *s->own);
     for (uint32_t v = 0; v < s->c->fixed; v++)
         s->own[s->c->surface[v]] = v;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* New numbers of vertices, and the points on edges. */
 static starg_status place_vertices(subdivision *s) {
-    starg_status status = STARG_OK;
     const starg_overlay *overlay = s->overlay;
     const deform_mesh *c = s->c;
-    STARG_NEW(s->context, STAGE, s->renumbered, c->rest.count / 3);
+    NEW(s->context, STAGE, s->renumbered, c->rest.count / 3);
     for (size_t v = c->fixed; v < c->rest.count / 3; v++)
         s->renumbered[v] = (uint32_t)(overlay->vertex_count + v - c->fixed);
     for (uint32_t i = 0; i < overlay->vertex_count; i++) {
@@ -194,12 +182,11 @@ static starg_status place_vertices(subdivision *s) {
         for (size_t k = 0; k < 3; k++)
             if (s->own[face[k]] == upper)
                 point.along = overlay->own_coordinates[3 * (size_t)i + k];
-        STARG_PUSH(s->context, STAGE, &s->points, point);
+        PUSH(s->context, STAGE, &s->points, point);
     }
     if (s->points.count > 0)
         qsort(s->points.data, s->points.count, sizeof *s->points.data, by_place);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- triangles inside, between edges of the surface ---- */
@@ -221,26 +208,23 @@ static int opposite_inner(const subdivision *s, size_t t, face_key *key) {
 }
 
 static starg_status find_inner(const subdivision *s, key_list *out) {
-    starg_status status = STARG_OK;
     size_t kept = 0;
     face_key key;
     for (size_t t = 0; t < s->c->tetrahedra.count / 4; t++)
         if (opposite_inner(s, t, &key) >= 0)
-            STARG_PUSH(s->context, STAGE, out, key);
+            PUSH(s->context, STAGE, out, key);
     if (out->count == 0)
-        goto done;
+        return STARG_OK;
     qsort(out->data, out->count, sizeof *out->data, by_corners);
     for (size_t i = 0; i < out->count; i++)
         if (kept == 0 || by_corners(&out->data[i], &out->data[kept - 1]) != 0)
             out->data[kept++] = out->data[i];
     out->count = kept;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A vertex in the middle of a triangle, in both places. */
 static starg_status add_middle(subdivision *s, face_key *key) {
-    starg_status status = STARG_OK;
     deform_mesh *c = s->c;
     key->number = (uint32_t)(c->rest.count / 3);
     for (size_t k = 0; k < 3; k++) {
@@ -249,21 +233,19 @@ static starg_status add_middle(subdivision *s, face_key *key) {
             sums[0] += c->rest.data[3 * (size_t)key->corners[i] + k];
             sums[1] += c->now.data[3 * (size_t)key->corners[i] + k];
         }
-        STARG_PUSH(s->context, STAGE, &c->rest, sums[0] / 3);
-        STARG_PUSH(s->context, STAGE, &c->now, sums[1] / 3);
+        PUSH(s->context, STAGE, &c->rest, sums[0] / 3);
+        PUSH(s->context, STAGE, &c->now, sums[1] / 3);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Each becomes three, with its two tetrahedra. */
 static starg_status split_inner(subdivision *s) {
-    starg_status status = STARG_OK;
     deform_mesh *c = s->c;
-    key_list inner = {0};
-    STARG_TRY(find_inner(s, &inner));
+    SCOPED key_list inner = {0};
+    TRY(find_inner(s, &inner));
     for (size_t i = 0; i < inner.count; i++)
-        STARG_TRY(add_middle(s, &inner.data[i]));
+        TRY(add_middle(s, &inner.data[i]));
     for (size_t t = 0, count = c->tetrahedra.count / 4; t < count; t++) {
         face_key key;
         uint32_t corners[4];
@@ -279,23 +261,19 @@ static starg_status split_inner(subdivision *s) {
                 if (i == 0)
                     c->tetrahedra.data[4 * t + (size_t)k] = v;
                 else
-                    STARG_PUSH(s->context, STAGE, &c->tetrahedra, v);
+                    PUSH(s->context, STAGE, &c->tetrahedra, v);
             }
         }
     }
-done:
-    STARG_ARRAY_FREE(s->context, &inner);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- tetrahedra ---- */
 
 static starg_status add(subdivision *s, const uint32_t corners[4]) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 4; k++)
-        STARG_PUSH(s->context, STAGE, &s->tetrahedra, corners[k]);
-done:
-    return status;
+        PUSH(s->context, STAGE, &s->tetrahedra, corners[k]);
+    return STARG_OK;
 }
 
 static size_t first_point(const subdivision *s, deform_edge edge) {
@@ -312,7 +290,6 @@ static size_t first_point(const subdivision *s, deform_edge edge) {
 
 /* A fan along the edge between corners a and b. */
 static starg_status fan_edge(subdivision *s, const uint32_t corners[4], int a, int b) {
-    starg_status status = STARG_OK;
     deform_edge edge = deform_edge_of(corners[a], corners[b]);
     int low = corners[a] < corners[b] ? a : b, high = low == a ? b : a;
     uint32_t fresh[4];
@@ -322,13 +299,11 @@ static starg_status fan_edge(subdivision *s, const uint32_t corners[4], int a, i
     for (size_t i = first_point(s, edge); i < s->points.count && s->points.data[i].edge == edge;
          i++) {
         fresh[high] = s->points.data[i].vertex;
-        STARG_TRY(add(s, fresh));
+        TRY(add(s, fresh));
         fresh[low] = fresh[high];
     }
     fresh[high] = last;
-    STARG_TRY(add(s, fresh));
-done:
-    return status;
+    return add(s, fresh);
 }
 
 /* Are two orders of the same corners equal up to rotation? */
@@ -341,7 +316,6 @@ static bool is_even(const uint32_t a[3], const uint32_t b[3]) {
 
 /* A cone over the triangles of the face opposite the apex. */
 static starg_status cone(subdivision *s, const uint32_t corners[4], int apex, uint32_t face) {
-    starg_status status = STARG_OK;
     uint32_t outward[3], given[3], fresh[4];
     for (int k = 0; k < 3; k++) {
         outward[k] = corners[TETMESH_FACE[apex][k]];
@@ -353,10 +327,9 @@ static starg_status cone(subdivision *s, const uint32_t corners[4], int apex, ui
         const uint32_t *triangle = s->overlay->faces + 3 * (size_t)s->triangles[i];
         for (int k = 0; k < 3; k++)
             fresh[TETMESH_FACE[apex][k]] = triangle[even ? k : 2 - k];
-        STARG_TRY(add(s, fresh));
+        TRY(add(s, fresh));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status divide(subdivision *s, size_t t) {
@@ -396,29 +369,28 @@ static void place_in(const subdivision *s, size_t vertex, const double *from, do
 }
 
 static starg_status finish(subdivision *s) {
-    starg_status status = STARG_OK;
-    deform_mesh *c = s->c, next = {.context = c->context, .fixed = s->overlay->vertex_count};
+    deform_mesh *c = s->c;
+    SCOPED_BY(deform_free)
+    deform_mesh next = {.context = c->context, .fixed = s->overlay->vertex_count};
     for (size_t i = 0; i < next.fixed; i++) {
         double rest[3], now[3];
         place_in(s, i, c->rest.data, rest);
         place_in(s, i, c->now.data, now);
         for (int k = 0; k < 3; k++) {
-            STARG_PUSH(s->context, STAGE, &next.rest, rest[k]);
-            STARG_PUSH(s->context, STAGE, &next.now, now[k]);
+            PUSH(s->context, STAGE, &next.rest, rest[k]);
+            PUSH(s->context, STAGE, &next.now, now[k]);
         }
     }
     for (size_t i = 3 * c->fixed; i < c->rest.count; i++) {
-        STARG_PUSH(s->context, STAGE, &next.rest, c->rest.data[i]);
-        STARG_PUSH(s->context, STAGE, &next.now, c->now.data[i]);
+        PUSH(s->context, STAGE, &next.rest, c->rest.data[i]);
+        PUSH(s->context, STAGE, &next.now, c->now.data[i]);
     }
     for (size_t i = 0; i < s->tetrahedra.count; i++)
-        STARG_PUSH(s->context, STAGE, &next.tetrahedra, s->tetrahedra.data[i]);
+        PUSH(s->context, STAGE, &next.tetrahedra, s->tetrahedra.data[i]);
     deform_free(c);
     *c = next;
     next = (deform_mesh){.context = c->context};
-done:
-    deform_free(&next);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status check_positive(const deform_mesh *c) {
@@ -438,18 +410,15 @@ static starg_status check_positive(const deform_mesh *c) {
 }
 
 starg_status solids_divide(deform_mesh *c, const starg_mesh *a, const starg_overlay *overlay) {
-    starg_status status = STARG_OK;
+    SCOPED_BY(subdivision_free)
     subdivision s = {.context = c->context, .c = c, .a = a, .overlay = overlay};
-    STARG_TRY(list_vertices(&s));
-    STARG_TRY(list_faces(&s));
-    STARG_TRY(split_inner(&s));
-    STARG_TRY(file_triangles(&s));
-    STARG_TRY(place_vertices(&s));
+    TRY(list_vertices(&s));
+    TRY(list_faces(&s));
+    TRY(split_inner(&s));
+    TRY(file_triangles(&s));
+    TRY(place_vertices(&s));
     for (size_t t = 0; t < c->tetrahedra.count / 4; t++)
-        STARG_TRY(divide(&s, t));
-    STARG_TRY(finish(&s));
-    STARG_TRY(check_positive(c));
-done:
-    subdivision_free(&s);
-    return status;
+        TRY(divide(&s, t));
+    TRY(finish(&s));
+    return check_positive(c);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Morphs of solids. */
-#ifndef STARG_MORPH_SOLID_PATH_H
-#define STARG_MORPH_SOLID_PATH_H
+#pragma once
 
 #include "morph/deform.h"
 
@@ -10,8 +9,7 @@ typedef struct solid_path {
     deform_mesh mesh;
     uint32_t *surface; /* the morph's numbers of the first vertices */
     deform_path keys;
+    uint32_t *labels; /* of cones of star-shaped ends: all 0; else NULL */
 } solid_path;
 
-void solid_path_free(starg_context *context, solid_path *path);
-
-#endif
+void solid_path_free(solid_path *path);

@@ -5,12 +5,9 @@
  * triangles are positive, or from there along rays to the cube. The cones from the origin stay
  * positive: a determinant of three rays is multiplied by positive numbers only. So the image bounds
  * a polyhedron that is star-shaped about the origin. */
-#include <math.h>
 
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "morph/map.h"
 #include "morph/solid_map.h"
@@ -60,22 +57,16 @@ static starg_status check_positive(starg_context *context, const starg_mesh *mes
 
 starg_status solid_map_shape(starg_context *context, const starg_mesh *a, starg_solid_shape shape,
                              double **images) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
-    starg_mesh *unit = NULL;
-    sphere *s = NULL;
-    STARG_TRY(solid_make_in_time(context, a, &solid));
-    STARG_TRY(solid_must_not_share(context, solid, STAGE));
-    STARG_TRY(check_topology(context, starg_solid_check(solid)));
-    STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &unit));
-    STARG_TRY(sphere_create(context, unit, &s));
-    STARG_NEW(context, STAGE, *images, 3 * unit->vertex_count);
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *unit = NULL;
+    SCOPED_BY(sphere_drop) sphere *s = NULL;
+    TRY(solid_make_in_time(context, a, &solid));
+    TRY(solid_must_not_share(context, solid, STAGE));
+    TRY(check_topology(context, starg_solid_check(solid)));
+    TRY(map_unit_copy(context, starg_solid_mesh(solid), &unit));
+    TRY(sphere_create(context, unit, &s));
+    NEW(context, STAGE, *images, 3 * unit->vertex_count);
     for (size_t v = 0; v < unit->vertex_count; v++)
         project(s->directions + 3 * v, shape, *images + 3 * v);
-    STARG_TRY(check_positive(context, unit, *images));
-done:
-    sphere_free(s);
-    starg_mesh_free(unit);
-    starg_solid_free(solid);
-    return status;
+    return check_positive(context, unit, *images);
 }

@@ -4,7 +4,6 @@
 #include <inttypes.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "morph/solid_map.h"
 
 static const char STAGE[] = "map file";
@@ -73,10 +72,10 @@ static void put_cell_data(FILE *stream, const starg_solid_map *map) {
 
 starg_status starg_solid_map_write(starg_context *context, const starg_solid_map *map,
                                    const char *path) {
-    starg_status status = STARG_OK;
     starg_output output;
     const double distortion[3] = {map->worst, map->mean, map->above_10};
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    const double missed[3] = {map->distance, map->distance_back, map->missing};
+    TRY(starg_output_open(context, STAGE, path, &output));
     FILE *stream = output.stream;
     fprintf(stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
                     "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
@@ -84,6 +83,8 @@ starg_status starg_solid_map_write(starg_context *context, const starg_solid_map
     put_field(stream, "distortion", distortion, 1, 3);
     put_field(stream, "guard", map->guards, map->piece_count, 3);
     put_field(stream, "guard_image", map->guard_images, map->piece_count, 3);
+    if (map->compared)
+        put_field(stream, "missed", missed, 1, 3);
     if (map->key_count > 0)
         put_field(stream, "time", map->times, map->key_count, 1);
     fprintf(stream,
@@ -103,7 +104,5 @@ starg_status starg_solid_map_write(starg_context *context, const starg_solid_map
     fputs("</Points>\n", stream);
     put_cells(stream, map);
     fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", stream);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    return status;
+    return starg_output_commit(&output);
 }

@@ -9,10 +9,8 @@
  * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the
  * respective surface, so they fill both without overlap. Cost: that of its stages. */
 #include "morph/solids.h"
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
-#include "morph/deform.h"
 #include "morph/morph.h"
 #include "star/compatible/compatible.h"
 #include "tetra/tetmesh.h"
@@ -37,11 +35,8 @@ static starg_status check_end(const starg_morph *m, int end, const starg_solid *
 }
 
 static starg_status make_end(const starg_morph *m, int end, starg_solid **out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(morph_solid(m, end, out));
-    STARG_TRY(check_end(m, end, *out));
-done:
-    return status;
+    TRY(morph_solid(m, end, out));
+    return check_end(m, end, *out);
 }
 
 starg_status solids_check_last(const starg_morph *m) {
@@ -67,70 +62,54 @@ starg_status solids_last_meets_itself(const starg_morph *m, bool *out) {
 
 /* ---- tetrahedra ---- */
 
-/* The vertices of A in use, in order: the tetrahedra's first vertices. */
-static starg_status list_surface(const starg_morph *m, uint32_t **out, size_t *count) {
-    starg_status status = STARG_OK;
-    uint8_t *used = NULL;
-    STARG_NEW_ZERO(m->context, STAGE, used, m->mesh->vertex_count);
-    STARG_NEW(m->context, STAGE, *out, m->mesh->vertex_count);
-    for (size_t i = 0; i < 3 * m->mesh->face_count; i++)
-        used[m->mesh->faces[i]] = 1;
-    for (uint32_t v = 0; v < m->mesh->vertex_count; v++)
+starg_status solids_list_surface(const starg_mesh *a, deform_mesh *c, uint32_t **out) {
+    SCOPED uint8_t *used = NULL;
+    NEW_ZERO(c->context, STAGE, used, a->vertex_count);
+    NEW(c->context, STAGE, *out, a->vertex_count);
+    for (size_t i = 0; i < 3 * a->face_count; i++)
+        used[a->faces[i]] = 1;
+    for (uint32_t v = 0; v < a->vertex_count; v++)
         if (used[v])
-            (*out)[(*count)++] = v;
-done:
-    starg_release(m->context, used);
-    return status;
+            (*out)[c->fixed++] = v;
+    c->surface = *out;
+    return STARG_OK;
 }
 
 static starg_status fill(const starg_morph *m, const starg_solid *solid, double density,
                          deform_mesh *c) {
-    starg_status status = STARG_OK;
     starg_tetra_options options;
-    starg_tetmesh *mesh = NULL;
+    SCOPED_BY(starg_tetmesh_drop) starg_tetmesh *mesh = NULL;
     starg_tetra_options_default(&options);
     options.generator = STARG_TETRA_TETGEN;
     options.density = density;
-    STARG_TRY(starg_tetmesh_from_solid(m->context, solid, &options, NULL, &mesh));
+    TRY(starg_tetmesh_from_solid(m->context, solid, &options, NULL, &mesh));
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        STARG_PUSH(m->context, STAGE, &c->rest, mesh->vertices[i]);
-        STARG_PUSH(m->context, STAGE, &c->now, mesh->vertices[i]);
+        PUSH(m->context, STAGE, &c->rest, mesh->vertices[i]);
+        PUSH(m->context, STAGE, &c->now, mesh->vertices[i]);
     }
     for (size_t i = 0; i < 4 * mesh->count; i++)
-        STARG_PUSH(m->context, STAGE, &c->tetrahedra, mesh->tetrahedra[i]);
-done:
-    starg_tetmesh_free(mesh);
-    return status;
+        PUSH(m->context, STAGE, &c->tetrahedra, mesh->tetrahedra[i]);
+    return STARG_OK;
 }
 
 static starg_status fill_freely(const starg_morph *m, const starg_solid *solid, double density,
                                 deform_mesh *c, uint32_t **surface) {
-    starg_status status = STARG_OK;
-    STARG_TRY(list_surface(m, surface, &c->fixed));
-    c->surface = *surface;
-    STARG_TRY(fill(m, solid, density, c));
-    STARG_TRY(deform_free_surface(m, c));
-done:
-    return status;
+    TRY(solids_list_surface(m->mesh, c, surface));
+    TRY(fill(m, solid, density, c));
+    return deform_free_surface(m, c);
 }
 
 starg_status solids_fill_first(const starg_morph *m, double density, deform_mesh *c,
                                starg_solid **solid, uint32_t **surface) {
-    starg_status status = STARG_OK;
-    STARG_TRY(make_end(m, 0, solid));
-    STARG_TRY(fill_freely(m, *solid, density, c, surface));
-done:
-    return status;
+    TRY(make_end(m, 0, solid));
+    return fill_freely(m, *solid, density, c, surface);
 }
 
 starg_status solids_fill(const starg_morph *m, double density, deform_mesh *c, starg_solid **solid,
                          uint32_t **surface) {
-    starg_status status = STARG_OK;
-    STARG_TRY(make_end(m, 0, solid));
-    STARG_TRY(solids_check_last(m));
-    STARG_TRY(fill_freely(m, *solid, density, c, surface));
-done:
-    return status;
+    TRY(make_end(m, 0, solid));
+    TRY(solids_check_last(m));
+    return fill_freely(m, *solid, density, c, surface);
 }
 
 static starg_status deform_along(const starg_morph *m, deform_mesh *c) {
@@ -147,21 +126,17 @@ static starg_status deform_along(const starg_morph *m, deform_mesh *c) {
 }
 
 starg_status solids_place(const deform_mesh *c, const double *places, starg_tetmesh **out) {
-    starg_status status = STARG_OK;
-    double *vertices = NULL;
-    uint32_t *tetrahedra = NULL;
-    STARG_NEW(c->context, STAGE, vertices, c->rest.count);
-    STARG_NEW(c->context, STAGE, tetrahedra, c->tetrahedra.count);
+    SCOPED double *vertices = NULL;
+    SCOPED uint32_t *tetrahedra = NULL;
+    NEW(c->context, STAGE, vertices, c->rest.count);
+    NEW(c->context, STAGE, tetrahedra, c->tetrahedra.count);
     memcpy(vertices, places, c->rest.count * sizeof *vertices);
     memcpy(tetrahedra, c->tetrahedra.data, c->tetrahedra.count * sizeof *tetrahedra);
-    STARG_TRY(tetmesh_adopt(c->context, vertices, c->rest.count / 3, tetrahedra,
-                            c->tetrahedra.count / 4, NULL, true, out));
+    TRY(tetmesh_adopt(c->context, vertices, c->rest.count / 3, tetrahedra, c->tetrahedra.count / 4,
+                      NULL, true, out));
     vertices = NULL;
     tetrahedra = NULL;
-done:
-    starg_release(c->context, vertices);
-    starg_release(c->context, tetrahedra);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- pieces ---- */
@@ -185,19 +160,12 @@ done:
 }
 
 starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2]) {
-    starg_status status = STARG_OK;
-    deform_mesh c = {.context = m->context};
-    starg_solid *solid = NULL;
-    uint32_t *surface = NULL;
+    SCOPED_BY(deform_free) deform_mesh c = {.context = m->context};
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED uint32_t *surface = NULL;
     out[0] = out[1] = NULL;
-    starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
-    STARG_TRY(solids_fill(m, SOLIDS_DENSITY, &c, &solid, &surface));
-    STARG_TRY(deform_along(m, &c));
-    STARG_TRY(cut(m, &c, out));
-done:
-    starg_time_end(m->context, former);
-    deform_free(&c);
-    starg_solid_free(solid);
-    starg_release(m->context, surface);
-    return status;
+    TIME_RULE(m->context, STARG_TIME_FAILS);
+    TRY(solids_fill(m, SOLIDS_DENSITY, &c, &solid, &surface));
+    TRY(deform_along(m, &c));
+    return cut(m, &c, out);
 }

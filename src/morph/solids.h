@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tetrahedra that fill both ends of a morph. */
-#ifndef STARG_MORPH_SOLIDS_H
-#define STARG_MORPH_SOLIDS_H
+#pragma once
 
 #include "morph/deform.h"
-#include "starguard/solid.h"
 
 /* Initial tetrahedra per vertex, unless others are asked for. */
 #define SOLIDS_DENSITY 1.0
+
+/* The vertices of A in use, in order, are the first of the tetrahedra: c->fixed and c->surface.
+ * *surface is the caller's, also on failure. Errors: MEMORY. */
+starg_status solids_list_surface(const starg_mesh *a, deform_mesh *c, uint32_t **surface);
 
 /* Checks that both ends bound a solid without self-intersections, and fills A with tetrahedra that
  * keep its surface. `c` is empty but for its context; *surface, to which it refers, and *solid are
@@ -32,5 +34,3 @@ starg_status solids_divide(deform_mesh *c, const starg_mesh *a, const starg_over
 
 /* One of the two places of tetrahedra that are known not to overlap: a copy. Errors: MEMORY. */
 starg_status solids_place(const deform_mesh *c, const double *places, starg_tetmesh **out);
-
-#endif

@@ -5,9 +5,7 @@
  * A corner of a face moves from its place relative to the face's guard in A to that relative to the
  * counterpart in B in radius, latitude and longitude, each linear in t, the longitude by the
  * shorter way; guards move straight. A vertex is the mean of its corners. */
-#include <math.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "morph/morph.h"
 
@@ -42,10 +40,9 @@ static void add_corner(const starg_morph *m, uint32_t guard, uint32_t v, double 
 }
 
 starg_status morph_frame_spherical(const starg_morph *m, double t, double *out) {
-    starg_status status = STARG_OK;
     size_t count = m->mesh->vertex_count;
-    uint32_t *corners = NULL;
-    STARG_NEW_ZERO(m->context, STAGE, corners, count);
+    SCOPED uint32_t *corners = NULL;
+    NEW_ZERO(m->context, STAGE, corners, count);
     for (size_t i = 0; i < 3 * count; i++)
         out[i] = 0;
     for (size_t i = 0; i < 3 * m->mesh->face_count; i++) {
@@ -58,7 +55,5 @@ starg_status morph_frame_spherical(const starg_morph *m, double t, double *out) 
             out[3 * v + k] =
                 corners[v] > 0 ? out[3 * v + k] / corners[v]
                                : (1 - t) * m->mesh->vertices[3 * v + k] + t * m->images[3 * v + k];
-done:
-    starg_release(m->context, corners);
-    return status;
+    return STARG_OK;
 }

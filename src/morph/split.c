@@ -8,7 +8,6 @@
  *
  * Invariant: tetrahedra stay positive in A, exactly. Cost: O(tetrahedra) per round. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -135,54 +134,47 @@ static void leave_thin(const splitting *s, size_t tetrahedra) {
 }
 
 static starg_status add_middle(const splitting *s, size_t edge) {
-    starg_status status = STARG_OK;
     double rest[3], now[3];
     middle_of(s->c->rest.data, s->edges[edge], rest);
     middle_of(s->c->now.data, s->edges[edge], now);
     s->middle[edge] = (uint32_t)(s->c->rest.count / 3);
     for (int k = 0; k < 3; k++) {
-        STARG_PUSH(s->c->context, STAGE, &s->c->rest, rest[k]);
-        STARG_PUSH(s->c->context, STAGE, &s->c->now, now[k]);
+        PUSH(s->c->context, STAGE, &s->c->rest, rest[k]);
+        PUSH(s->c->context, STAGE, &s->c->now, now[k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The tetrahedron keeps the lower end of the edge, a new one gets the upper end. */
 static starg_status cut(const splitting *s, size_t t, uint32_t edge) {
-    starg_status status = STARG_OK;
     uint32_t lower = (uint32_t)(s->edges[edge] >> 32), upper = (uint32_t)s->edges[edge];
     for (size_t k = 0; k < 4; k++) {
         uint32_t corner = s->c->tetrahedra.data[4 * t + k];
-        STARG_PUSH(s->c->context, STAGE, &s->c->tetrahedra,
-                   corner == lower ? s->middle[edge] : corner);
+        PUSH(s->c->context, STAGE, &s->c->tetrahedra, corner == lower ? s->middle[edge] : corner);
         if (corner == upper)
             s->c->tetrahedra.data[4 * t + k] = s->middle[edge];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status split_round(splitting *s, bool *any) {
-    starg_status status = STARG_OK;
     size_t tetrahedra = s->c->tetrahedra.count / 4;
     *any = false;
     starg_release(s->c->context, s->choice);
-    STARG_NEW(s->c->context, STAGE, s->choice, tetrahedra);
+    NEW(s->c->context, STAGE, s->choice, tetrahedra);
     name_edges(s, tetrahedra);
     for (uint32_t i = 0; i < s->count; i++)
         *any = *any || (is_ready(s, i) && s->about[i] > 0);
     leave_thin(s, tetrahedra);
     for (uint32_t i = 0; i < s->count; i++)
         if (is_ready(s, i) && s->about[i] > 0)
-            STARG_TRY(add_middle(s, i));
+            TRY(add_middle(s, i));
     for (size_t t = 0; t < tetrahedra; t++)
         if (s->choice[t] != NONE && s->middle[s->choice[t]] != NONE)
-            STARG_TRY(cut(s, t, s->choice[t]));
+            TRY(cut(s, t, s->choice[t]));
     for (size_t i = 0; i < s->count; i++)
         s->over[i] |= s->middle[i] != NONE;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status deform_split(deform_mesh *c, const deform_edge *edges, size_t count) {
@@ -196,11 +188,7 @@ starg_status deform_split(deform_mesh *c, const deform_edge *edges, size_t count
     while (any)
         STARG_TRY(split_round(&s, &any));
 done:
-    starg_release(c->context, s.about);
-    starg_release(c->context, s.named);
-    starg_release(c->context, s.middle);
-    starg_release(c->context, s.over);
-    starg_release(c->context, s.choice);
+    RELEASE(s.about, s.named, s.middle, s.over, s.choice);
     return status;
 }
 
@@ -227,7 +215,6 @@ static bool is_on_surface(const deform_mesh *c, size_t t) {
 }
 
 starg_status deform_fill_flat(deform_mesh *c) {
-    starg_status status = STARG_OK;
     size_t count = c->tetrahedra.count / 4;
     for (size_t t = 0; t < count; t++) {
         double centre[3] = {0, 0, 0};
@@ -240,14 +227,13 @@ starg_status deform_fill_flat(deform_mesh *c) {
         if (!has_room(c, t, centre))
             continue;
         for (int k = 0; k < 3; k++) {
-            STARG_PUSH(c->context, STAGE, &c->rest, centre[k]);
-            STARG_PUSH(c->context, STAGE, &c->now, centre[k]);
+            PUSH(c->context, STAGE, &c->rest, centre[k]);
+            PUSH(c->context, STAGE, &c->now, centre[k]);
         }
         c->tetrahedra.data[4 * t] = middle;
         for (int own = 1; own < 4; own++)
             for (int k = 0; k < 4; k++)
-                STARG_PUSH(c->context, STAGE, &c->tetrahedra, k == own ? middle : corners[k]);
+                PUSH(c->context, STAGE, &c->tetrahedra, k == own ? middle : corners[k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }

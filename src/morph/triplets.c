@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "morph/triplets.h"
 
-#include "core/memory.h"
-
 static const char STAGE[] = "factorise";
 
 triplet *triplets_put_edge(uint32_t a, uint32_t b, double w, triplet *next) {
@@ -37,8 +35,6 @@ starg_status triplets_factorise(starg_context *context, size_t size, const tripl
     assemble(triplets, count, &m);
     STARG_TRY(sparse_factorise(context, STAGE, &m, out));
 done:
-    starg_release(context, m.starts);
-    starg_release(context, m.rows);
-    starg_release(context, m.values);
+    RELEASE(m.starts, m.rows, m.values);
     return status;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Sparse systems assembled from triplets. */
-#ifndef STARG_MORPH_TRIPLETS_H
-#define STARG_MORPH_TRIPLETS_H
+#pragma once
 
 #include "shape/spectrum.h"
 
@@ -19,5 +18,3 @@ triplet *triplets_put_edge(uint32_t a, uint32_t b, double w, triplet *next);
 /* Factorizes a positive definite matrix with `size` rows. Errors: SOLVER, MEMORY. */
 starg_status triplets_factorise(starg_context *context, size_t size, const triplet *triplets,
                                 size_t count, sparse_factors **out);
-
-#endif

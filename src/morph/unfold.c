@@ -27,8 +27,6 @@
 #include "morph/unfold.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "geometry/predicates.h"
@@ -75,8 +73,7 @@ static void descent_free(descent *d) {
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(context, blocks[i]);
     for (int i = 0; i < MEMORY; i++) {
-        starg_release(context, d->moves[i]);
-        starg_release(context, d->bends[i]);
+        RELEASE(d->moves[i], d->bends[i]);
     }
 }
 
@@ -174,14 +171,14 @@ done:
 
 /* Extends it to the inside: each vertex takes the mean over its tetrahedra. */
 static starg_status find_growth(const unfold_problem *p, double **out) {
-    starg_status status = STARG_OK;
-    double *sums = NULL, *growth = NULL;
-    uint32_t *counts = NULL;
-    STARG_NEW_ZERO(p->context, STAGE, *out, p->vertex_count);
+    SCOPED double *sums = NULL;
+    double *growth = NULL;
+    SCOPED uint32_t *counts = NULL;
+    NEW_ZERO(p->context, STAGE, *out, p->vertex_count);
     growth = *out;
-    STARG_NEW(p->context, STAGE, sums, p->vertex_count);
-    STARG_NEW(p->context, STAGE, counts, p->vertex_count);
-    STARG_TRY(find_growth_outside(p, growth));
+    NEW(p->context, STAGE, sums, p->vertex_count);
+    NEW(p->context, STAGE, counts, p->vertex_count);
+    TRY(find_growth_outside(p, growth));
     for (int sweep = 0; sweep < GROWTH_SWEEPS; sweep++) {
         memset(sums, 0, p->vertex_count * sizeof *sums);
         memset(counts, 0, p->vertex_count * sizeof *counts);
@@ -195,18 +192,15 @@ static starg_status find_growth(const unfold_problem *p, double **out) {
             if (counts[v] > 0)
                 growth[v] = sums[v] / counts[v];
     }
-done:
-    starg_release(p->context, sums);
-    starg_release(p->context, counts);
-    return status;
+    return STARG_OK;
 }
 
 /* Rest places are scaled by the growth, so that determinants are about 1. */
 static starg_status prepare_tetrahedra(descent *d) {
-    starg_status status = STARG_OK;
     const unfold_problem *p = d->p;
-    double rest = volume_of(p, p->rest), *growth = NULL;
-    STARG_TRY(find_growth(p, &growth));
+    double rest = volume_of(p, p->rest);
+    SCOPED double *growth = NULL;
+    TRY(find_growth(p, &growth));
     for (size_t t = 0; t < p->count; t++) {
         const uint32_t *corners = p->tetrahedra + 4 * t;
         matrix e;
@@ -222,30 +216,26 @@ static starg_status prepare_tetrahedra(descent *d) {
         }
         d->weights[t] = d->by_volume ? six / 6 / rest : 1 / (double)p->count;
     }
-done:
-    starg_release(p->context, growth);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status prepare(descent *d) {
-    starg_status status = STARG_OK;
     const unfold_problem *p = d->p;
     d->size = 3 * (p->vertex_count - p->fixed);
     d->extent = extent_of(p);
-    STARG_NEW(p->context, STAGE, d->gradients, p->count);
-    STARG_NEW(p->context, STAGE, d->weights, p->count);
-    STARG_NEW(p->context, STAGE, d->trial, 3 * p->vertex_count);
-    STARG_NEW(p->context, STAGE, d->slope, d->size);
-    STARG_NEW(p->context, STAGE, d->former, d->size);
-    STARG_NEW(p->context, STAGE, d->way, d->size);
+    NEW(p->context, STAGE, d->gradients, p->count);
+    NEW(p->context, STAGE, d->weights, p->count);
+    NEW(p->context, STAGE, d->trial, 3 * p->vertex_count);
+    NEW(p->context, STAGE, d->slope, d->size);
+    NEW(p->context, STAGE, d->former, d->size);
+    NEW(p->context, STAGE, d->way, d->size);
     for (int i = 0; i < MEMORY; i++) {
-        STARG_NEW(p->context, STAGE, d->moves[i], d->size);
-        STARG_NEW(p->context, STAGE, d->bends[i], d->size);
+        NEW(p->context, STAGE, d->moves[i], d->size);
+        NEW(p->context, STAGE, d->bends[i], d->size);
     }
-    STARG_TRY(prepare_tetrahedra(d));
+    TRY(prepare_tetrahedra(d));
     memcpy(d->trial, p->now, 3 * p->vertex_count * sizeof *d->trial);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- energy ---- */
@@ -428,16 +418,14 @@ static bool make_step(descent *d, double *energy) {
 
 /* Up to `steps` steps with the same epsilon. */
 static starg_status go_down(descent *d, size_t steps, double *energy) {
-    starg_status status = STARG_OK;
     d->pairs = 0;
     *energy = evaluate(d, d->p->now, d->slope);
     for (size_t i = 0; i < steps; i++) {
-        STARG_TRY(starg_check_cancel(d->p->context, STAGE));
+        TRY(starg_check_cancel(d->p->context, STAGE));
         if (!make_step(d, energy))
             break;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- public functions ---- */
@@ -458,20 +446,19 @@ static double lowered(descent *d, double before) {
 }
 
 starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
-    starg_status status = STARG_OK;
-    descent d = {.p = p};
+    SCOPED_BY(descent_free) descent d = {.p = p};
     size_t least = SIZE_MAX;
     int idle = 0, most_idle = p->springs.count > 0 ? ROUNDS_IDLE_SPRINGS : ROUNDS_IDLE;
     *inverted = unfold_count(p);
     if (*inverted == 0 || p->fixed >= p->vertex_count)
         return STARG_OK;
-    STARG_TRY(prepare(&d));
+    TRY(prepare(&d));
     evaluate(&d, p->now, NULL);
     d.epsilon = fmax(1e-3, sqrt(1e-6 + 0.04 * d.lowest * d.lowest));
     for (size_t done_steps = 0; done_steps<steps && * inverted> 0 && idle < most_idle;
          done_steps += ROUND) {
         double before = evaluate(&d, p->now, NULL), after;
-        STARG_TRY(go_down(&d, ROUND, &after));
+        TRY(go_down(&d, ROUND, &after));
         *inverted = unfold_count(p);
         d.epsilon = lowered(&d, before);
         if (p->springs.move != NULL)
@@ -479,25 +466,20 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
         idle = *inverted < least ? 0 : idle + 1;
         least = *inverted < least ? *inverted : least;
     }
-done:
-    descent_free(&d);
-    return status;
+    return STARG_OK;
 }
 
 starg_status unfold_relax(const unfold_problem *p, size_t steps) {
-    starg_status status = STARG_OK;
-    descent d = {.p = p, .by_volume = true};
+    SCOPED_BY(descent_free) descent d = {.p = p, .by_volume = true};
     double before, after = INFINITY;
     if (p->fixed >= p->vertex_count || steps == 0)
         return STARG_OK;
-    STARG_TRY(prepare(&d));
+    TRY(prepare(&d));
     for (size_t made = 0; made < steps; made += ROUND) {
         before = after;
-        STARG_TRY(go_down(&d, steps - made < ROUND ? steps - made : ROUND, &after));
+        TRY(go_down(&d, steps - made < ROUND ? steps - made : ROUND, &after));
         if (!(after < before * (1 - LEAST_GAIN)))
             break;
     }
-done:
-    descent_free(&d);
-    return status;
+    return STARG_OK;
 }

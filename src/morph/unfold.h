@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Maps of tetrahedra without inversions, and with little distortion. */
-#ifndef STARG_MORPH_UNFOLD_H
-#define STARG_MORPH_UNFOLD_H
+#pragma once
 
 #include "core/context.h"
 
@@ -39,5 +38,3 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted);
 /* Lowers the distortion of tetrahedra that are all positive, and stay so, in at most so many steps
  * of descent. Errors: MEMORY, CANCELLED. */
 starg_status unfold_relax(const unfold_problem *p, size_t steps);
-
-#endif

@@ -9,8 +9,6 @@
  * O(faces crossed). */
 #include "morph/walk.h"
 
-#include <math.h>
-
 #include "geometry/vec3.h"
 
 enum { CROSSINGS = 200 };

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Straight lines on a triangulated surface. */
-#ifndef STARG_MORPH_WALK_H
-#define STARG_MORPH_WALK_H
+#pragma once
 
 #include "mesh/topology.h"
 
@@ -23,5 +22,3 @@ bool surface_gradient(const starg_mesh *mesh, const surface_point *point, const 
  * zero-area face, at a border, and after a great many faces. */
 void surface_walk(const starg_mesh *mesh, const mesh_topology *topology, const double step[3],
                   surface_point *point);
-
-#endif

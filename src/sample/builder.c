@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "sample/solids.h"
 
-#include "core/memory.h"
 #include "core/rng.h"
 
 static const char STAGE[] = "sample";
@@ -29,20 +28,18 @@ static starg_status grow(starg_context *context, key_map *map) {
         larger.keys[slot] = map->keys[i];
         larger.numbers[slot] = map->numbers[i];
     }
-    key_map_free(context, map);
+    key_map_free(map);
     *map = larger;
 done:
     if (status != STARG_OK)
-        key_map_free(context, &larger);
+        key_map_free(&larger);
     return status;
 }
 
 starg_status key_map_add(starg_context *context, key_map *map, uint64_t key, uint32_t *number,
                          bool *added) {
     if (2 * map->count >= map->slots) {
-        starg_status status = grow(context, map);
-        if (status != STARG_OK)
-            return status;
+        TRY(grow(context, map));
     }
     size_t slot = find_slot(map, key);
     *added = map->numbers[slot] == UINT32_MAX;
@@ -58,31 +55,26 @@ uint32_t key_map_find(const key_map *map, uint64_t key) {
     return map->slots == 0 ? UINT32_MAX : map->numbers[find_slot(map, key)];
 }
 
-void key_map_free(starg_context *context, key_map *map) {
-    starg_release(context, map->keys);
-    starg_release(context, map->numbers);
+void key_map_free(key_map *map) {
+    RELEASE(map->keys, map->numbers);
     *map = (key_map){0};
 }
 
 starg_status builder_vertex(mesh_builder *builder, uint64_t key, const double position[3],
                             uint32_t *vertex) {
-    starg_status status = STARG_OK;
     bool added = false;
-    STARG_TRY(key_map_add(builder->context, &builder->names, key, vertex, &added));
+    TRY(key_map_add(builder->context, &builder->names, key, vertex, &added));
     if (added)
         for (int k = 0; k < 3; k++)
-            STARG_PUSH(builder->context, STAGE, &builder->positions, position[k]);
-done:
-    return status;
+            PUSH(builder->context, STAGE, &builder->positions, position[k]);
+    return STARG_OK;
 }
 
 starg_status builder_triangle(mesh_builder *builder, uint32_t a, uint32_t b, uint32_t c) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(builder->context, STAGE, &builder->faces, a);
-    STARG_PUSH(builder->context, STAGE, &builder->faces, b);
-    STARG_PUSH(builder->context, STAGE, &builder->faces, c);
-done:
-    return status;
+    PUSH(builder->context, STAGE, &builder->faces, a);
+    PUSH(builder->context, STAGE, &builder->faces, b);
+    PUSH(builder->context, STAGE, &builder->faces, c);
+    return STARG_OK;
 }
 
 starg_status builder_quad(mesh_builder *builder, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
@@ -97,8 +89,7 @@ starg_status builder_finish(mesh_builder *builder, starg_mesh **out) {
 }
 
 void builder_free(mesh_builder *builder) {
-    key_map_free(builder->context, &builder->names);
-    STARG_ARRAY_FREE(builder->context, &builder->positions);
-    STARG_ARRAY_FREE(builder->context, &builder->faces);
+    key_map_free(&builder->names);
+    RELEASE(builder->positions.data, builder->faces.data);
     *builder = (mesh_builder){.context = builder->context};
 }

@@ -10,8 +10,6 @@
  *   - Level: cells of a maze, with a floor, with walls that are sheets without thickness, and with
  *     crates that have no bottom. Nothing is closed and nothing shares a vertex with what it
  * touches. Cost: that of the output. */
-#include <math.h>
-#include <string.h>
 
 #include "core/rng.h"
 #include "sample/solids.h"
@@ -41,7 +39,6 @@ static starg_status vertex_at(building *b, const size_t at[3], uint32_t *vertex)
  * next two axes; its front is towards the positive axis, or the negative one. */
 static starg_status add_rectangle(building *b, int axis, const size_t from[3], const size_t size[2],
                                   bool positive) {
-    starg_status status = STARG_OK;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     size_t n = b->parts;
     for (size_t i = 0; i < size[0] * n; i++)
@@ -51,18 +48,16 @@ static starg_status add_rectangle(building *b, int axis, const size_t from[3], c
                 size_t at[3] = {from[0] * n, from[1] * n, from[2] * n};
                 at[u] += i + (k == 1 || k == 2);
                 at[v] += j + (k >= 2);
-                STARG_TRY(vertex_at(b, at, &q[k]));
+                TRY(vertex_at(b, at, &q[k]));
             }
-            STARG_TRY(positive ? builder_quad(&b->mesh, q[0], q[1], q[2], q[3])
-                               : builder_quad(&b->mesh, q[3], q[2], q[1], q[0]));
+            TRY(positive ? builder_quad(&b->mesh, q[0], q[1], q[2], q[3])
+                         : builder_quad(&b->mesh, q[3], q[2], q[1], q[0]));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A box with its fronts outside; `floor`: with its bottom. */
 static starg_status add_box(building *b, const size_t from[3], const size_t size[3], bool floor) {
-    starg_status status = STARG_OK;
     b->piece++;
     for (int axis = 0; axis < 3; axis++)
         for (int side = 0; side < 2; side++) {
@@ -70,10 +65,9 @@ static starg_status add_box(building *b, const size_t from[3], const size_t size
             const size_t extent[2] = {size[(axis + 1) % 3], size[(axis + 2) % 3]};
             at[axis] += side * size[axis];
             if (floor || axis != 1 || side == 1)
-                STARG_TRY(add_rectangle(b, axis, at, extent, side == 1));
+                TRY(add_rectangle(b, axis, at, extent, side == 1));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the office ---- */
@@ -118,7 +112,6 @@ static bool is_air(const office *o, size_t x, size_t y, size_t z) {
 
 /* The squares between air and matter, with their fronts to the air. */
 static starg_status add_air(building *b, const office *o) {
-    starg_status status = STARG_OK;
     const size_t size[3] = {length_of(o), o->storeys * (STOREY + WALL), DEPTH}, one[2] = {1, 1};
     for (size_t x = 0; x < size[0]; x++)
         for (size_t y = 0; y < size[1]; y++)
@@ -131,37 +124,31 @@ static starg_status add_air(building *b, const office *o) {
                         next[axis] += side == 1 ? 1 : SIZE_MAX; /* below 0 wraps around */
                         at[axis] += side;
                         if (!is_air(o, next[0], next[1], next[2]))
-                            STARG_TRY(add_rectangle(b, axis, at, one, side == 0));
+                            TRY(add_rectangle(b, axis, at, one, side == 0));
                     }
             }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A desk, a chair and a cabinet; chance moves them. */
 static starg_status furnish(building *b, size_t x, size_t y, size_t z, starg_rng *rng) {
-    starg_status status = STARG_OK;
     size_t desk = x + 3 + starg_rng_below(rng, 2), deep = z + 2 + starg_rng_below(rng, 3);
-    STARG_TRY(add_box(b, (const size_t[]){desk, y, deep}, (const size_t[]){3, 2, 2}, true));
-    STARG_TRY(add_box(b, (const size_t[]){desk + 1, y, deep + 3}, (const size_t[]){1, 1, 1}, true));
-    STARG_TRY(add_box(b, (const size_t[]){x + ROOM_WIDTH - 1, y, z + 6}, (const size_t[]){1, 4, 2},
-                      true));
-done:
-    return status;
+    TRY(add_box(b, (const size_t[]){desk, y, deep}, (const size_t[]){3, 2, 2}, true));
+    TRY(add_box(b, (const size_t[]){desk + 1, y, deep + 3}, (const size_t[]){1, 1, 1}, true));
+    return add_box(b, (const size_t[]){x + ROOM_WIDTH - 1, y, z + 6}, (const size_t[]){1, 4, 2},
+                   true);
 }
 
 static starg_status build_office(building *b, const office *o) {
-    starg_status status = STARG_OK;
-    STARG_TRY(add_air(b, o));
+    TRY(add_air(b, o));
     for (size_t room = 0; room < 2 * o->rooms * o->storeys; room++) {
         starg_rng rng = starg_rng_make(1, 6, room);
         size_t side = room % 2, along = room / 2 % o->rooms, storey = room / 2 / o->rooms;
-        STARG_TRY(starg_check_cancel(b->mesh.context, "sample"));
-        STARG_TRY(furnish(b, along * (ROOM_WIDTH + WALL), storey * (STOREY + WALL),
-                          side * (ROOM_DEPTH + 2 * WALL + CORRIDOR), &rng));
+        TRY(starg_check_cancel(b->mesh.context, "sample"));
+        TRY(furnish(b, along * (ROOM_WIDTH + WALL), storey * (STOREY + WALL),
+                    side * (ROOM_DEPTH + 2 * WALL + CORRIDOR), &rng));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the level ---- */
@@ -169,42 +156,38 @@ done:
 enum { CELL = 8, LEVEL_WALL = 5 };
 
 static starg_status build_level(building *b, size_t cells) {
-    starg_status status = STARG_OK;
     const size_t floor[2] = {CELL, CELL};
     for (size_t i = 0; i < cells * cells; i++) {
         starg_rng rng = starg_rng_make(1, 7, i);
         size_t x = i % cells * CELL, z = i / cells * CELL;
-        STARG_TRY(starg_check_cancel(b->mesh.context, "sample"));
+        TRY(starg_check_cancel(b->mesh.context, "sample"));
         b->piece++;
-        STARG_TRY(add_rectangle(b, 1, (const size_t[]){x, 0, z}, floor, true));
+        TRY(add_rectangle(b, 1, (const size_t[]){x, 0, z}, floor, true));
         /* a maze: each cell has a wall towards one of two sides, with a gap; the border is closed
          */
         bool across = starg_rng_below(&rng, 2) == 0;
         const size_t gap = 2 + starg_rng_below(&rng, 3);
         b->piece++;
         if (x == 0 || across)
-            STARG_TRY(add_rectangle(b, 0, (const size_t[]){x, 0, z},
-                                    (const size_t[]){LEVEL_WALL, x == 0 ? CELL : CELL - gap},
-                                    true));
+            TRY(add_rectangle(b, 0, (const size_t[]){x, 0, z},
+                              (const size_t[]){LEVEL_WALL, x == 0 ? CELL : CELL - gap}, true));
         b->piece++;
         if (z == 0 || !across)
-            STARG_TRY(add_rectangle(b, 2, (const size_t[]){x, 0, z},
-                                    (const size_t[]){z == 0 ? CELL : CELL - gap, LEVEL_WALL},
-                                    true));
+            TRY(add_rectangle(b, 2, (const size_t[]){x, 0, z},
+                              (const size_t[]){z == 0 ? CELL : CELL - gap, LEVEL_WALL}, true));
         b->piece++;
         if (x + CELL == cells * CELL)
-            STARG_TRY(add_rectangle(b, 0, (const size_t[]){x + CELL, 0, z},
-                                    (const size_t[]){LEVEL_WALL, CELL}, false));
+            TRY(add_rectangle(b, 0, (const size_t[]){x + CELL, 0, z},
+                              (const size_t[]){LEVEL_WALL, CELL}, false));
         b->piece++;
         if (z + CELL == cells * CELL)
-            STARG_TRY(add_rectangle(b, 2, (const size_t[]){x, 0, z + CELL},
-                                    (const size_t[]){CELL, LEVEL_WALL}, false));
+            TRY(add_rectangle(b, 2, (const size_t[]){x, 0, z + CELL},
+                              (const size_t[]){CELL, LEVEL_WALL}, false));
         size_t tall = 1 + starg_rng_below(&rng, 3);
-        STARG_TRY(add_box(b, (const size_t[]){x + 3, 0, z + 3 + starg_rng_below(&rng, 2)},
-                          (const size_t[]){2, tall, 2}, false));
+        TRY(add_box(b, (const size_t[]){x + 3, 0, z + 3 + starg_rng_below(&rng, 2)},
+                    (const size_t[]){2, tall, 2}, false));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- sizes ---- */
@@ -256,7 +239,6 @@ done:
 /* A box with quads of about the size, which may overlap what is there. */
 static starg_status append_box(mesh_builder *mesh, const double lower[3], const double upper[3],
                                double size) {
-    starg_status status = STARG_OK;
     size_t steps[3];
     for (int k = 0; k < 3; k++)
         steps[k] = (size_t)fmin(UNIT_STEPS, fmax(1, floor((upper[k] - lower[k]) / size + 0.5)));
@@ -276,37 +258,33 @@ static starg_status append_box(mesh_builder *mesh, const double lower[3], const 
                                                  : lower[d] + (upper[d] - lower[d]) *
                                                                   (double)at[d] / (double)steps[d];
                     uint64_t key = (uint64_t)1 << 40 | at[0] << 20 | at[1] << 10 | at[2];
-                    STARG_TRY(builder_vertex(mesh, key, p, &q[k]));
+                    TRY(builder_vertex(mesh, key, p, &q[k]));
                 }
-                STARG_TRY(side == 1 ? builder_quad(mesh, q[0], q[1], q[2], q[3])
-                                    : builder_quad(mesh, q[3], q[2], q[1], q[0]));
+                TRY(side == 1 ? builder_quad(mesh, q[0], q[1], q[2], q[3])
+                              : builder_quad(mesh, q[3], q[2], q[1], q[0]));
             }
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status copy_mesh(mesh_builder *to, const starg_mesh *from) {
-    starg_status status = STARG_OK;
     uint32_t vertex;
     for (size_t v = 0; v < from->vertex_count; v++)
-        STARG_TRY(builder_vertex(to, v, from->vertices + 3 * v, &vertex));
+        TRY(builder_vertex(to, v, from->vertices + 3 * v, &vertex));
     for (size_t f = 0; f < from->face_count; f++)
-        STARG_TRY(builder_triangle(to, from->faces[3 * f], from->faces[3 * f + 1],
-                                   from->faces[3 * f + 2]));
-done:
-    return status;
+        TRY(builder_triangle(to, from->faces[3 * f], from->faces[3 * f + 1],
+                             from->faces[3 * f + 2]));
+    return STARG_OK;
 }
 
 /* A person whose feet are sunk into the top of a plinth. */
 starg_status solid_statue(starg_context *context, size_t vertex_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder mesh = {.context = context};
-    starg_mesh *person = NULL;
+    SCOPED_BY(builder_free) mesh_builder mesh = {.context = context};
+    SCOPED_BY(starg_mesh_drop) starg_mesh *person = NULL;
     double lower[3], upper[3], height;
     size_t of_figure = vertex_count * 9 / 10;
-    STARG_TRY(solid_figure(context, FIGURE_HUMAN, 0, of_figure < 450 ? 450 : of_figure, &person));
-    STARG_TRY(copy_mesh(&mesh, person));
+    TRY(solid_figure(context, FIGURE_HUMAN, 0, of_figure < 450 ? 450 : of_figure, &person));
+    TRY(copy_mesh(&mesh, person));
     starg_mesh_bounds(person, lower, upper);
     height = upper[1] - lower[1];
     for (int k = 0; k < 3; k += 2) {
@@ -316,10 +294,6 @@ starg_status solid_statue(starg_context *context, size_t vertex_count, starg_mes
     }
     upper[1] = lower[1] + 0.01 * height;
     lower[1] -= 0.3 * height;
-    STARG_TRY(append_box(&mesh, lower, upper, height * sqrt(1.5 / (0.1 * (double)vertex_count))));
-    STARG_TRY(builder_finish(&mesh, out));
-done:
-    starg_mesh_free(person);
-    builder_free(&mesh);
-    return status;
+    TRY(append_box(&mesh, lower, upper, height * sqrt(1.5 / (0.1 * (double)vertex_count))));
+    return builder_finish(&mesh, out);
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The catalogue of samples and their generators. */
 #include <math.h>
-#include <string.h>
 
-#include "core/context.h"
 #include "core/fields.h"
 #include "sample/solids.h"
 #include "starguard/sample.h"
@@ -53,16 +51,16 @@ static void solid_bend(starg_mesh *mesh, int pose) {
     }
 }
 
-enum { MIN_VERTICES = 500, MAX_VERTICES = 10000000 };
+enum { MIN_VERTICES = 20, MIN_SMOOTH = 500, MAX_VERTICES = 10000000 };
 
 typedef starg_status make_solid(starg_context *context, size_t vertex_count, starg_mesh **out);
 
-typedef enum origin { FIGURE, WARE, RIGID } origin;
+typedef enum origin { FIGURE, WARE, BLOCKS, RIGID } origin;
 
 typedef struct entry {
     starg_sample_info info;
     origin origin;
-    int kind;         /* figure_kind or ware_kind */
+    int kind;         /* figure_kind, ware_kind or blocks_kind */
     make_solid *make; /* if RIGID */
 } entry;
 
@@ -80,6 +78,16 @@ static const entry CATALOGUE[] = {
     {{"bearing", "a bearing with screw holes", WARE_MEMBERS, false}, WARE, WARE_BEARING, NULL},
     {{"table", "a table on legs or a pillar", WARE_MEMBERS, false}, WARE, WARE_TABLE, NULL},
     {{"tool", "a spanner", WARE_MEMBERS, false}, WARE, WARE_TOOL, NULL},
+    {{"polycube", "cubes, grown at random", BLOCKS_MEMBERS, false}, BLOCKS, BLOCKS_POLYCUBE, NULL},
+    {{"maze", "a tree of corridors", BLOCKS_MEMBERS, false}, BLOCKS, BLOCKS_MAZE, NULL},
+    {{"comb", "a slab with teeth of random lengths", BLOCKS_MEMBERS, false},
+     BLOCKS,
+     BLOCKS_COMB,
+     NULL},
+    {{"spikes", "a room with spikes in its walls", BLOCKS_MEMBERS, false},
+     BLOCKS,
+     BLOCKS_SPIKES,
+     NULL},
     {{"l-room", "an L-shaped room", 1, false}, RIGID, 0, solid_l_room},
     {{"gallery", "a hall with niches and eight round columns", 1, false}, RIGID, 0, solid_gallery},
     {{"labyrinth", "a corridor wound into a spiral", 1, false}, RIGID, 0, solid_labyrinth},
@@ -115,7 +123,8 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_sample_options, pose),
      .most = 1000,
      .value = "K",
-     .help = "Pose of an animal (all have the same faces), or member of a family such as vases."},
+     .help = "Pose of an animal (all have the same faces), or member of a family such as vases or "
+             "mazes."},
     {.key = "vertex_count",
      .option = "vertices",
      .kind = STARG_FIELD_COUNT,
@@ -160,6 +169,11 @@ starg_status starg_sample_create(starg_context *context, const char *name,
                           "'%s' has no pose %d; its poses are 0 to %d", name, o->pose,
                           e->info.poses - 1);
     starg_status status = fields_check(context, STAGE, &OPTIONS_TABLE, o);
+    if (status == STARG_OK && e->origin != BLOCKS && o->vertex_count < MIN_SMOOTH)
+        status =
+            starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                       "'%s' has at least %d vertices, not %zu; solids of cubes may have fewer",
+                       name, MIN_SMOOTH, o->vertex_count);
     if (status == STARG_OK)
         status = starg_check_cancel(context, STAGE);
     if (status != STARG_OK)
@@ -168,6 +182,8 @@ starg_status starg_sample_create(starg_context *context, const char *name,
         return solid_figure(context, (figure_kind)e->kind, o->pose, o->vertex_count, out);
     if (e->origin == WARE)
         return solid_ware(context, (ware_kind)e->kind, o->pose, o->vertex_count, out);
+    if (e->origin == BLOCKS)
+        return solid_blocks(context, (blocks_kind)e->kind, o->pose, o->vertex_count, out);
     status = e->make(context, o->vertex_count, out);
     if (status == STARG_OK)
         solid_bend(*out, o->pose);

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Builds figures: vertebrates from their tables, the octopus from one arm. */
-#include "sample/solids.h"
-
-#include <math.h>
 
 #include "geometry/vec3.h"
 #include "sample/vertebrate.h"

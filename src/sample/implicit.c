@@ -9,8 +9,6 @@
  * of the rest. */
 #include "sample/solids.h"
 
-#include <math.h>
-
 #include "geometry/vec3.h"
 
 /* The ball about the axis' middle that contains the grown outline. */

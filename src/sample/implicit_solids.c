@@ -28,99 +28,77 @@ static double box_diagonal(const implicit_field *field) {
 
 static starg_status extract(starg_context *context, const implicit_field *field, double spacing,
                             starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder builder = {.context = context};
-    STARG_TRY(isosurface_extract(field, spacing, &builder));
-    STARG_TRY(builder_finish(&builder, out));
-done:
-    builder_free(&builder);
-    return status;
+    SCOPED_BY(builder_free) mesh_builder builder = {.context = context};
+    TRY(isosurface_extract(field, spacing, &builder));
+    return builder_finish(&builder, out);
 }
 
 /* A web between two fingers becomes arbitrarily thin near its edge, so a lattice may see holes in
  * it: then a slightly finer one is tried. */
 static starg_status extract_genus(starg_context *context, const implicit_field *field, int genus,
                                   double spacing, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
     for (int attempt = 0; attempt < MAX_ATTEMPTS; attempt++) {
         starg_mesh_free(mesh);
         mesh = NULL;
-        STARG_TRY(extract(context, field, spacing, &mesh));
+        TRY(extract(context, field, spacing, &mesh));
         if (2 * mesh->vertex_count + 4 * (size_t)genus == mesh->face_count + 4)
             break;
         spacing *= 0.95;
     }
     *out = mesh;
     mesh = NULL;
-done:
-    starg_mesh_free(mesh);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status mesh_field(starg_context *context, const implicit_field *field, int genus,
                                size_t vertex_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    starg_mesh *raw = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *raw = NULL;
     double spacing = FIRST_SPACING * box_diagonal(field);
-    STARG_TRY(extract_genus(context, field, genus, spacing, &raw));
+    TRY(extract_genus(context, field, genus, spacing, &raw));
     double wanted = EXCESS * (double)vertex_count;
     if ((double)raw->vertex_count < wanted) {
         spacing *= sqrt((double)raw->vertex_count / wanted);
         starg_mesh_free(raw);
         raw = NULL;
-        STARG_TRY(extract_genus(context, field, genus, spacing, &raw));
+        TRY(extract_genus(context, field, genus, spacing, &raw));
     }
-    STARG_TRY(remesh_isosurface(context, field, raw, vertex_count, out));
-done:
-    starg_mesh_free(raw);
-    return status;
+    return remesh_isosurface(context, field, raw, vertex_count, out);
 }
 
 /* A copy of `rest`, bent into a pose. */
 static starg_status bend(starg_context *context, const figure *f, int pose, const starg_mesh *rest,
                          starg_mesh **out) {
-    starg_status status = STARG_OK;
-    starg_mesh *posed = NULL;
-    STARG_TRY(starg_mesh_create(context, rest->vertices, rest->vertex_count, rest->faces,
-                                rest->face_count, &posed));
-    STARG_TRY(skin_pose(context, f, pose, posed->vertices, posed->vertex_count));
-    STARG_TRY(unfold_mesh(context, rest, posed));
+    SCOPED_BY(starg_mesh_drop) starg_mesh *posed = NULL;
+    TRY(starg_mesh_create(context, rest->vertices, rest->vertex_count, rest->faces,
+                          rest->face_count, &posed));
+    TRY(skin_pose(context, f, pose, posed->vertices, posed->vertex_count));
+    TRY(unfold_mesh(context, rest, posed));
     *out = posed;
     posed = NULL;
-done:
-    starg_mesh_free(posed);
-    return status;
+    return STARG_OK;
 }
 
 starg_status solid_figure(starg_context *context, figure_kind kind, int pose, size_t vertex_count,
                           starg_mesh **out) {
-    starg_status status = STARG_OK;
-    figure *f = NULL;
-    starg_mesh *rest = NULL;
-    STARG_NEW(context, STAGE, f, 1);
+    SCOPED figure *f = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *rest = NULL;
+    NEW(context, STAGE, f, 1);
     figure_build(kind, f);
-    STARG_TRY(mesh_field(context, &f->field, 0, vertex_count, &rest));
+    TRY(mesh_field(context, &f->field, 0, vertex_count, &rest));
     if (pose == 0) {
         *out = rest;
         rest = NULL;
     } else {
-        STARG_TRY(bend(context, f, pose, rest, out));
+        TRY(bend(context, f, pose, rest, out));
     }
-done:
-    starg_mesh_free(rest);
-    starg_release(context, f);
-    return status;
+    return STARG_OK;
 }
 
 starg_status solid_ware(starg_context *context, ware_kind kind, int member, size_t vertex_count,
                         starg_mesh **out) {
-    starg_status status = STARG_OK;
-    ware *w = NULL;
-    STARG_NEW(context, STAGE, w, 1);
+    SCOPED ware *w = NULL;
+    NEW(context, STAGE, w, 1);
     ware_build(kind, member, w);
-    STARG_TRY(mesh_field(context, &w->field, w->genus, vertex_count, out));
-done:
-    starg_release(context, w);
-    return status;
+    return mesh_field(context, &w->field, w->genus, vertex_count, out);
 }

@@ -17,8 +17,6 @@
  * Cost: O(n) field values and look-ups for n cubes that the surface meets. */
 #include "sample/solids.h"
 
-#include <math.h>
-
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "sample";
@@ -63,7 +61,6 @@ static void point_position(const mesher *m, const lattice_point *p, double out[3
 
 /* A cube of the octree: its centre, and half its side in lattice units (a power of two). */
 static starg_status descend(mesher *m, const lattice_point *center, int64_t half) {
-    starg_status status = STARG_OK;
     double p[3];
     point_position(m, center, p);
     if (fabs(implicit_evaluate(m->field, p).value) > 1.7320509 * m->half * (double)half)
@@ -71,19 +68,17 @@ static starg_status descend(mesher *m, const lattice_point *center, int64_t half
     if (half == 1) {
         uint32_t number;
         bool added;
-        STARG_TRY(key_map_add(m->context, &m->cubes, point_key(center), &number, &added));
-        STARG_PUSH(m->context, STAGE, &m->cube_keys, point_key(center));
+        TRY(key_map_add(m->context, &m->cubes, point_key(center), &number, &added));
+        PUSH(m->context, STAGE, &m->cube_keys, point_key(center));
         return STARG_OK;
     }
     for (int octant = 0; octant < 8; octant++) {
         lattice_point child = *center;
         for (int k = 0; k < 3; k++)
             child.x[k] += (octant >> k & 1) ? half / 2 : -half / 2;
-        STARG_TRY(descend(m, &child, half / 2));
+        TRY(descend(m, &child, half / 2));
     }
-    STARG_TRY(starg_check_cancel(m->context, STAGE));
-done:
-    return status;
+    return starg_check_cancel(m->context, STAGE);
 }
 
 static starg_status find_cubes(mesher *m, double spacing) {
@@ -109,18 +104,16 @@ typedef struct corner {
 } corner;
 
 static starg_status load_corner(mesher *m, const lattice_point *point, corner *out) {
-    starg_status status = STARG_OK;
     uint32_t number;
     bool added;
-    STARG_TRY(key_map_add(m->context, &m->points, point_key(point), &number, &added));
+    TRY(key_map_add(m->context, &m->points, point_key(point), &number, &added));
     if (added) {
         double p[3];
         point_position(m, point, p);
-        STARG_PUSH(m->context, STAGE, &m->values, implicit_evaluate(m->field, p).value);
+        PUSH(m->context, STAGE, &m->values, implicit_evaluate(m->field, p).value);
     }
     *out = (corner){.point = *point, .value = m->values.data[number]};
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Lattice edges are identified by their midpoints, which are distinct. */
@@ -144,7 +137,6 @@ static starg_status cut_edge(mesher *m, const corner *a, const corner *b, uint32
 
 /* Cuts the tetrahedron c, of positive orientation: det(c1 - c0, c2 - c0, c3 - c0) > 0. */
 static starg_status cut_tetrahedron(mesher *m, const corner *const c[4]) {
-    starg_status status = STARG_OK;
     /* even permutations that move the inside corners (or, for three, the outside one) to the
      * front */
     static const int order[16][4] = {{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3},
@@ -163,29 +155,27 @@ static starg_status cut_tetrahedron(mesher *m, const corner *const c[4]) {
     const corner *p = c[o[0]], *q = c[o[1]], *r = c[o[2]], *s = c[o[3]];
     uint32_t v[4];
     if (count == 2) { /* p, q inside */
-        STARG_TRY(cut_edge(m, p, r, &v[0]));
-        STARG_TRY(cut_edge(m, p, s, &v[1]));
-        STARG_TRY(cut_edge(m, q, s, &v[2]));
-        STARG_TRY(cut_edge(m, q, r, &v[3]));
-        STARG_TRY(builder_quad(m->builder, v[0], v[1], v[2], v[3]));
+        TRY(cut_edge(m, p, r, &v[0]));
+        TRY(cut_edge(m, p, s, &v[1]));
+        TRY(cut_edge(m, q, s, &v[2]));
+        TRY(cut_edge(m, q, r, &v[3]));
+        TRY(builder_quad(m->builder, v[0], v[1], v[2], v[3]));
     } else if (count == 1) { /* p inside */
-        STARG_TRY(cut_edge(m, p, q, &v[0]));
-        STARG_TRY(cut_edge(m, p, r, &v[1]));
-        STARG_TRY(cut_edge(m, p, s, &v[2]));
-        STARG_TRY(builder_triangle(m->builder, v[0], v[1], v[2]));
+        TRY(cut_edge(m, p, q, &v[0]));
+        TRY(cut_edge(m, p, r, &v[1]));
+        TRY(cut_edge(m, p, s, &v[2]));
+        TRY(builder_triangle(m->builder, v[0], v[1], v[2]));
     } else { /* p outside */
-        STARG_TRY(cut_edge(m, q, p, &v[0]));
-        STARG_TRY(cut_edge(m, r, p, &v[1]));
-        STARG_TRY(cut_edge(m, s, p, &v[2]));
-        STARG_TRY(builder_triangle(m->builder, v[0], v[2], v[1]));
+        TRY(cut_edge(m, q, p, &v[0]));
+        TRY(cut_edge(m, r, p, &v[1]));
+        TRY(cut_edge(m, s, p, &v[2]));
+        TRY(builder_triangle(m->builder, v[0], v[2], v[1]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Cuts the four tetrahedra between a cube and its neighbour along an axis. */
 static starg_status cut_pair(mesher *m, const corner *center, const corner *neighbour, int axis) {
-    starg_status status = STARG_OK;
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     static const int turn[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     corner square[4];
@@ -194,22 +184,20 @@ static starg_status cut_pair(mesher *m, const corner *center, const corner *neig
         p.x[axis] += 1;
         p.x[u] += turn[i][0];
         p.x[v] += turn[i][1];
-        STARG_TRY(load_corner(m, &p, &square[i]));
+        TRY(load_corner(m, &p, &square[i]));
     }
     for (int i = 0; i < 4; i++) {
         const corner *const c[4] = {center, neighbour, &square[i], &square[(i + 1) % 4]};
-        STARG_TRY(cut_tetrahedron(m, c));
+        TRY(cut_tetrahedron(m, c));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Cuts all tetrahedra of a cube that no earlier cube has cut. */
 static starg_status cut_cube(mesher *m, uint64_t key) {
-    starg_status status = STARG_OK;
     lattice_point p = key_point(key);
     corner center, neighbour;
-    STARG_TRY(load_corner(m, &p, &center));
+    TRY(load_corner(m, &p, &center));
     for (int axis = 0; axis < 3; axis++)
         for (int step = -2; step <= 2; step += 4) {
             lattice_point q = p;
@@ -217,14 +205,13 @@ static starg_status cut_cube(mesher *m, uint64_t key) {
             /* a neighbour in the set cuts its upper side itself */
             if (step < 0 && key_map_find(&m->cubes, point_key(&q)) != UINT32_MAX)
                 continue;
-            STARG_TRY(load_corner(m, &q, &neighbour));
+            TRY(load_corner(m, &q, &neighbour));
             if (step < 0)
-                STARG_TRY(cut_pair(m, &neighbour, &center, axis));
+                TRY(cut_pair(m, &neighbour, &center, axis));
             else
-                STARG_TRY(cut_pair(m, &center, &neighbour, axis));
+                TRY(cut_pair(m, &center, &neighbour, axis));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status isosurface_extract(const implicit_field *field, double spacing,
@@ -237,9 +224,8 @@ starg_status isosurface_extract(const implicit_field *field, double spacing,
         STARG_TRY(starg_check_cancel(m.context, STAGE));
     }
 done:
-    key_map_free(m.context, &m.cubes);
-    key_map_free(m.context, &m.points);
-    STARG_ARRAY_FREE(m.context, &m.cube_keys);
-    STARG_ARRAY_FREE(m.context, &m.values);
+    key_map_free(&m.cubes);
+    key_map_free(&m.points);
+    RELEASE(m.cube_keys.data, m.values.data);
     return status;
 }

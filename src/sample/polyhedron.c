@@ -4,7 +4,6 @@
  *
  * Vertices are identified by their place: a corner, an edge and the step along it, or a face and
  * the two steps in it; neighbouring triangles share those on their common edge. */
-#include <math.h>
 
 #include "geometry/vec3.h"
 #include "sample/solids.h"
@@ -102,22 +101,20 @@ static starg_status patch_triangle(mesh_builder *builder, const patch *t, uint32
 }
 
 static starg_status add_patch(mesh_builder *builder, const patch *t) {
-    starg_status status = STARG_OK;
-    STARG_TRY(starg_check_cancel(builder->context, "sample"));
+    TRY(starg_check_cancel(builder->context, "sample"));
     for (uint32_t i = 0; i < t->n; i++)
         for (uint32_t j = 0; i + j < t->n; j++) {
             uint32_t a, b, c, d;
-            STARG_TRY(patch_point(builder, t, i, j, &a));
-            STARG_TRY(patch_point(builder, t, i + 1, j, &b));
-            STARG_TRY(patch_point(builder, t, i, j + 1, &c));
-            STARG_TRY(patch_triangle(builder, t, a, b, c));
+            TRY(patch_point(builder, t, i, j, &a));
+            TRY(patch_point(builder, t, i + 1, j, &b));
+            TRY(patch_point(builder, t, i, j + 1, &c));
+            TRY(patch_triangle(builder, t, a, b, c));
             if (i + j + 1 == t->n)
                 continue;
-            STARG_TRY(patch_point(builder, t, i + 1, j + 1, &d));
-            STARG_TRY(patch_triangle(builder, t, b, d, c));
+            TRY(patch_point(builder, t, i + 1, j + 1, &d));
+            TRY(patch_triangle(builder, t, b, d, c));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static uint32_t nearest_subdivision(double triangles_by_two, size_t vertex_count) {
@@ -127,7 +124,6 @@ static uint32_t nearest_subdivision(double triangles_by_two, size_t vertex_count
 
 static starg_status add_sphere(mesh_builder *builder, const double center[3], double radius,
                                uint32_t n, bool inward) {
-    starg_status status = STARG_OK;
     uint32_t faces[FACES][3];
     icosahedron_faces(faces);
     for (uint32_t f = 0; f < FACES; f++) {
@@ -137,45 +133,35 @@ static starg_status add_sphere(mesh_builder *builder, const double center[3], do
             t.names[k] = faces[f][k];
             icosahedron_corner(faces[f][k], t.corners[k]);
         }
-        STARG_TRY(add_patch(builder, &t));
+        TRY(add_patch(builder, &t));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status solid_sphere(starg_context *context, size_t vertex_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder builder = {.context = context};
+    SCOPED_BY(builder_free) mesh_builder builder = {.context = context};
     const double center[3] = {0, 0, 0};
-    STARG_TRY(add_sphere(&builder, center, 1, nearest_subdivision(10, vertex_count), false));
-    STARG_TRY(builder_finish(&builder, out));
-done:
-    builder_free(&builder);
-    return status;
+    TRY(add_sphere(&builder, center, 1, nearest_subdivision(10, vertex_count), false));
+    return builder_finish(&builder, out);
 }
 
 /* A ball with a ball-shaped cavity off its centre. */
 starg_status solid_shell(starg_context *context, size_t vertex_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder builder = {.context = context};
+    SCOPED_BY(builder_free) mesh_builder builder = {.context = context};
     const double center[3] = {0, 0, 0}, cavity[3] = {0.22, 0.1, 0.12}, radius = 0.58;
     uint32_t outer = nearest_subdivision(10 * (1 + radius * radius), vertex_count);
     size_t rest = vertex_count > 10 * (size_t)outer * outer + 2
                       ? vertex_count - 10 * (size_t)outer * outer - 2
                       : 0;
     uint32_t inner = rest < 42 ? 2 : nearest_subdivision(10, rest);
-    STARG_TRY(add_sphere(&builder, center, 1, outer, false));
-    STARG_TRY(add_sphere(&builder, cavity, radius, inner, true));
-    STARG_TRY(builder_finish(&builder, out));
-done:
-    builder_free(&builder);
-    return status;
+    TRY(add_sphere(&builder, center, 1, outer, false));
+    TRY(add_sphere(&builder, cavity, radius, inner, true));
+    return builder_finish(&builder, out);
 }
 
 /* The icosahedron with a tall pyramid on every face. */
 starg_status solid_star(starg_context *context, size_t vertex_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder builder = {.context = context};
+    SCOPED_BY(builder_free) mesh_builder builder = {.context = context};
     uint32_t faces[FACES][3], n = nearest_subdivision(30, vertex_count);
     const double core = 0.5, tip = 1.35; /* tip: in units of the face's centre at core radius 1 */
     icosahedron_faces(faces);
@@ -196,11 +182,8 @@ starg_status solid_star(starg_context *context, size_t vertex_count, starg_mesh 
             vec3_copy(corners[k], t.corners[0]);
             vec3_copy(corners[l], t.corners[1]);
             vec3_copy(apex, t.corners[2]);
-            STARG_TRY(add_patch(&builder, &t));
+            TRY(add_patch(&builder, &t));
         }
     }
-    STARG_TRY(builder_finish(&builder, out));
-done:
-    builder_free(&builder);
-    return status;
+    return builder_finish(&builder, out);
 }

@@ -10,7 +10,6 @@
  * The vertex count follows from the quads by Euler's formula (V = quads + 2 - 2 genus), so
  * bisection finds the step length for a wanted count without building a mesh. */
 #include <math.h>
-#include <string.h>
 
 #include "sample/solids.h"
 
@@ -195,20 +194,18 @@ static starg_status ring_vertex(mesh_builder *b, const cell *l, size_t ring, siz
 
 /* A wall below ring `ring` from border point a to a + 1, seen from inside the cell or not. */
 static starg_status add_wall(mesh_builder *b, const cell *l, size_t ring, size_t a) {
-    starg_status status = STARG_OK;
     for (size_t level = 0; level < l->c->levels; level++) {
         uint32_t p, q, r, s;
-        STARG_TRY(ring_vertex(b, l, ring, a, level, &p));
-        STARG_TRY(ring_vertex(b, l, ring, a, level + 1, &q));
-        STARG_TRY(ring_vertex(b, l, ring, a + 1, level + 1, &r));
-        STARG_TRY(ring_vertex(b, l, ring, a + 1, level, &s));
+        TRY(ring_vertex(b, l, ring, a, level, &p));
+        TRY(ring_vertex(b, l, ring, a, level + 1, &q));
+        TRY(ring_vertex(b, l, ring, a + 1, level + 1, &r));
+        TRY(ring_vertex(b, l, ring, a + 1, level, &s));
         if (ring == 0)
-            STARG_TRY(builder_quad(b, p, q, r, s));
+            TRY(builder_quad(b, p, q, r, s));
         else
-            STARG_TRY(builder_quad(b, p, s, r, q));
+            TRY(builder_quad(b, p, s, r, q));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_floor_quad(mesh_builder *b, const uint32_t q[4], bool top) {
@@ -216,58 +213,50 @@ static starg_status add_floor_quad(mesh_builder *b, const uint32_t q[4], bool to
 }
 
 static starg_status add_full_floor(mesh_builder *b, const cell *l, size_t level) {
-    starg_status status = STARG_OK;
     for (size_t x = 0; x < l->nx; x++)
         for (size_t z = 0; z < l->nz; z++) {
             uint32_t q[4];
-            STARG_TRY(grid_vertex(b, l, x, z, level, &q[0]));
-            STARG_TRY(grid_vertex(b, l, x, z + 1, level, &q[1]));
-            STARG_TRY(grid_vertex(b, l, x + 1, z + 1, level, &q[2]));
-            STARG_TRY(grid_vertex(b, l, x + 1, z, level, &q[3]));
-            STARG_TRY(add_floor_quad(b, q, level > 0));
+            TRY(grid_vertex(b, l, x, z, level, &q[0]));
+            TRY(grid_vertex(b, l, x, z + 1, level, &q[1]));
+            TRY(grid_vertex(b, l, x + 1, z + 1, level, &q[2]));
+            TRY(grid_vertex(b, l, x + 1, z, level, &q[3]));
+            TRY(add_floor_quad(b, q, level > 0));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_ring_floor(mesh_builder *b, const cell *l, size_t level) {
-    starg_status status = STARG_OK;
     for (size_t ring = 0; ring < l->rings; ring++)
         for (size_t a = 0; a < border_length(l); a++) {
             uint32_t q[4];
-            STARG_TRY(ring_vertex(b, l, ring, a, level, &q[0]));
-            STARG_TRY(ring_vertex(b, l, ring + 1, a, level, &q[1]));
-            STARG_TRY(ring_vertex(b, l, ring + 1, a + 1, level, &q[2]));
-            STARG_TRY(ring_vertex(b, l, ring, a + 1, level, &q[3]));
-            STARG_TRY(add_floor_quad(b, q, level > 0));
+            TRY(ring_vertex(b, l, ring, a, level, &q[0]));
+            TRY(ring_vertex(b, l, ring + 1, a, level, &q[1]));
+            TRY(ring_vertex(b, l, ring + 1, a + 1, level, &q[2]));
+            TRY(ring_vertex(b, l, ring, a + 1, level, &q[3]));
+            TRY(add_floor_quad(b, q, level > 0));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_cell(mesh_builder *b, const cell *l, bool pierced) {
-    starg_status status = STARG_OK;
     size_t levels[2] = {0, l->c->levels};
     for (int i = 0; i < 2; i++)
         if (pierced)
-            STARG_TRY(add_ring_floor(b, l, levels[i]));
+            TRY(add_ring_floor(b, l, levels[i]));
         else
-            STARG_TRY(add_full_floor(b, l, levels[i]));
+            TRY(add_full_floor(b, l, levels[i]));
     const size_t start[5] = {0, l->nx, l->nx + l->nz, 2 * l->nx + l->nz, border_length(l)};
     for (int side = 0; side < 4; side++)
         for (size_t a = start[side]; side_is_open(l, side) && a < start[side + 1]; a++)
-            STARG_TRY(add_wall(b, l, 0, a));
+            TRY(add_wall(b, l, 0, a));
     for (size_t a = 0; pierced && a < border_length(l); a++)
-        STARG_TRY(add_wall(b, l, l->rings, a));
-    STARG_TRY(starg_check_cancel(b->context, "sample"));
-done:
-    return status;
+        TRY(add_wall(b, l, l->rings, a));
+    return starg_check_cancel(b->context, "sample");
 }
 
 static starg_status make_prism(starg_context *context, const plan *p, size_t vertex_count,
                                starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder builder = {.context = context};
+    SCOPED_BY(builder_free) mesh_builder builder = {.context = context};
     cutting c = find_cutting(p, vertex_count);
     for (size_t row = 0; row < p->rows; row++)
         for (size_t column = 0; column < p->columns; column++) {
@@ -275,12 +264,9 @@ static starg_status make_prism(starg_context *context, const plan *p, size_t ver
             if (kind == ' ')
                 continue;
             cell l = make_cell(&c, column, row);
-            STARG_TRY(add_cell(&builder, &l, kind == 'o'));
+            TRY(add_cell(&builder, &l, kind == 'o'));
         }
-    STARG_TRY(builder_finish(&builder, out));
-done:
-    builder_free(&builder);
-    return status;
+    return builder_finish(&builder, out);
 }
 
 /* ---- plans ---- */

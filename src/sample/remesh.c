@@ -16,8 +16,6 @@
  * Cost: O(n) per pass; the number of passes grows with the logarithm of the coarsening. */
 #include "sample/solids.h"
 
-#include <math.h>
-
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "mesh/halfedges.h"
@@ -47,26 +45,20 @@ static uint32_t edge_end(const surface *s, uint32_t h) {
 }
 
 static void surface_free(surface *s) {
-    starg_release(s->context, s->positions);
-    starg_release(s->context, s->moved);
-    starg_release(s->context, s->thickness);
+    RELEASE(s->positions, s->moved, s->thickness);
     halfedges_free(&s->mesh);
 }
 
 static starg_status surface_make(surface *s, const starg_mesh *raw) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     s->vertex_count = s->live = raw->vertex_count;
     s->halfedge_count = 3 * raw->face_count;
-    STARG_NEW(s->context, STAGE, s->positions, 3 * s->vertex_count);
-    STARG_NEW(s->context, STAGE, s->moved, 3 * s->vertex_count);
-    STARG_NEW(s->context, STAGE, s->thickness, s->vertex_count);
+    NEW(s->context, STAGE, s->positions, 3 * s->vertex_count);
+    NEW(s->context, STAGE, s->moved, 3 * s->vertex_count);
+    NEW(s->context, STAGE, s->thickness, s->vertex_count);
     memcpy(s->positions, raw->vertices, 3 * s->vertex_count * sizeof *s->positions);
-    STARG_TRY(topology_create(s->context, raw, &topology));
-    STARG_TRY(halfedges_create(topology, raw, STAGE, &s->mesh));
-done:
-    topology_free(topology);
-    return status;
+    TRY(topology_create(s->context, raw, &topology));
+    return halfedges_create(topology, raw, STAGE, &s->mesh);
 }
 
 /* The half-edges around v; 0 if there are more than MAX_RING. */
@@ -264,17 +256,15 @@ static double mean_cost(const surface *s) {
 /* Passes over all edges with a rising limit, until the number is reached or nothing more can
  * collapse: at 10^6 times the mean cost every edge has been tried. */
 static starg_status coarsen(surface *s, size_t vertex_count) {
-    starg_status status = STARG_OK;
     double mean = mean_cost(s);
     for (double limit = 0.02 * mean; s->live > vertex_count && limit < 1e6 * mean; limit *= 1.35) {
-        STARG_TRY(starg_check_cancel(s->context, STAGE));
+        TRY(starg_check_cancel(s->context, STAGE));
         for (uint32_t h = 0; h < s->halfedge_count && s->live > vertex_count; h++)
             if (is_edge(s, h) && edge_cost(s, h) < limit)
                 collapse_edge(s, h);
         flip_edges(s);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- smoothing ---- */
@@ -314,42 +304,32 @@ static starg_status smooth(surface *s) {
 
 /* Makes the mesh of the remaining vertices. */
 static starg_status compact(const surface *s, starg_mesh **out) {
-    starg_status status = STARG_OK;
     size_t face_count = 0;
-    uint32_t *faces = NULL, *number = NULL;
-    double *vertices = NULL;
+    SCOPED uint32_t *faces = NULL, *number = NULL;
+    SCOPED double *vertices = NULL;
     for (size_t f = 0; f < s->halfedge_count / 3; f++)
         face_count += halfedges_face_lives(&s->mesh, f);
-    STARG_NEW(s->context, STAGE, number, s->vertex_count);
-    STARG_NEW(s->context, STAGE, vertices, 3 * s->live);
-    STARG_NEW(s->context, STAGE, faces, 3 * face_count);
+    NEW(s->context, STAGE, number, s->vertex_count);
+    NEW(s->context, STAGE, vertices, 3 * s->live);
+    NEW(s->context, STAGE, faces, 3 * face_count);
     uint32_t count = halfedges_compact(&s->mesh, number, faces);
     for (uint32_t v = 0; v < s->vertex_count; v++)
         if (s->mesh.leaving.data[v] != TOPOLOGY_NONE)
             vec3_copy(position(s, v), vertices + 3 * (size_t)number[v]);
-    STARG_TRY(starg_mesh_create(s->context, vertices, count, faces, face_count, out));
-done:
-    starg_release(s->context, number);
-    starg_release(s->context, vertices);
-    starg_release(s->context, faces);
-    return status;
+    return starg_mesh_create(s->context, vertices, count, faces, face_count, out);
 }
 
 starg_status remesh_isosurface(starg_context *context, const implicit_field *field,
                                const starg_mesh *raw, size_t vertex_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    surface s = {.context = context, .field = field};
+    SCOPED_BY(surface_free) surface s = {.context = context, .field = field};
     *out = NULL;
-    STARG_TRY(surface_make(&s, raw));
-    STARG_TRY(for_vertices(&s, measure_thickness));
-    STARG_TRY(coarsen(&s, vertex_count));
+    TRY(surface_make(&s, raw));
+    TRY(for_vertices(&s, measure_thickness));
+    TRY(coarsen(&s, vertex_count));
     for (int round = 0; round < ROUNDS; round++) {
         flip_edges(&s);
-        STARG_TRY(smooth(&s));
+        TRY(smooth(&s));
     }
     flip_edges(&s);
-    STARG_TRY(compact(&s, out));
-done:
-    surface_free(&s);
-    return status;
+    return compact(&s, out);
 }

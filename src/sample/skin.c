@@ -8,8 +8,6 @@
  * blending matrices loses little volume. Cost: O(vertices x parts). */
 #include "sample/solids.h"
 
-#include <math.h>
-
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The samples, and what they are made with. */
-#ifndef STARG_SAMPLE_SOLIDS_H
-#define STARG_SAMPLE_SOLIDS_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "core/context.h"
-#include "core/memory.h"
 #include "mesh/mesh.h"
 
 /* Numbers 64-bit keys in order of first insertion. */
@@ -26,7 +19,7 @@ starg_status key_map_add(starg_context *context, key_map *map, uint64_t key, uin
                          bool *added);
 /* The number of `key`, or UINT32_MAX. */
 uint32_t key_map_find(const key_map *map, uint64_t key);
-void key_map_free(starg_context *context, key_map *map);
+void key_map_free(key_map *map);
 
 /* A mesh under construction: vertices are identified by keys, so that separate patches share the
  * vertices on their common borders. */
@@ -191,6 +184,14 @@ starg_status solid_figure(starg_context *context, figure_kind kind, int pose, si
 starg_status solid_ware(starg_context *context, ware_kind kind, int member, size_t vertex_count,
                         starg_mesh **out);
 
+/* Random solids of unit cubes (blocks.c): members 0 to BLOCKS_MEMBERS - 1. */
+typedef enum blocks_kind { BLOCKS_POLYCUBE, BLOCKS_MAZE, BLOCKS_COMB, BLOCKS_SPIKES } blocks_kind;
+
+enum { BLOCKS_MEMBERS = 1000 };
+
+starg_status solid_blocks(starg_context *context, blocks_kind kind, int member, size_t vertex_count,
+                          starg_mesh **out);
+
 /* Vertical prisms over a plan of rectangles (prism.c). */
 starg_status solid_l_room(starg_context *context, size_t vertex_count, starg_mesh **out);
 starg_status solid_gallery(starg_context *context, size_t vertex_count, starg_mesh **out);
@@ -214,5 +215,3 @@ starg_status solid_star(starg_context *context, size_t vertex_count, starg_mesh 
 starg_status solid_office(starg_context *context, size_t vertex_count, starg_mesh **out);
 starg_status solid_level(starg_context *context, size_t vertex_count, starg_mesh **out);
 starg_status solid_statue(starg_context *context, size_t vertex_count, starg_mesh **out);
-
-#endif

@@ -4,7 +4,6 @@
  * The section uses the Frenet frame, which is periodic on both curves (their curvature never
  * vanishes), so rows close without twist. Rows are spaced by arc length; the number of points per
  * row follows from the ratio of the tube's girth to its length. */
-#include <math.h>
 
 #include "geometry/vec3.h"
 #include "sample/solids.h"
@@ -64,29 +63,25 @@ static starg_status make_ring(mesh_builder *builder, curve *c, double t, double 
         vec3_along(point, radius * cos(angle), normal, p);
         vec3_along(p, radius * sin(angle), binormal, p);
         uint32_t vertex;
-        starg_status status = builder_vertex(builder, ring * around + j, p, &vertex);
-        if (status != STARG_OK)
-            return status;
+        TRY(builder_vertex(builder, ring * around + j, p, &vertex));
     }
     return STARG_OK;
 }
 
 static starg_status make_strip(mesh_builder *builder, size_t ring, size_t rings, size_t around) {
-    starg_status status = STARG_OK;
-    STARG_TRY(starg_check_cancel(builder->context, "sample"));
+    TRY(starg_check_cancel(builder->context, "sample"));
     uint32_t from = (uint32_t)(ring * around), to = (uint32_t)((ring + 1) % rings * around);
     for (uint32_t j = 0; j < around; j++) {
         uint32_t k = (j + 1) % (uint32_t)around;
         if (ring % 2 == 0) {
-            STARG_TRY(builder_triangle(builder, from + j, from + k, to + j));
-            STARG_TRY(builder_triangle(builder, from + k, to + k, to + j));
+            TRY(builder_triangle(builder, from + j, from + k, to + j));
+            TRY(builder_triangle(builder, from + k, to + k, to + j));
         } else {
-            STARG_TRY(builder_triangle(builder, from + j, to + k, to + j));
-            STARG_TRY(builder_triangle(builder, from + j, from + k, to + k));
+            TRY(builder_triangle(builder, from + j, to + k, to + j));
+            TRY(builder_triangle(builder, from + j, from + k, to + k));
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status make_tube(starg_context *context, curve *c, double radius, size_t vertex_count,

@@ -9,9 +9,6 @@
  * Cost: O(faces) per round; few rounds are needed, one for a mesh without folds. */
 #include "sample/solids.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "sample";
@@ -115,41 +112,34 @@ static void move_marked(const unfolder *u, double *vertices) {
 }
 
 static void unfolder_free(unfolder *u) {
-    starg_release(u->context, u->normals);
-    starg_release(u->context, u->best);
-    starg_release(u->context, u->sums);
-    starg_release(u->context, u->degrees);
-    starg_release(u->context, u->moves);
-    starg_release(u->context, u->spoiled_rest);
+    RELEASE(u->normals, u->best, u->sums, u->degrees, u->moves, u->spoiled_rest);
 }
 
 static starg_status unfolder_make(unfolder *u, const starg_mesh *rest) {
-    starg_status status = STARG_OK;
-    STARG_NEW(u->context, STAGE, u->normals, 3 * u->vertex_count);
-    STARG_NEW(u->context, STAGE, u->best, 3 * u->vertex_count);
-    STARG_NEW(u->context, STAGE, u->sums, 3 * u->vertex_count);
-    STARG_NEW(u->context, STAGE, u->degrees, u->vertex_count);
-    STARG_NEW(u->context, STAGE, u->moves, u->vertex_count);
-    STARG_NEW(u->context, STAGE, u->spoiled_rest, u->face_count);
+    NEW(u->context, STAGE, u->normals, 3 * u->vertex_count);
+    NEW(u->context, STAGE, u->best, 3 * u->vertex_count);
+    NEW(u->context, STAGE, u->sums, 3 * u->vertex_count);
+    NEW(u->context, STAGE, u->degrees, u->vertex_count);
+    NEW(u->context, STAGE, u->moves, u->vertex_count);
+    NEW(u->context, STAGE, u->spoiled_rest, u->face_count);
     sum_normals(u, rest->vertices);
     for (size_t f = 0; f < u->face_count; f++)
         u->spoiled_rest[f] = is_spoiled(u, rest->vertices, f);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status unfold_mesh(starg_context *context, const starg_mesh *rest, starg_mesh *posed) {
-    starg_status status = STARG_OK;
+    SCOPED_BY(unfolder_free)
     unfolder u = {.context = context,
                   .faces = rest->faces,
                   .rest = rest->vertices,
                   .vertex_count = rest->vertex_count,
                   .face_count = rest->face_count};
     size_t size = 3 * u.vertex_count * sizeof *u.best;
-    STARG_TRY(unfolder_make(&u, rest));
+    TRY(unfolder_make(&u, rest));
     size_t least = SIZE_MAX;
     for (int idle = 0; least != 0 && idle < MAX_IDLE_ROUNDS; idle++) {
-        STARG_TRY(starg_check_cancel(context, STAGE));
+        TRY(starg_check_cancel(context, STAGE));
         size_t spoiled = mark_spoiled(&u, posed->vertices);
         if (spoiled < least) {
             least = spoiled;
@@ -161,7 +151,5 @@ starg_status unfold_mesh(starg_context *context, const starg_mesh *rest, starg_m
         move_marked(&u, posed->vertices);
     }
     memcpy(posed->vertices, u.best, size);
-done:
-    unfolder_free(&u);
-    return status;
+    return STARG_OK;
 }

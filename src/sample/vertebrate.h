@@ -3,8 +3,7 @@
  *
  * A table gives the right side only (z > 0): parts off the middle plane and the joints of the right
  * limbs are mirrored to the left. */
-#ifndef STARG_SAMPLE_VERTEBRATE_H
-#define STARG_SAMPLE_VERTEBRATE_H
+#pragma once
 
 #include "sample/solids.h"
 
@@ -53,5 +52,3 @@ typedef struct vertebrate {
 extern const vertebrate HORSE, DOG, CAT, GIRAFFE, DINOSAUR, BIRD, HUMAN;
 
 #define TABLE_SIZE(TABLE) (sizeof(TABLE) / sizeof *(TABLE))
-
-#endif

@@ -6,8 +6,6 @@
  * stretchers) goes round with the member's number, so that every family has all of it. */
 #include "sample/solids.h"
 
-#include <math.h>
-
 #include "core/rng.h"
 #include "geometry/vec3.h"
 

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "shape/database.h"
 
 static const char STAGE[] = "classes";
@@ -32,14 +31,12 @@ static bool same_word(const naming *a, const naming *b) {
 }
 
 static starg_status add_class(starg_context *context, starg_classes *classes, const naming *n) {
-    starg_status status = STARG_OK;
     char *name = NULL;
-    STARG_NEW(context, STAGE, name, n->size + 1);
+    NEW(context, STAGE, name, n->size + 1);
     memcpy(name, n->word, n->size);
     name[n->size] = '\0';
     classes->names[classes->count++] = name;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Sorts the entries and numbers the distinct words. */
@@ -69,18 +66,14 @@ done:
 
 starg_status starg_classes_by_prefix(starg_context *context, const starg_database_models *models,
                                      starg_classes **out) {
-    starg_status status = STARG_OK;
-    naming *namings = NULL;
+    SCOPED naming *namings = NULL;
     *out = NULL;
-    STARG_NEW(context, STAGE, namings, models->count);
+    NEW(context, STAGE, namings, models->count);
     for (size_t i = 0; i < models->count; i++) {
         const char *name = models->items[i].name, *end = strrchr(name, '_');
         namings[i] = (naming){name, end != NULL ? (size_t)(end - name) : strlen(name), i};
     }
-    STARG_TRY(make_classes(context, namings, models->count, models->count, out));
-done:
-    starg_release(context, namings);
-    return status;
+    return make_classes(context, namings, models->count, models->count, out);
 }
 
 void starg_classes_free(starg_context *context, starg_classes *classes) {
@@ -88,9 +81,7 @@ void starg_classes_free(starg_context *context, starg_classes *classes) {
         return;
     for (size_t i = 0; i < classes->count; i++)
         starg_release(context, classes->names[i]);
-    starg_release(context, classes->names);
-    starg_release(context, classes->class_of);
-    starg_release(context, classes);
+    RELEASE(classes->names, classes->class_of, classes);
 }
 
 /* ---- from a text ---- */
@@ -111,7 +102,6 @@ static starg_status fail_line(const reading *r, const char *what, const char *wo
 }
 
 static starg_status assign_class(reading *r, const char *model, const char *class) {
-    starg_status status = STARG_OK;
     size_t found = 0;
     for (size_t i = 0; i < r->models->count; i++) {
         const starg_database_model *item = &r->models->items[i];
@@ -120,13 +110,12 @@ static starg_status assign_class(reading *r, const char *model, const char *clas
         if (r->named[i])
             return fail_line(r, "a second class for", model);
         r->named[i] = true;
-        STARG_PUSH(r->context, STAGE, &r->namings, ((naming){class, strlen(class), i}));
+        PUSH(r->context, STAGE, &r->namings, ((naming){class, strlen(class), i}));
         found++;
     }
     if (found == 0)
-        status = fail_line(r, "the database has no model", model);
-done:
-    return status;
+        return fail_line(r, "the database has no model", model);
+    return STARG_OK;
 }
 
 /* The class is the last word, the model everything before it. */
@@ -167,8 +156,6 @@ starg_status starg_classes_read(starg_context *context, const char *path,
     }
     STARG_TRY(make_classes(context, r.namings.data, r.namings.count, models->count, out));
 done:
-    starg_release(context, text);
-    starg_release(context, r.named);
-    STARG_ARRAY_FREE(context, &r.namings);
+    RELEASE(text, r.named, r.namings.data);
     return status;
 }

@@ -17,9 +17,7 @@
  *
  * [CA74] Chen, Asau: On generating random variates from an empirical distribution, AIIE
  * Transactions 6, 1974. */
-#include <math.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "geometry/vec3.h"
@@ -67,32 +65,28 @@ static double area(const sampler *s, size_t face) {
 }
 
 static starg_status sum_areas(starg_context *context, sampler *s) {
-    starg_status status = STARG_OK;
     size_t count = starg_mesh_face_count(s->mesh);
     double lower[3], upper[3], sum = 0;
     starg_mesh_bounds(s->mesh, lower, upper);
     for (int k = 0; k < 3; k++)
         s->extent = fmax(s->extent, upper[k] - lower[k]);
-    STARG_NEW(context, STAGE, s->sums, count);
+    NEW(context, STAGE, s->sums, count);
     for (size_t i = 0; s->extent > 0 && i < count; i++)
         s->sums[i] = sum += area(s, i);
     if (!(sum > 0))
-        status = starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
-done:
-    return status;
+        return starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
+    return STARG_OK;
 }
 
 static starg_status make_guide(starg_context *context, sampler *s) {
-    starg_status status = STARG_OK;
     size_t last = starg_mesh_face_count(s->mesh) - 1;
-    STARG_NEW(context, STAGE, s->guide, GUIDES + 1);
+    NEW(context, STAGE, s->guide, GUIDES + 1);
     for (size_t i = 0, face = 0; i <= GUIDES; i++) {
         while (face < last && s->sums[face] <= s->sums[last] * ((double)i / GUIDES))
             face++;
         s->guide[i] = (uint32_t)face;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The first face whose sum exceeds a part, below 1, of the last sum; so the face has an area. */
@@ -172,10 +166,7 @@ static starg_status compute(starg_context *context, const starg_mesh *mesh, doub
     *numbers = bins;
     *count = BINS;
 done:
-    starg_release(context, s.sums);
-    starg_release(context, s.guide);
-    starg_release(context, s.points);
-    starg_release(context, s.distances);
+    RELEASE(s.sums, s.guide, s.points, s.distances);
     if (status != STARG_OK)
         starg_release(context, bins);
     return status;

@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 
 const char DATABASE_STAGE[] = "database";
 
@@ -212,24 +211,20 @@ void starg_database_close(starg_database *d) {
     if (d == NULL)
         return;
     sqlite3_close(d->handle);
-    starg_release(d->context, d->path);
-    starg_release(d->context, d);
+    RELEASE(d->path, d);
 }
 
 /* ---- creating ---- */
 
 static starg_status write_schema(starg_database *d) {
-    starg_status status = STARG_OK;
     char marks[96];
     snprintf(marks, sizeof marks, "PRAGMA application_id = %d; PRAGMA user_version = %d",
              APPLICATION, SCHEMA_VERSION);
-    STARG_TRY(database_begin(d));
-    STARG_TRY(database_run(d, SCHEMA));
-    STARG_TRY(database_run(d, DATABASE_SKETCHES));
-    STARG_TRY(database_run(d, marks));
-    STARG_TRY(database_commit(d));
-done:
-    return status;
+    TRY(database_begin(d));
+    TRY(database_run(d, SCHEMA));
+    TRY(database_run(d, DATABASE_SKETCHES));
+    TRY(database_run(d, marks));
+    return database_commit(d);
 }
 
 static starg_status fail_create(starg_context *context, const char *path, int error) {

@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The database of shapes: its file, its records, how models come in and are found. */
-#ifndef STARG_SHAPE_DATABASE_H
-#define STARG_SHAPE_DATABASE_H
+#pragma once
 
 #include <sqlite3.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include "core/context.h"
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "starguard/database.h"
-#include "starguard/shape.h"
 
 /* SHA-256 (FIPS 180-4) of a block of memory: identifies equal files. */
 
@@ -132,5 +126,3 @@ starg_status database_files_pack(starg_context *context, const database_files *a
 /* A starg_parallel_remote's take, with a database_files for `shared`. */
 starg_status database_files_take(starg_context *context, void *shared, size_t first, size_t count,
                                  starg_bytes_reader *reply);
-
-#endif

@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "shape/database.h"
 
 enum { BATCH = 8 };
@@ -35,7 +34,6 @@ typedef struct adding {
 
 /* Number of a model's stored signatures that are up to date. */
 static starg_status prepare_stored(adding *a, sqlite3_stmt **out) {
-    starg_status status = STARG_OK;
     char sql[64 + 160 * STARG_SIGNATURE_KINDS] = "SELECT hash FROM model WHERE";
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
         size_t used = strlen(sql);
@@ -45,9 +43,7 @@ static starg_status prepare_stored(adding *a, sqlite3_stmt **out) {
                  kind > 0 ? " AND" : "", starg_signature_name((starg_signature_kind)kind),
                  starg_signature_version((starg_signature_kind)kind));
     }
-    STARG_TRY(database_prepare(a->database, sql, out));
-done:
-    return status;
+    return database_prepare(a->database, sql, out);
 }
 
 static starg_status load_stored(adding *a) {
@@ -79,20 +75,17 @@ done:
 /* ---- storing ---- */
 
 static starg_status prepare_statements(adding *a) {
-    starg_status status = STARG_OK;
-    STARG_TRY(database_prepare(a->database,
-                               "INSERT INTO model (path, hash, vertices, faces) VALUES (?, ?, ?, ?)"
-                               " ON CONFLICT (hash) DO NOTHING",
-                               &a->insert_model));
-    STARG_TRY(database_prepare(
+    TRY(database_prepare(a->database,
+                         "INSERT INTO model (path, hash, vertices, faces) VALUES (?, ?, ?, ?)"
+                         " ON CONFLICT (hash) DO NOTHING",
+                         &a->insert_model));
+    TRY(database_prepare(
         a->database,
         "INSERT OR REPLACE INTO signature (model, kind, version, numbers) VALUES (?, ?, ?, ?)",
         &a->insert_signature));
-    STARG_TRY(database_prepare(a->database, DATABASE_INSERT_SKETCH, &a->insert_sketch));
-    STARG_TRY(
-        database_prepare(a->database, "SELECT id, path FROM model WHERE hash = ?", &a->find_model));
-done:
-    return status;
+    TRY(database_prepare(a->database, DATABASE_INSERT_SKETCH, &a->insert_sketch));
+    return database_prepare(a->database, "SELECT id, path FROM model WHERE hash = ?",
+                            &a->find_model);
 }
 
 static starg_status note(adding *a, size_t item, starg_database_outcome outcome, const char *text) {
@@ -106,7 +99,6 @@ static starg_status note(adding *a, size_t item, starg_database_outcome outcome,
 }
 
 static starg_status store_signatures(adding *a, int64_t model, const database_file *d) {
-    starg_status status = STARG_OK;
     sqlite3_stmt *s = a->insert_signature;
     bool row;
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
@@ -115,18 +107,15 @@ static starg_status store_signatures(adding *a, int64_t model, const database_fi
                           SQLITE_STATIC);
         sqlite3_bind_int(s, 3, starg_signature_version((starg_signature_kind)kind));
         sqlite3_bind_blob64(s, 4, d->numbers[kind], d->sizes[kind], SQLITE_STATIC);
-        STARG_TRY(database_step(a->database, s, &row));
-        STARG_TRY(database_store_sketch(a->database, a->insert_sketch, model,
-                                        (starg_signature_kind)kind, d->numbers[kind],
-                                        d->sizes[kind]));
+        TRY(database_step(a->database, s, &row));
+        TRY(database_store_sketch(a->database, a->insert_sketch, model, (starg_signature_kind)kind,
+                                  d->numbers[kind], d->sizes[kind]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Finds or inserts the model with this content; tells whether it is new. */
 static starg_status store_model(adding *a, size_t item, bool *is_new, int64_t *id) {
-    starg_status status = STARG_OK;
     const database_file *d = &a->files.files[item];
     sqlite3_stmt *s = a->insert_model;
     bool row;
@@ -134,11 +123,10 @@ static starg_status store_model(adding *a, size_t item, bool *is_new, int64_t *i
     sqlite3_bind_blob(s, 2, d->hash.bytes, sizeof d->hash.bytes, SQLITE_STATIC);
     sqlite3_bind_int64(s, 3, (int64_t)d->vertices);
     sqlite3_bind_int64(s, 4, (int64_t)d->faces);
-    STARG_TRY(database_step(a->database, s, &row));
+    TRY(database_step(a->database, s, &row));
     *is_new = sqlite3_changes(a->database->handle) > 0;
     *id = sqlite3_last_insert_rowid(a->database->handle);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status note_known(adding *a, size_t item, int64_t *id) {
@@ -157,21 +145,19 @@ done:
 
 static starg_status store_item(adding *a, size_t item) {
     const database_file *d = &a->files.files[item];
-    starg_status status = STARG_OK;
     bool is_new = false;
     int64_t id;
     if (d->message != NULL)
         return note(a, item, STARG_DATABASE_REFUSED, d->message);
     if (!d->known)
-        STARG_TRY(store_model(a, item, &is_new, &id));
+        TRY(store_model(a, item, &is_new, &id));
     if (is_new)
-        STARG_TRY(note(a, item, STARG_DATABASE_ADDED, d->warning));
+        TRY(note(a, item, STARG_DATABASE_ADDED, d->warning));
     else
-        STARG_TRY(note_known(a, item, &id));
+        TRY(note_known(a, item, &id));
     if (!d->known)
-        STARG_TRY(store_signatures(a, id, d));
-done:
-    return status;
+        TRY(store_signatures(a, id, d));
+    return STARG_OK;
 }
 
 /* In one transaction. */
@@ -204,8 +190,7 @@ static starg_status store_described(starg_context *context, void *shared, size_t
 }
 
 static starg_status describe_and_store(adding *a) {
-    starg_status status = STARG_OK;
-    starg_bytes job = {0};
+    SCOPED starg_bytes job = {0};
     const starg_parallel_remote remote = {
         .work = RANKS_DESCRIBE, .job = &job, .most = 1, .take = database_files_take};
     const starg_parallel_loop loop = {.stage = "add",
@@ -217,11 +202,8 @@ static starg_status describe_and_store(adding *a) {
                                       .advance = store_described,
                                       .remote = &remote};
     if (a->context->ranks != NULL)
-        STARG_TRY(database_files_pack(a->context, &a->files, &job));
-    STARG_TRY(starg_parallel_in_time(a->context, &loop));
-done:
-    STARG_ARRAY_FREE(a->context, &job);
-    return status;
+        TRY(database_files_pack(a->context, &a->files, &job));
+    return starg_parallel_in_time(a->context, &loop);
 }
 
 static void count_outcomes(starg_database_report *report) {
@@ -272,6 +254,5 @@ void starg_database_report_free(starg_context *context, starg_database_report *r
         return;
     for (size_t i = 0; report->results != NULL && i < report->count; i++)
         starg_release(context, report->results[i].text);
-    starg_release(context, report->results);
-    starg_release(context, report);
+    RELEASE(report->results, report);
 }

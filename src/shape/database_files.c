@@ -6,21 +6,20 @@
  * call's context for cancellation. It ignores the time limit, which would change what is stored.
  *
  * Cost: that of the signatures. */
+#include "mesh/mesh.h"
 #include "shape/database.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 
 int database_by_digest(const void *a, const void *b) {
     return memcmp(a, b, sizeof(database_digest));
 }
 
 void database_file_clear(starg_context *context, database_file *file) {
-    starg_release(context, file->message);
-    starg_release(context, file->warning);
+    RELEASE(file->message, file->warning);
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
         starg_release(context, file->numbers[kind]);
     *file = (database_file){0};
@@ -45,12 +44,11 @@ static void keep_warning(void *user, starg_log_level level, const char *message)
 }
 
 starg_status database_files_scratch(starg_context *context, void *shared, void **scratch) {
-    starg_status status = STARG_OK;
-    describer *own = NULL;
+    SCOPED describer *own = NULL;
     starg_context_options options;
     (void)shared;
     *scratch = NULL;
-    STARG_NEW_ZERO(context, DATABASE_STAGE, own, 1);
+    NEW_ZERO(context, DATABASE_STAGE, own, 1);
     starg_context_options_default(&options);
     options.allocator = context->allocator;
     options.threads = 1;
@@ -59,12 +57,10 @@ starg_status database_files_scratch(starg_context *context, void *shared, void *
     options.progress_user = context;
     options.log = keep_warning;
     options.log_user = own;
-    STARG_TRY(starg_context_create(&options, &own->worker));
+    TRY(starg_context_create(&options, &own->worker));
     *scratch = own;
     own = NULL;
-done:
-    starg_release(context, own);
-    return status;
+    return STARG_OK;
 }
 
 void database_files_free_scratch(starg_context *context, void *scratch) {
@@ -78,9 +74,8 @@ void database_files_free_scratch(starg_context *context, void *scratch) {
 /* Little-endian on any machine. */
 static starg_status keep_numbers(starg_context *context, const starg_signature *from,
                                  database_file *d) {
-    starg_status status = STARG_OK;
     uint8_t *bytes = NULL;
-    STARG_NEW(context, DATABASE_STAGE, bytes, 8 * from->count);
+    NEW(context, DATABASE_STAGE, bytes, 8 * from->count);
     for (size_t i = 0; i < from->count; i++) {
         uint64_t bits;
         memcpy(&bits, &from->numbers[i], sizeof bits);
@@ -89,8 +84,7 @@ static starg_status keep_numbers(starg_context *context, const starg_signature *
     }
     d->numbers[from->kind] = bytes;
     d->sizes[from->kind] = 8 * from->count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status describe_mesh(starg_context *context, starg_context *worker,
@@ -110,22 +104,17 @@ done:
 
 static starg_status describe_file(starg_context *context, const database_files *all,
                                   starg_context *worker, const char *name, database_file *d) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    char *bytes = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED char *bytes = NULL;
     size_t size = 0;
-    STARG_TRY(starg_file_read(worker, DATABASE_STAGE, name, &bytes, &size));
+    TRY(starg_file_read(worker, DATABASE_STAGE, name, &bytes, &size));
     starg_sha256(bytes, size, d->hash.bytes);
     d->known = all->stored_count > 0 && bsearch(&d->hash, all->stored, all->stored_count,
                                                 sizeof *all->stored, database_by_digest) != NULL;
     if (d->known)
-        goto done;
-    STARG_TRY(starg_mesh_read_memory(worker, bytes, size, name, &mesh));
-    STARG_TRY(describe_mesh(context, worker, mesh, d));
-done:
-    starg_mesh_free(mesh);
-    starg_release(worker, bytes);
-    return status;
+        return STARG_OK;
+    TRY(starg_mesh_read_memory(worker, bytes, size, name, &mesh));
+    return describe_mesh(context, worker, mesh, d);
 }
 
 starg_status database_files_describe(starg_context *context, void *shared, void *scratch,

@@ -3,7 +3,6 @@
  *
  * A job contains the names of all files, which helpers read themselves by the same paths, and the
  * hashes of what is stored. A reply contains the descriptions of a block, file by file. */
-#include "core/memory.h"
 #include "guard/cell_tests.h"
 #include "shape/database.h"
 #include "visibility/rows.h"
@@ -22,21 +21,17 @@ typedef struct file_head {
 
 starg_status database_files_pack(starg_context *context, const database_files *all,
                                  starg_bytes *out) {
-    starg_status status = STARG_OK;
     job_head head = {.count = all->count, .stored = all->stored_count};
     for (size_t i = 0; i < all->count; i++)
         head.name_bytes += strlen(all->names[i]) + 1;
-    STARG_TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
+    TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
     for (size_t i = 0; i < all->count; i++)
-        STARG_TRY(starg_bytes_put(context, out, all->names[i], strlen(all->names[i]) + 1, 1));
-    STARG_TRY(starg_bytes_put(context, out, all->stored, all->stored_count, sizeof *all->stored));
-done:
-    return status;
+        TRY(starg_bytes_put(context, out, all->names[i], strlen(all->names[i]) + 1, 1));
+    return starg_bytes_put(context, out, all->stored, all->stored_count, sizeof *all->stored);
 }
 
 static starg_status take_file(starg_context *context, starg_bytes_reader *reply,
                               database_file *file) {
-    starg_status status = STARG_OK;
     file_head head;
     void *block;
     if (!starg_bytes_take(reply, &head, 1, sizeof head))
@@ -46,30 +41,27 @@ static starg_status take_file(starg_context *context, starg_bytes_reader *reply,
     file->vertices = head.vertices;
     file->faces = head.faces;
     if (head.message_bytes > 0) {
-        STARG_TRY(starg_bytes_take_block(context, reply, head.message_bytes, 1, &block));
+        TRY(starg_bytes_take_block(context, reply, head.message_bytes, 1, &block));
         file->message = block;
     }
     if (head.warning_bytes > 0) {
-        STARG_TRY(starg_bytes_take_block(context, reply, head.warning_bytes, 1, &block));
+        TRY(starg_bytes_take_block(context, reply, head.warning_bytes, 1, &block));
         file->warning = block;
     }
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
-        STARG_TRY(starg_bytes_take_block(context, reply, head.sizes[kind], 1, &block));
+        TRY(starg_bytes_take_block(context, reply, head.sizes[kind], 1, &block));
         file->numbers[kind] = block;
         file->sizes[kind] = head.sizes[kind];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status database_files_take(starg_context *context, void *shared, size_t first, size_t count,
                                  starg_bytes_reader *reply) {
-    starg_status status = STARG_OK;
     const database_files *all = shared;
     for (size_t i = first; i < first + count; i++)
-        STARG_TRY(take_file(context, reply, &all->files[i]));
-done:
-    return status;
+        TRY(take_file(context, reply, &all->files[i]));
+    return STARG_OK;
 }
 
 /* ---- helpers ---- */
@@ -82,42 +74,37 @@ typedef struct remote_files {
 } remote_files;
 
 static void end(starg_context *context, void *state) {
+    (void)context;
     remote_files *all = state;
     if (all == NULL)
         return;
-    starg_release(context, all->names);
-    starg_release(context, all->starts);
-    starg_release(context, all->stored);
-    starg_release(context, all);
+    RELEASE(all->names, all->starts, all->stored, all);
 }
 
 static starg_status begin(starg_context *context, starg_bytes_reader *bytes, void **state) {
-    starg_status status = STARG_OK;
     remote_files *all = NULL;
     job_head head;
     void *names, *stored;
     end(context, *state);
     *state = NULL;
-    STARG_NEW_ZERO(context, DATABASE_STAGE, all, 1);
+    NEW_ZERO(context, DATABASE_STAGE, all, 1);
     *state = all;
     if (!starg_bytes_take(bytes, &head, 1, sizeof head))
         return STARG_ERROR_RANK;
-    STARG_TRY(starg_bytes_take_block(context, bytes, head.name_bytes, 1, &names));
+    TRY(starg_bytes_take_block(context, bytes, head.name_bytes, 1, &names));
     all->names = names;
-    STARG_TRY(starg_bytes_take_block(context, bytes, head.stored, sizeof *all->stored, &stored));
+    TRY(starg_bytes_take_block(context, bytes, head.stored, sizeof *all->stored, &stored));
     all->stored = stored;
     all->stored_count = head.stored;
-    STARG_NEW(context, DATABASE_STAGE, all->starts, head.count);
+    NEW(context, DATABASE_STAGE, all->starts, head.count);
     const char *name = all->names;
     for (; all->count < head.count && name < all->names + head.name_bytes; name += strlen(name) + 1)
         all->starts[all->count++] = name;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status put_file(starg_context *context, const database_file *file,
                              starg_bytes *reply) {
-    starg_status status = STARG_OK;
     file_head head = {.hash = file->hash,
                       .known = file->known,
                       .vertices = file->vertices,
@@ -126,13 +113,12 @@ static starg_status put_file(starg_context *context, const database_file *file,
                       .warning_bytes = file->warning != NULL ? strlen(file->warning) + 1 : 0};
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
         head.sizes[kind] = file->sizes[kind];
-    STARG_TRY(starg_bytes_put(context, reply, &head, 1, sizeof head));
-    STARG_TRY(starg_bytes_put(context, reply, file->message, head.message_bytes, 1));
-    STARG_TRY(starg_bytes_put(context, reply, file->warning, head.warning_bytes, 1));
+    TRY(starg_bytes_put(context, reply, &head, 1, sizeof head));
+    TRY(starg_bytes_put(context, reply, file->message, head.message_bytes, 1));
+    TRY(starg_bytes_put(context, reply, file->warning, head.warning_bytes, 1));
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
-        STARG_TRY(starg_bytes_put(context, reply, file->numbers[kind], file->sizes[kind], 1));
-done:
-    return status;
+        TRY(starg_bytes_put(context, reply, file->numbers[kind], file->sizes[kind], 1));
+    return STARG_OK;
 }
 
 static starg_status run(starg_context *context, void *state, size_t first, size_t count,

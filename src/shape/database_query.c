@@ -91,18 +91,16 @@ done:
 /* All models, by ascending bound. */
 static starg_status bound_models(starg_database *d, const starg_signature *wanted, size_t count,
                                  candidates *list) {
-    starg_status status = STARG_OK;
     bool sketched = false;
     if (sketch_count(wanted->kind) > 0)
-        STARG_TRY(database_has_sketches(d, &sketched));
+        TRY(database_has_sketches(d, &sketched));
     if (sketched)
-        STARG_TRY(add_bounded(d, wanted, list));
+        TRY(add_bounded(d, wanted, list));
     if (list->count < count)
-        STARG_TRY(add_unbounded(d, sketched ? LACKING : NO_SKETCHES, wanted->kind, list));
+        TRY(add_unbounded(d, sketched ? LACKING : NO_SKETCHES, wanted->kind, list));
     if (list->count > 0)
         qsort(list->data, list->count, sizeof *list->data, by_distance);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- distances ---- */
@@ -208,8 +206,7 @@ starg_status starg_database_query(starg_database *d, const starg_signature *sign
     STARG_TRY(database_models_hand_over(d->context, &list, out));
 done:
     database_roll_back(d);
-    STARG_ARRAY_FREE(d->context, &bounded);
-    starg_release(d->context, nearest.data);
+    RELEASE(bounded.data, nearest.data);
     database_models_clear(d->context, &list);
     return status;
 }

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "shape/database.h"
 
 static void clear_model(starg_context *context, starg_database_model *model) {
@@ -29,14 +28,12 @@ void starg_database_models_free(starg_context *context, starg_database_models *m
 
 starg_status database_models_hand_over(starg_context *context, database_models *list,
                                        starg_database_models **out) {
-    starg_status status = STARG_OK;
     starg_database_models *models = NULL;
-    STARG_NEW(context, DATABASE_STAGE, models, 1);
+    NEW(context, DATABASE_STAGE, models, 1);
     *models = (starg_database_models){.count = list->count, .items = list->data};
     *list = (database_models){0};
     *out = models;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- rows ---- */

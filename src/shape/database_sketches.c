@@ -31,14 +31,13 @@ done:
 starg_status database_store_sketch(starg_database *d, sqlite3_stmt *statement, int64_t model,
                                    starg_signature_kind kind, const uint8_t *bytes, size_t size) {
     const signature_method *method = signature_method_of(kind);
-    starg_status status = STARG_OK;
-    double *numbers = NULL;
+    SCOPED double *numbers = NULL;
     uint8_t stored[SKETCH_MOST_BYTES];
     sketch s;
     bool row;
     if (sketch_count(kind) == 0 || size != 8 * method->count)
         return STARG_OK;
-    STARG_NEW(d->context, DATABASE_STAGE, numbers, method->count);
+    NEW(d->context, DATABASE_STAGE, numbers, method->count);
     database_read_doubles(bytes, method->count, numbers);
     if (method->check(numbers, method->count)) {
         sketch_make(kind, numbers, method->count, &s);
@@ -47,11 +46,9 @@ starg_status database_store_sketch(starg_database *d, sqlite3_stmt *statement, i
         sqlite3_bind_int64(statement, 2, model);
         sqlite3_bind_int(statement, 3, method->version);
         sqlite3_bind_blob64(statement, 4, stored, 4 * s.count, SQLITE_STATIC);
-        STARG_TRY(database_step(d, statement, &row));
+        TRY(database_step(d, statement, &row));
     }
-done:
-    starg_release(d->context, numbers);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_kind(starg_database *d, sqlite3_stmt *insert, starg_signature_kind kind) {

@@ -16,21 +16,11 @@
  * has each guard strictly inside.
  *
  * Cost: that of the decomposition and of the spectra, and O(log n) per ray. */
-#include <math.h>
-#include <string.h>
 
-#include "core/fields.h"
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
-#include "mesh/solid.h"
 #include "shape/measures.h"
 #include "shape/spectrum.h"
-#include "star/piece_faces.h"
-#include "starguard/decompose.h"
-#include "starguard/descriptor.h"
-#include "starguard/solid.h"
 
 static const char STAGE[] = "descriptor";
 
@@ -58,18 +48,14 @@ static void keep_behind_zero(double *eigenvalues, double *out) {
 
 static starg_status take_surface(starg_context *context, const starg_mesh *surface, double *out,
                                  double *wks) {
-    starg_status status = STARG_OK;
-    laplacian l = {0};
-    double eigenvalues[EIGENVALUES + 1], *functions = NULL;
-    STARG_TRY(laplacian_create(context, surface, &l));
-    STARG_NEW(context, STAGE_VIBRATIONS, functions, (EIGENVALUES + 1) * l.count);
-    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, functions));
+    SCOPED_BY(laplacian_free) laplacian l = {0};
+    double eigenvalues[EIGENVALUES + 1];
+    SCOPED double *functions = NULL;
+    TRY(laplacian_create(context, surface, &l));
+    NEW(context, STAGE_VIBRATIONS, functions, (EIGENVALUES + 1) * l.count);
+    TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, functions));
     keep_behind_zero(eigenvalues, out);
-    STARG_TRY(wks_measure(context, &l, eigenvalues, functions, wks));
-done:
-    starg_release(context, functions);
-    laplacian_free(context, &l);
-    return status;
+    return wks_measure(context, &l, eigenvalues, functions, wks);
 }
 
 /* The smallest nonzero eigenvalues of the surface's Laplacian, ascending, times the area; and where
@@ -78,15 +64,11 @@ done:
  * CANCELLED. */
 static starg_status vibrations_measure(starg_context *context, const starg_tetmesh *mesh,
                                        const starg_mesh *surface, starg_descriptor *out) {
-    starg_status status = STARG_OK;
-    starg_mesh *boundary = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *boundary = NULL;
     if (surface == NULL)
-        STARG_TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
-    STARG_TRY(take_surface(context, surface != NULL ? surface : boundary, out->surface_spectrum,
-                           &out->wave_kernel[0][0]));
-done:
-    starg_mesh_free(boundary);
-    return status;
+        TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
+    return take_surface(context, surface != NULL ? surface : boundary, out->surface_spectrum,
+                        &out->wave_kernel[0][0]);
 }
 
 enum {
@@ -212,15 +194,13 @@ done:
 
 static starg_status add_guards(starg_context *context, const starg_decomposition *pieces,
                                starg_descriptor *d) {
-    starg_status status = STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, d->guards, pieces->piece_count);
+    NEW_ZERO(context, STAGE, d->guards, pieces->piece_count);
     d->guard_count = pieces->piece_count;
     for (size_t i = 0; i < d->guard_count; i++) {
         vec3_copy(pieces->pieces[i].guard, d->guards[i].position);
         d->guards[i].volume = pieces->pieces[i].volume;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- edges ---- */
@@ -258,11 +238,11 @@ static void add_face(const starg_tetmesh *mesh, size_t face, double scale, doubl
 
 static starg_status add_edges(starg_context *context, const starg_decomposition *pieces,
                               starg_descriptor *d) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = pieces->mesh;
-    double *areas = NULL, scale = ldexp(1, -tetmesh_exponent(mesh));
-    STARG_NEW_ZERO(context, STAGE, d->edges, pieces->contact_count);
-    STARG_NEW_ZERO(context, STAGE, areas, pieces->contact_count);
+    SCOPED double *areas = NULL;
+    double scale = ldexp(1, -tetmesh_exponent(mesh));
+    NEW_ZERO(context, STAGE, d->edges, pieces->contact_count);
+    NEW_ZERO(context, STAGE, areas, pieces->contact_count);
     d->edge_count = pieces->contact_count;
     for (size_t i = 0; i < d->edge_count; i++)
         d->edges[i] = (starg_descriptor_edge){.first = pieces->contacts[i].first,
@@ -281,9 +261,7 @@ static starg_status add_edges(starg_context *context, const starg_decomposition 
             d->edges[i].gate[k] = /* the area of a tiny contact may vanish: use its first guard */
                 areas[i] > 0 ? mesh->vertices[k] + d->edges[i].gate[k] / areas[i] / scale
                              : d->guards[d->edges[i].first].position[k];
-done:
-    starg_release(context, areas);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- rays ---- */
@@ -309,14 +287,11 @@ static starg_status cast_from_guard(starg_context *context, void *shared, void *
 
 static starg_status add_distances(starg_context *context, const ray_caster *caster,
                                   starg_descriptor *d) {
-    starg_status status = STARG_OK;
     viewer v = {.caster = caster, .result = d};
     const starg_parallel_loop loop = {
         .stage = STAGE, .count = d->guard_count, .shared = &v, .item = cast_from_guard};
-    STARG_NEW_ZERO(context, STAGE, d->distances, d->guard_count * d->direction_count);
-    STARG_TRY(starg_parallel_for(context, &loop));
-done:
-    return status;
+    NEW_ZERO(context, STAGE, d->distances, d->guard_count * d->direction_count);
+    return starg_parallel_for(context, &loop);
 }
 
 /* ---- public function ---- */
@@ -374,11 +349,9 @@ done:
 }
 
 void starg_descriptor_free(starg_context *context, starg_descriptor *descriptor) {
+    (void)context;
     if (descriptor == NULL)
         return;
-    starg_release(context, descriptor->file);
-    starg_release(context, descriptor->guards);
-    starg_release(context, descriptor->edges);
-    starg_release(context, descriptor->distances);
-    starg_release(context, descriptor);
+    RELEASE(descriptor->file, descriptor->guards, descriptor->edges, descriptor->distances,
+            descriptor);
 }

@@ -5,9 +5,6 @@
 
 #include <float.h>
 
-#include "mesh/mesh.h"
-#include "starguard/descriptor.h"
-
 #define RESULT(NAME) FIELD_MEMBER(starg_descriptor, NAME)
 #define LENGTH(NAME) .length = offsetof(starg_descriptor, NAME)
 #define EDGE(NAME)   FIELD_MEMBER(starg_descriptor_edge, NAME)

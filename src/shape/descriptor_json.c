@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* DESCRIPTOR.json: a descriptor as text (docs/formats.md). */
-#include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "core/record.h"
 #include "shape/measures.h"
-#include "starguard/descriptor.h"
 
 static const char STAGE[] = "descriptor file";
 
@@ -80,13 +77,9 @@ done:
 
 starg_status starg_descriptor_read(starg_context *context, const char *path,
                                    starg_descriptor **out) {
-    starg_status status = STARG_OK;
-    char *bytes = NULL;
+    SCOPED char *bytes = NULL;
     size_t size;
     *out = NULL;
-    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    STARG_TRY(starg_descriptor_read_memory(context, bytes, size, path, out));
-done:
-    starg_release(context, bytes);
-    return status;
+    TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    return starg_descriptor_read_memory(context, bytes, size, path, out);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Largest eigenvalues of a symmetric operator, by the Spectra library. */
-#ifndef STARG_SHAPE_LANCZOS_H
-#define STARG_SHAPE_LANCZOS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -35,6 +34,4 @@ lanczos_end lanczos_largest(const lanczos_problem *problem, double *largest, dou
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif

@@ -12,9 +12,6 @@
  * Cost: O(faces). */
 #include "shape/spectrum.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
 
@@ -33,8 +30,7 @@ typedef struct surface {
 } surface;
 
 static void surface_free(surface *s) {
-    starg_release(s->context, s->positions);
-    starg_release(s->context, s->faces);
+    RELEASE(s->positions, s->faces);
 }
 
 /* ---- the surface ---- */
@@ -49,7 +45,6 @@ static bool has_extent(const surface *s, const uint32_t f[3]) {
 }
 
 static starg_status copy_surface(const starg_mesh *mesh, surface *s) {
-    starg_status status = STARG_OK;
     const double *vertices = starg_mesh_vertices(mesh);
     const uint32_t *faces = starg_mesh_faces(mesh);
     double lower[3], upper[3], extent = 0;
@@ -59,8 +54,8 @@ static starg_status copy_surface(const starg_mesh *mesh, surface *s) {
         extent = fmax(extent, upper[k] - lower[k]);
     if (!(extent > 0))
         return starg_fail(s->context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
-    STARG_NEW(s->context, STAGE, s->positions, 3 * s->vertex_count);
-    STARG_NEW(s->context, STAGE, s->faces, 3 * starg_mesh_face_count(mesh));
+    NEW(s->context, STAGE, s->positions, 3 * s->vertex_count);
+    NEW(s->context, STAGE, s->faces, 3 * starg_mesh_face_count(mesh));
     for (size_t i = 0; i < s->vertex_count; i++)
         for (size_t k = 0; k < 3; k++)
             s->positions[3 * i + k] = (vertices[3 * i + k] - lower[k]) / extent;
@@ -68,9 +63,8 @@ static starg_status copy_surface(const starg_mesh *mesh, surface *s) {
         if (has_extent(s, faces + 3 * f))
             memcpy(s->faces + 3 * s->face_count++, faces + 3 * f, 3 * sizeof *faces);
     if (s->face_count == 0)
-        status = starg_fail(s->context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
-done:
-    return status;
+        return starg_fail(s->context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
+    return STARG_OK;
 }
 
 /* Four triangles per face: those at corners, then the middle one. */
@@ -116,10 +110,9 @@ done:
 
 /* Renumbers the vertices in use from 0, in order. */
 static starg_status renumber(surface *s, uint32_t **row_of) {
-    starg_status status = STARG_OK;
     uint32_t *numbers = NULL;
     size_t used = 0;
-    STARG_NEW(s->context, STAGE, numbers, s->vertex_count);
+    NEW(s->context, STAGE, numbers, s->vertex_count);
     *row_of = numbers;
     memset(numbers, 0xff, s->vertex_count * sizeof *numbers);
     for (size_t i = 0; i < 3 * s->face_count; i++)
@@ -133,8 +126,7 @@ static starg_status renumber(surface *s, uint32_t **row_of) {
     for (size_t i = 0; i < 3 * s->face_count; i++)
         s->faces[i] = numbers[s->faces[i]];
     s->vertex_count = used;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the matrix ---- */
@@ -174,13 +166,12 @@ static void put(laplacian *l, int64_t *next, uint32_t row, uint32_t column, doub
 
 /* By columns: the diagonal, then the edges in the order of their numbers. */
 static starg_status store_columns(starg_context *context, const sums *sum, laplacian *l) {
-    starg_status status = STARG_OK;
-    int64_t *next = NULL;
+    SCOPED int64_t *next = NULL;
     size_t entries = l->count + 2 * (size_t)sum->edges.count;
-    STARG_NEW_ZERO(context, STAGE, l->starts, l->count + 1);
-    STARG_NEW(context, STAGE, l->rows, entries);
-    STARG_NEW(context, STAGE, l->values, entries);
-    STARG_NEW(context, STAGE, next, l->count);
+    NEW_ZERO(context, STAGE, l->starts, l->count + 1);
+    NEW(context, STAGE, l->rows, entries);
+    NEW(context, STAGE, l->values, entries);
+    NEW(context, STAGE, next, l->count);
     for (size_t slot = 0; slot <= sum->edges.mask; slot++) {
         uint64_t key = sum->edges.keys[slot];
         if (key != 0) {
@@ -202,9 +193,7 @@ static starg_status store_columns(starg_context *context, const sums *sum, lapla
         put(l, next, u, v, -weight);
         put(l, next, v, u, -weight);
     }
-done:
-    starg_release(context, next);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status assemble(const surface *s, laplacian *l) {
@@ -223,8 +212,7 @@ static starg_status assemble(const surface *s, laplacian *l) {
     STARG_TRY(store_columns(context, &sum, l));
 done:
     edge_table_free(context, &sum.edges);
-    starg_release(context, sum.weights);
-    starg_release(context, sum.diagonal);
+    RELEASE(sum.weights, sum.diagonal);
     return status;
 }
 
@@ -242,33 +230,25 @@ starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, la
 done:
     surface_free(&s);
     if (status != STARG_OK)
-        laplacian_free(context, out);
+        laplacian_free(out);
     return status;
 }
 
 /* The matrix plus masses on the diagonal, which comes first in each column. */
 starg_status laplacian_factorise(starg_context *context, const laplacian *l, double shift,
                                  sparse_factors **out) {
-    starg_status status = STARG_OK;
     size_t entries = (size_t)l->starts[l->count];
-    double *values = NULL;
+    SCOPED double *values = NULL;
     *out = NULL;
-    STARG_NEW(context, STAGE, values, entries);
+    NEW(context, STAGE, values, entries);
     memcpy(values, l->values, entries * sizeof *values);
     for (size_t i = 0; i < l->count; i++)
         values[l->starts[i]] += shift * l->masses[i];
     const sparse_matrix matrix = {l->count, l->starts, l->rows, values};
-    STARG_TRY(sparse_factorise(context, STAGE, &matrix, out));
-done:
-    starg_release(context, values);
-    return status;
+    return sparse_factorise(context, STAGE, &matrix, out);
 }
 
-void laplacian_free(starg_context *context, laplacian *l) {
-    starg_release(context, l->starts);
-    starg_release(context, l->rows);
-    starg_release(context, l->values);
-    starg_release(context, l->masses);
-    starg_release(context, l->row_of);
+void laplacian_free(laplacian *l) {
+    RELEASE(l->starts, l->rows, l->values, l->masses, l->row_of);
     *l = (laplacian){0};
 }

@@ -12,8 +12,6 @@
  * Cost: O(n log n), mostly simplification. */
 #include "shape/measures.h"
 
-#include "core/memory.h"
-#include "mesh/mesh.h"
 #include "starguard/repair.h"
 #include "starguard/simplify.h"
 
@@ -68,9 +66,7 @@ static starg_status smooth(starg_context *context, const starg_mesh *mesh, size_
     }
     STARG_TRY(starg_mesh_create(context, s.positions, s.vertex_count, s.faces, s.face_count, out));
 done:
-    starg_release(context, s.positions);
-    starg_release(context, s.sums);
-    starg_release(context, s.neighbours);
+    RELEASE(s.positions, s.sums, s.neighbours);
     return status;
 }
 
@@ -92,16 +88,13 @@ static const starg_simplify_options SIMPLIFY = {.allow_intersections = true};
 
 static starg_status refine(starg_context *context, const starg_mesh *mesh, size_t vertices,
                            starg_mesh **out) {
-    starg_status status = STARG_OK;
-    starg_mesh *level = NULL, *next = NULL;
-    STARG_TRY(starg_mesh_simplify(context, mesh, MOST * vertices, &SIMPLIFY, NULL, &level));
+    SCOPED_BY(starg_mesh_drop) starg_mesh *level = NULL;
+    starg_mesh *next = NULL;
+    TRY(starg_mesh_simplify(context, mesh, MOST * vertices, &SIMPLIFY, NULL, &level));
     size_t rounds = (ROUNDS * starg_mesh_vertex_count(level) + vertices / 2) / vertices;
-    STARG_TRY(smooth(context, level, rounds, &next));
+    TRY(smooth(context, level, rounds, &next));
     replace(&level, next);
-    STARG_TRY(level_coarsen(context, level, vertices, out));
-done:
-    starg_mesh_free(level);
-    return status;
+    return level_coarsen(context, level, vertices, out);
 }
 
 starg_status level_coarsen(starg_context *context, const starg_mesh *mesh, size_t vertices,

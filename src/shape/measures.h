@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What a descriptor measures of a solid. */
-#ifndef STARG_SHAPE_MEASURES_H
-#define STARG_SHAPE_MEASURES_H
+#pragma once
 
-#include "core/context.h"
 #include "core/fields.h"
 #include "star/piece_faces.h"
 #include "starguard/descriptor.h"
-#include "starguard/mesh.h"
-#include "starguard/tetra.h"
 
 /* A model at a standard level of detail. */
 
@@ -55,5 +51,3 @@ enum { DESCRIPTOR_VERSION = 5 };
 
 /* The file as a starg_descriptor. */
 extern const starg_fields descriptor_file_fields;
-
-#endif

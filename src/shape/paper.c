@@ -26,14 +26,11 @@
  * guard.
  *
  * Cost: rounds times steps times (guards + edges): a few milliseconds for 70 guards. */
-#include <math.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "geometry/kd_tree.h"
 #include "geometry/vec3.h"
 #include "shape/signature_kinds.h"
-#include "starguard/descriptor.h"
 
 typedef struct paper_pose {
     double centre[3];  /* of the points that the guards see */
@@ -247,13 +244,12 @@ static void turn_directions(const starg_descriptor *d, const paper_pose *pose, s
 
 static starg_status derive(starg_context *context, const starg_descriptor *d, double **numbers,
                            size_t *count) {
-    starg_status status = STARG_OK;
     double *all = NULL;
     size_t nearest[BINS] = {0};
     const paper_pose pose = paper_pose_of(d);
     double unit = pose.size > 0 ? pose.size : 1;
     *count = HEAD + GUARD * d->guard_count + 2 * d->edge_count;
-    STARG_NEW_ZERO(context, STAGE, all, *count);
+    NEW_ZERO(context, STAGE, all, *count);
     all[0] = (double)d->guard_count;
     all[1] = (double)d->edge_count;
     turn_directions(d, &pose, nearest);
@@ -271,8 +267,7 @@ static starg_status derive(starg_context *context, const starg_descriptor *d, do
         all[HEAD + GUARD * (size_t)d->edges[e].second + 3] += VALENCE;
     }
     *numbers = all;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool check(const double *numbers, size_t count) {
@@ -511,39 +506,29 @@ static double histogram_error(const fitting *f) {
 }
 
 static starg_status prepare(starg_context *context, fitting *f) {
-    starg_status status = STARG_OK;
     size_t guards = f->from.guards, edges = f->from.edges;
-    STARG_NEW(context, STAGE, f->places, PLACE * f->to.guards);
+    NEW(context, STAGE, f->places, PLACE * f->to.guards);
     for (size_t i = 0; i < f->to.guards; i++)
         memcpy(f->places + PLACE * i, f->to.guard + GUARD * i, PLACE * sizeof *f->places);
-    STARG_TRY(kd_tree_create(context, f->places, f->to.guards, PLACE, &f->tree));
-    STARG_NEW_ZERO(context, STAGE, f->maps, 3 * MAP * guards);
+    TRY(kd_tree_create(context, f->places, f->to.guards, PLACE, &f->tree));
+    NEW_ZERO(context, STAGE, f->maps, 3 * MAP * guards);
     for (size_t i = 0; i < 3 * guards; i++)
         f->maps[MAP * i + i % 3] = 1;
-    STARG_NEW(context, STAGE, f->moved, 3 * guards);
-    STARG_NEW(context, STAGE, f->match, guards);
-    STARG_NEW(context, STAGE, f->weight, edges);
-    STARG_NEW(context, STAGE, f->target, 3 * edges);
-    STARG_NEW(context, STAGE, f->right, MAP * guards);
-    STARG_NEW(context, STAGE, f->residual, MAP * guards);
-    STARG_NEW(context, STAGE, f->step, MAP * guards);
-    STARG_NEW(context, STAGE, f->image, MAP * guards);
-done:
-    return status;
+    NEW(context, STAGE, f->moved, 3 * guards);
+    NEW(context, STAGE, f->match, guards);
+    NEW(context, STAGE, f->weight, edges);
+    NEW(context, STAGE, f->target, 3 * edges);
+    NEW(context, STAGE, f->right, MAP * guards);
+    NEW(context, STAGE, f->residual, MAP * guards);
+    NEW(context, STAGE, f->step, MAP * guards);
+    NEW(context, STAGE, f->image, MAP * guards);
+    return STARG_OK;
 }
 
 static void free_fitting(starg_context *context, fitting *f) {
     kd_tree_free(context, &f->tree);
-    starg_release(context, f->places);
-    starg_release(context, f->maps);
-    starg_release(context, f->moved);
-    starg_release(context, f->match);
-    starg_release(context, f->weight);
-    starg_release(context, f->target);
-    starg_release(context, f->right);
-    starg_release(context, f->residual);
-    starg_release(context, f->step);
-    starg_release(context, f->image);
+    RELEASE(f->places, f->maps, f->moved, f->match, f->weight, f->target, f->right, f->residual,
+            f->step, f->image);
 }
 
 /* One direction. */
@@ -567,14 +552,12 @@ done:
 
 static starg_status compare(starg_context *context, const double *a, size_t a_count,
                             const double *b, size_t b_count, double *out) {
-    starg_status status = STARG_OK;
     double there = 0, back = 0;
     (void)a_count, (void)b_count;
-    STARG_TRY(fit(context, a, b, &there));
-    STARG_TRY(fit(context, b, a, &back));
+    TRY(fit(context, a, b, &there));
+    TRY(fit(context, b, a, &back));
     *out = (there + back) / 2;
-done:
-    return status;
+    return STARG_OK;
 }
 
 const signature_method signature_paper = {

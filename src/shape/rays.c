@@ -5,8 +5,6 @@
  * only the length is rounded. Cost: O(log n) per ray. */
 #include "shape/measures.h"
 
-#include <math.h>
-
 #include "geometry/intersect.h"
 #include "geometry/vec3.h"
 

@@ -10,9 +10,7 @@
  * number of directions grows, and stay large where no guard is close.
  *
  * Cost: O(log n) per point and sample. */
-#include <math.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "geometry/bvh.h"
@@ -27,11 +25,10 @@ static const uint64_t RANDOM = 0x7265636f;
 
 starg_status starg_descriptor_points(starg_context *context, const starg_descriptor *d,
                                      double **out) {
-    starg_status status = STARG_OK;
     size_t width = d->direction_count;
     double *points = NULL;
     *out = NULL;
-    STARG_NEW(context, STAGE, points, 3 * d->guard_count * width);
+    NEW(context, STAGE, points, 3 * d->guard_count * width);
     for (size_t i = 0; i < width; i++) {
         double direction[3];
         starg_descriptor_direction(width, i, direction);
@@ -40,8 +37,7 @@ starg_status starg_descriptor_points(starg_context *context, const starg_descrip
                        points + 3 * (g * width + i));
     }
     *out = points;
-done:
-    return status;
+    return STARG_OK;
 }
 
 void starg_descriptor_points_free(starg_context *context, double *points) {
@@ -65,12 +61,11 @@ static const double *corner(const comparison *c, size_t face, size_t k) {
 }
 
 static starg_status sum_areas(starg_context *context, comparison *c) {
-    starg_status status = STARG_OK;
     size_t count = starg_mesh_face_count(c->mesh);
     double lower[3], upper[3], sum = 0;
     starg_mesh_bounds(c->mesh, lower, upper);
     c->extent = vec3_distance(lower, upper);
-    STARG_NEW(context, STAGE, c->sums, count);
+    NEW(context, STAGE, c->sums, count);
     for (size_t f = 0; c->extent > 0 && f < count; f++) {
         double p[3][3];
         for (size_t k = 0; k < 3; k++)
@@ -79,9 +74,8 @@ static starg_status sum_areas(starg_context *context, comparison *c) {
         c->sums[f] = sum += vec3_triangle_area(p[0], p[1], p[2]);
     }
     if (!(sum > 0))
-        status = starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
-done:
-    return status;
+        return starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
+    return STARG_OK;
 }
 
 /* The square root makes the points uniform. */
@@ -127,18 +121,16 @@ static void summarise(const double *values, size_t count, double *mean, double *
 }
 
 static starg_status measure(starg_context *context, comparison *c, starg_reconstruction *out) {
-    starg_status status = STARG_OK;
     size_t most = c->count > SAMPLES ? c->count : SAMPLES;
     const starg_parallel_loop loop = {
         .stage = STAGE, .count = (most + CHUNK - 1) / CHUNK, .shared = c, .item = measure_chunk};
-    STARG_NEW(context, STAGE, c->to, c->count);
-    STARG_NEW(context, STAGE, c->from, SAMPLES);
-    STARG_TRY(starg_parallel_for(context, &loop));
+    NEW(context, STAGE, c->to, c->count);
+    NEW(context, STAGE, c->from, SAMPLES);
+    TRY(starg_parallel_for(context, &loop));
     *out = (starg_reconstruction){.points = c->count, .samples = SAMPLES};
     summarise(c->to, c->count, &out->to_mean, &out->to_largest);
     summarise(c->from, SAMPLES, &out->from_mean, &out->from_largest);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_descriptor_reconstruct(starg_context *context,
@@ -159,8 +151,6 @@ done:
     starg_release(context, c.points);
     bvh_free(c.surface);
     kd_tree_free(context, &c.tree);
-    starg_release(context, c.sums);
-    starg_release(context, c.to);
-    starg_release(context, c.from);
+    RELEASE(c.sums, c.to, c.from);
     return status;
 }

@@ -13,7 +13,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "starguard/shape.h"
 
@@ -101,12 +100,11 @@ static void measure(const ranking *r, starg_retrieval *out) {
 }
 
 static void free_ranking(starg_context *context, void *scratch) {
+    (void)context;
     ranking *r = scratch;
     if (r == NULL)
         return;
-    starg_release(context, r->list);
-    starg_release(context, r->found);
-    starg_release(context, r);
+    RELEASE(r->list, r->found, r);
 }
 
 static starg_status make_ranking(starg_context *context, void *shared, void **scratch) {
@@ -225,7 +223,6 @@ starg_status starg_retrieval_measure(starg_context *context, const double *dista
     STARG_TRY(starg_parallel_for(context, &loop));
     take_means(&e, class_count, classes, overall);
 done:
-    starg_release(context, e.sizes);
-    starg_release(context, e.queries);
+    RELEASE(e.sizes, e.queries);
     return status;
 }

@@ -3,8 +3,6 @@
  * square roots (initial state) and cube roots (rounds) of the first primes. */
 #include "shape/database.h"
 
-#include <string.h>
-
 enum { BLOCK = 64, ROUNDS = 64 };
 
 static const uint32_t CONSTANTS[ROUNDS] = {

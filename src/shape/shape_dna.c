@@ -12,7 +12,6 @@
  * Cost: see spectrum.c; about 0.2 s for 5,000 vertices, 8 s for 200,000. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "shape/signature_kinds.h"
 #include "shape/spectrum.h"
 
@@ -34,7 +33,7 @@ static starg_status compute(starg_context *context, const starg_mesh *mesh, doub
     *numbers = values;
     *count = EIGENVALUES;
 done:
-    laplacian_free(context, &l);
+    laplacian_free(&l);
     if (status != STARG_OK)
         starg_release(context, values);
     return status;

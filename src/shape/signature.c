@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "shape/signature_kinds.h"
 
@@ -70,9 +69,7 @@ starg_status starg_signature_of_descriptor(starg_context *context,
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "signatures of kind %d are not made of descriptors but of models",
                           (int)kind);
-    starg_status status = methods[kind]->derive(context, descriptor, &numbers, &count);
-    if (status != STARG_OK)
-        return status;
+    TRY(methods[kind]->derive(context, descriptor, &numbers, &count));
     if (methods[kind]->check(numbers, count))
         return wrap(context, kind, numbers, count, out);
     starg_release(context, numbers);
@@ -129,7 +126,6 @@ done:
 starg_status starg_signature_restore(starg_context *context, starg_signature_kind kind, int version,
                                      const double *numbers, size_t count, starg_signature **out) {
     const signature_method *method = method_of(kind);
-    starg_status status = STARG_OK;
     double *copy = NULL;
     *out = NULL;
     if (method == NULL)
@@ -141,18 +137,16 @@ starg_status starg_signature_restore(starg_context *context, starg_signature_kin
     if (!method->check(numbers, count))
         return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
                           "these %zu numbers are no %s signature", count, method->name);
-    STARG_NEW(context, STAGE, copy, count);
+    NEW(context, STAGE, copy, count);
     memcpy(copy, numbers, count * sizeof *copy);
-    status = wrap(context, kind, copy, count, out);
-done:
-    return status;
+    return wrap(context, kind, copy, count, out);
 }
 
 void starg_signature_free(starg_context *context, starg_signature *signature) {
+    (void)context;
     if (signature == NULL)
         return;
-    starg_release(context, signature->numbers);
-    starg_release(context, signature);
+    RELEASE(signature->numbers, signature);
 }
 
 /* ---- distances ---- */
@@ -206,17 +200,15 @@ typedef struct table {
 /* The part of a row right of the diagonal, and its mirror image. */
 static starg_status fill_row(starg_context *context, void *shared, void *scratch, size_t row) {
     const table *t = shared;
-    starg_status status = STARG_OK;
     (void)scratch;
     t->distances[row * t->count + row] = 0;
     for (size_t i = row + 1; i < t->count; i++) {
         double d = 0;
-        STARG_TRY(distance(context, t->signatures[row], t->signatures[i], &d));
+        TRY(distance(context, t->signatures[row], t->signatures[i], &d));
         t->distances[row * t->count + i] = d;
         t->distances[i * t->count + row] = d;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_signature_distances(starg_context *context, starg_signature *const *signatures,

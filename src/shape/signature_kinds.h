@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Kinds of signatures: their contents and their comparison. A new kind is an entry in the table of
  * signature.c and a file of its own. */
-#ifndef STARG_SHAPE_SIGNATURE_KINDS_H
-#define STARG_SHAPE_SIGNATURE_KINDS_H
-
-#include <stddef.h>
-#include <stdint.h>
+#pragma once
 
 #include "core/context.h"
 #include "starguard/descriptor.h"
-#include "starguard/shape.h"
 
 /* Computes the numbers in a new block. A failure keeps the model out of a database. */
 typedef starg_status signature_compute(starg_context *context, const starg_mesh *mesh,
@@ -73,5 +68,3 @@ double sketch_bound(starg_signature_kind kind, const sketch *a, const sketch *b)
 enum { SKETCH_MOST_BYTES = 4 * SKETCH_MOST };
 void sketch_store(const sketch *from, uint8_t bytes[SKETCH_MOST_BYTES]);
 void sketch_load(const uint8_t *bytes, size_t count, sketch *out);
-
-#endif

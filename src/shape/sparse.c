@@ -9,8 +9,6 @@
 #include <suitesparse/amd.h>
 #include <suitesparse/ldl.h>
 
-#include "core/memory.h"
-
 struct sparse_factors {
     starg_context *context;
     int64_t size;
@@ -24,35 +22,28 @@ typedef struct making {
     double *row;
 } making;
 
-static void making_free(starg_context *context, making *m) {
+static void making_free(making *m) {
     void *const blocks[] = {m->inverse, m->parents, m->sizes, m->flags, m->pattern, m->row};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
-        starg_release(context, blocks[i]);
+        RELEASE(blocks[i]);
 }
 
 void sparse_free(sparse_factors *f) {
     if (f == NULL)
         return;
-    starg_release(f->context, f->order);
-    starg_release(f->context, f->starts);
-    starg_release(f->context, f->rows);
-    starg_release(f->context, f->values);
-    starg_release(f->context, f->diagonal);
-    starg_release(f->context, f);
+    RELEASE(f->order, f->starts, f->rows, f->values, f->diagonal, f);
 }
 
 static starg_status make_room(sparse_factors *f, const char *stage, making *m) {
-    starg_status status = STARG_OK;
     size_t n = (size_t)f->size;
     int64_t **const lists[] = {&f->order, &m->inverse, &m->parents,
                                &m->sizes, &m->flags,   &m->pattern};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
-        STARG_NEW(f->context, stage, *lists[i], n);
-    STARG_NEW(f->context, stage, f->starts, n + 1);
-    STARG_NEW(f->context, stage, f->diagonal, n);
-    STARG_NEW(f->context, stage, m->row, n);
-done:
-    return status;
+        NEW(f->context, stage, *lists[i], n);
+    NEW(f->context, stage, f->starts, n + 1);
+    NEW(f->context, stage, f->diagonal, n);
+    NEW(f->context, stage, m->row, n);
+    return STARG_OK;
 }
 
 static starg_status choose_order(sparse_factors *f, const char *stage, const sparse_matrix *a) {
@@ -84,22 +75,18 @@ done:
 
 starg_status sparse_factorise(starg_context *context, const char *stage,
                               const sparse_matrix *matrix, sparse_factors **out) {
-    starg_status status = STARG_OK;
-    sparse_factors *f = NULL;
-    making m = {0};
+    SCOPED_BY(sparse_drop) sparse_factors *f = NULL;
+    SCOPED_BY(making_free) making m = {0};
     *out = NULL;
-    STARG_NEW_ZERO(context, stage, f, 1);
+    NEW_ZERO(context, stage, f, 1);
     f->context = context;
     f->size = (int64_t)matrix->size;
-    STARG_TRY(make_room(f, stage, &m));
-    STARG_TRY(choose_order(f, stage, matrix));
-    STARG_TRY(fill_factors(f, stage, matrix, &m));
+    TRY(make_room(f, stage, &m));
+    TRY(choose_order(f, stage, matrix));
+    TRY(fill_factors(f, stage, matrix, &m));
     *out = f;
     f = NULL;
-done:
-    making_free(context, &m);
-    sparse_free(f);
-    return status;
+    return STARG_OK;
 }
 
 void sparse_solve(const sparse_factors *f, double *values, double *work) {

@@ -11,9 +11,6 @@
  * eigenvalues suffice without a restart, and cost least. */
 #include "shape/spectrum.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "core/rng.h"
 #include "shape/lanczos.h"
 
@@ -106,9 +103,7 @@ starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_
     STARG_TRY(iterate(&it, wanted, eigenvalues, functions));
     STARG_TRY(convert(&it, wanted, eigenvalues, functions));
 done:
-    starg_release(context, it.roots);
-    starg_release(context, it.solution);
-    starg_release(context, it.start);
+    RELEASE(it.roots, it.solution, it.start);
     sparse_free(it.factors);
     return status;
 }

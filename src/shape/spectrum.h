@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Spectra of surfaces: sparse matrices, the Laplacian, its smallest eigenvalues, and where
  * vibrations are strong. */
-#ifndef STARG_SHAPE_SPECTRUM_H
-#define STARG_SHAPE_SPECTRUM_H
+#pragma once
 
-#include <stdint.h>
-
-#include "core/context.h"
+#include "core/memory.h"
 #include "starguard/descriptor.h"
-#include "starguard/mesh.h"
 
 /* Sparse symmetric positive definite systems with many right-hand sides. */
 
@@ -26,6 +22,7 @@ typedef struct sparse_factors sparse_factors;
 starg_status sparse_factorise(starg_context *context, const char *stage,
                               const sparse_matrix *matrix, sparse_factors **out);
 void sparse_free(sparse_factors *f);
+STARG_DROP(sparse, sparse_factors)
 
 /* Solves for one right-hand side in place; `work` has `size` doubles. Any thread. */
 void sparse_solve(const sparse_factors *f, double *values, double *work);
@@ -54,7 +51,7 @@ starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, la
 /* Factorizes L + shift M, which is positive definite for shift > 0. Errors: SOLVER, MEMORY. */
 starg_status laplacian_factorise(starg_context *context, const laplacian *l, double shift,
                                  sparse_factors **out);
-void laplacian_free(starg_context *context, laplacian *l);
+void laplacian_free(laplacian *l);
 
 /* Smallest eigenvalues and eigenfunctions of a Laplacian. */
 
@@ -74,5 +71,3 @@ enum { WKS_MODES = STARG_DESCRIPTOR_EIGENVALUES };
  * l->count numbers, orthonormal with respect to the masses. Errors: MEMORY. */
 starg_status wks_measure(starg_context *context, const laplacian *l, const double *eigenvalues,
                          const double *functions, double *out);
-
-#endif

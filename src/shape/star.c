@@ -60,9 +60,8 @@ static void put_spectrum(const double *eigenvalues, double *out) {
 
 static starg_status derive(starg_context *context, const starg_descriptor *d, double **numbers,
                            size_t *count) {
-    starg_status status = STARG_OK;
     double *all = NULL, unit = unit_of(d);
-    STARG_NEW(context, STAGE, all, NUMBERS);
+    NEW(context, STAGE, all, NUMBERS);
     put_spectrum(d->surface_spectrum, all);
     for (size_t i = 0; i < VIEWS_COUNT; i++)
         all[VIEWS + i] = d->views[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] / unit;
@@ -71,8 +70,7 @@ static starg_status derive(starg_context *context, const starg_descriptor *d, do
             log(d->wave_kernel[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] + FAINT);
     *numbers = all;
     *count = NUMBERS;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool check(const double *numbers, size_t count) {

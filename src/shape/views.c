@@ -12,14 +12,11 @@
  * Invariants: a point depends only on the seed and its number. Cost: POINTS x DIRECTIONS rays. */
 #include "shape/measures.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "geometry/vec3.h"
-#include "starguard/descriptor.h"
 
 static const char STAGE[] = "views";
 
@@ -46,9 +43,8 @@ static int compare_reals(const void *left, const void *right) {
 
 static starg_status sum_volumes(starg_context *context, const starg_tetmesh *mesh, double scale,
                                 double **out) {
-    starg_status status = STARG_OK;
     double sum = 0;
-    STARG_NEW(context, STAGE, *out, mesh->count);
+    NEW(context, STAGE, *out, mesh->count);
     for (size_t t = 0; t < mesh->count; t++) {
         const double *p[4];
         double e[3][3], normal[3];
@@ -61,8 +57,7 @@ static starg_status sum_volumes(starg_context *context, const starg_tetmesh *mes
         sum += fmax(0, vec3_dot(normal, e[2]));
         (*out)[t] = sum;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The first tetrahedron whose cumulative volume exceeds `volume`. */
@@ -124,7 +119,6 @@ starg_status views_measure(starg_context *context, const starg_tetmesh *mesh,
             out[k * SPREAD + i] = row[(2 * i + 1) * POINTS / (2 * SPREAD)];
     }
 done:
-    starg_release(context, volumes);
-    starg_release(context, v.ranks);
+    RELEASE(volumes, v.ranks);
     return status;
 }

@@ -25,8 +25,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
-
 static const char STAGE[] = "wave kernel";
 
 enum { ENERGIES = STARG_DESCRIPTOR_ENERGIES, SPREAD = STARG_DESCRIPTOR_SPREAD };
@@ -95,16 +93,13 @@ static void take_quantiles(place *places, size_t count, double *out) {
 
 starg_status wks_measure(starg_context *context, const laplacian *l, const double *eigenvalues,
                          const double *functions, double *out) {
-    starg_status status = STARG_OK;
-    place *places = NULL;
+    SCOPED place *places = NULL;
     double weights[WKS_MODES + 1], growth = growth_of(eigenvalues);
-    STARG_NEW(context, STAGE, places, l->count);
+    NEW(context, STAGE, places, l->count);
     for (size_t e = 0; e < ENERGIES; e++) {
         weigh(eigenvalues, growth, e, weights);
         spread(l, functions, weights, places);
         take_quantiles(places, l->count, out + e * SPREAD);
     }
-done:
-    starg_release(context, places);
-    return status;
+    return STARG_OK;
 }

@@ -12,7 +12,6 @@
 
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
@@ -42,20 +41,19 @@ typedef struct builder {
 } builder;
 
 static starg_status take_nodes(builder *b, const bool *inside) {
-    starg_status status = STARG_OK;
     medial_complex *c = b->complex;
-    STARG_NEW(b->context, STAGE, b->node_of, b->tetrahedra->count);
+    NEW(b->context, STAGE, b->node_of, b->tetrahedra->count);
     for (size_t t = 0; t < b->tetrahedra->count; t++)
         b->node_of[t] = inside[t] ? (uint32_t)c->node_count++ : EDGE_NONE;
     c->tetrahedron_count = c->node_count;
-    STARG_NEW(b->context, STAGE, c->node_of, c->node_count);
+    NEW(b->context, STAGE, c->node_of, c->node_count);
     for (uint32_t n = 0; n < c->node_count; n++)
         c->node_of[n] = n;
-    STARG_NEW(b->context, STAGE, c->corners, c->node_count);
-    STARG_NEW(b->context, STAGE, c->centres, c->node_count);
-    STARG_NEW(b->context, STAGE, c->radii, c->node_count);
-    STARG_NEW_ZERO(b->context, STAGE, b->borders, c->node_count);
-    STARG_NEW(b->context, STAGE, b->poor, c->node_count);
+    NEW(b->context, STAGE, c->corners, c->node_count);
+    NEW(b->context, STAGE, c->centres, c->node_count);
+    NEW(b->context, STAGE, c->radii, c->node_count);
+    NEW_ZERO(b->context, STAGE, b->borders, c->node_count);
+    NEW(b->context, STAGE, b->poor, c->node_count);
     for (size_t t = 0; t < b->tetrahedra->count; t++)
         if (inside[t])
             memcpy(c->corners[b->node_of[t]], b->tetrahedra->tetrahedra[t], sizeof *c->corners);
@@ -65,8 +63,7 @@ static starg_status take_nodes(builder *b, const bool *inside) {
             if (next == DELAUNAY_NONE || !inside[next])
                 b->borders[b->node_of[t]] |= (uint8_t)(1 << k);
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Is p beyond a face of the tetrahedron that bounds the region? Rounded: it does not affect
@@ -162,16 +159,15 @@ static bool passes_through(const builder *b, uint32_t giver, uint32_t node) {
  * stays simple. Others get the largest ball of their neighbours, which passes through three of
  * their points. */
 static starg_status place_flat_nodes(builder *b) {
-    starg_status status = STARG_OK;
     medial_complex *c = b->complex;
-    curve_graph graph = {0};
-    flat_seed *seeds = NULL;
-    uint32_t *queue = NULL, *giver = NULL;
+    SCOPED_BY(graph_free) curve_graph graph = {0};
+    SCOPED flat_seed *seeds = NULL;
+    SCOPED uint32_t *queue = NULL, *giver = NULL;
     size_t count = 0;
-    STARG_NEW(b->context, STAGE, giver, c->node_count);
-    STARG_NEW(b->context, STAGE, queue, c->node_count);
-    STARG_NEW(b->context, STAGE, seeds, 2 * c->link_count);
-    STARG_TRY(graph_create(b->context, c->node_count, c->links, NULL, c->link_count, &graph));
+    NEW(b->context, STAGE, giver, c->node_count);
+    NEW(b->context, STAGE, queue, c->node_count);
+    NEW(b->context, STAGE, seeds, 2 * c->link_count);
+    TRY(graph_create(b->context, c->node_count, c->links, NULL, c->link_count, &graph));
     for (uint32_t v = 0; v < c->node_count; v++) {
         giver[v] = EDGE_NONE;
         for (uint32_t j = graph.first[v]; !b->poor[v] && j < graph.first[v + 1]; j++)
@@ -201,12 +197,7 @@ static starg_status place_flat_nodes(builder *b) {
             vec3_copy(c->centres[giver[n]], c->centres[n]);
             c->radii[n] = c->radii[giver[n]];
         }
-done:
-    graph_free(b->context, &graph);
-    starg_release(b->context, seeds);
-    starg_release(b->context, queue);
-    starg_release(b->context, giver);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status place_block(starg_context *context, void *shared, void *scratch, size_t item) {
@@ -230,13 +221,12 @@ static void number_triangle(builder *b, const uint32_t corners[4], int k, uint32
 
 /* Makes links of triangles between two nodes; marks the edges and points of border triangles. */
 static starg_status take_links(builder *b) {
-    starg_status status = STARG_OK;
     medial_complex *c = b->complex;
-    STARG_TRY(edge_table_make(b->context, STAGE, 6 * c->node_count, &b->edges));
-    STARG_NEW(b->context, STAGE, c->links, 2 * c->node_count);
-    STARG_NEW(b->context, STAGE, c->link_edges, 2 * c->node_count);
-    STARG_NEW(b->context, STAGE, c->sheet, 6 * c->node_count);
-    STARG_NEW_ZERO(b->context, STAGE, c->buried, c->point_count);
+    TRY(edge_table_make(b->context, STAGE, 6 * c->node_count, &b->edges));
+    NEW(b->context, STAGE, c->links, 2 * c->node_count);
+    NEW(b->context, STAGE, c->link_edges, 2 * c->node_count);
+    NEW(b->context, STAGE, c->sheet, 6 * c->node_count);
+    NEW_ZERO(b->context, STAGE, c->buried, c->point_count);
     memset(c->sheet, true, 6 * c->node_count);
     for (size_t n = 0; n < c->node_count; n++)
         for (int k = 0; k < 4; k++)
@@ -263,15 +253,13 @@ static starg_status take_links(builder *b) {
         }
     }
     c->edge_count = b->edges.count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_edges(builder *b) {
-    starg_status status = STARG_OK;
     medial_complex *c = b->complex;
-    STARG_NEW(b->context, STAGE, c->ends, c->edge_count);
-    STARG_NEW(b->context, STAGE, c->lengths, c->edge_count);
+    NEW(b->context, STAGE, c->ends, c->edge_count);
+    NEW(b->context, STAGE, c->lengths, c->edge_count);
     for (size_t slot = 0; slot <= b->edges.mask; slot++) {
         if (b->edges.keys[slot] == 0)
             continue;
@@ -281,18 +269,15 @@ static starg_status take_edges(builder *b) {
         c->lengths[e] = vec3_distance(b->points + 3 * (size_t)c->ends[e][0],
                                       b->points + 3 * (size_t)c->ends[e][1]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status invert_links(builder *b) {
-    starg_status status = STARG_OK;
     medial_complex *c = b->complex;
-    STARG_NEW(b->context, STAGE, c->first_link, c->edge_count + 2);
-    STARG_NEW(b->context, STAGE, c->edge_links, 3 * c->link_count);
+    NEW(b->context, STAGE, c->first_link, c->edge_count + 2);
+    NEW(b->context, STAGE, c->edge_links, 3 * c->link_count);
     complex_invert(c);
-done:
-    return status;
+    return STARG_OK;
 }
 
 void complex_invert(medial_complex *c) {
@@ -336,9 +321,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
     *out = complex;
     complex = NULL;
 done:
-    starg_release(context, b.node_of);
-    starg_release(context, b.borders);
-    starg_release(context, b.poor);
+    RELEASE(b.node_of, b.borders, b.poor);
     edge_table_free(context, &b.edges);
     complex_free(complex);
     return status;
@@ -347,18 +330,7 @@ done:
 void complex_free(medial_complex *complex) {
     if (complex == NULL)
         return;
-    starg_context *context = complex->context;
-    starg_release(context, complex->corners);
-    starg_release(context, complex->node_of);
-    starg_release(context, complex->centres);
-    starg_release(context, complex->radii);
-    starg_release(context, complex->links);
-    starg_release(context, complex->link_edges);
-    starg_release(context, complex->ends);
-    starg_release(context, complex->lengths);
-    starg_release(context, complex->sheet);
-    starg_release(context, complex->first_link);
-    starg_release(context, complex->edge_links);
-    starg_release(context, complex->buried);
-    starg_release(context, complex);
+    RELEASE(complex->corners, complex->node_of, complex->centres, complex->radii, complex->links,
+            complex->link_edges, complex->ends, complex->lengths, complex->sheet,
+            complex->first_link, complex->edge_links, complex->buried, complex);
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The medial axis as a cell complex: the dual of the interior tetrahedra, a part of the Voronoi
  * diagram. */
-#ifndef STARG_SKELETON_COMPLEX_H
-#define STARG_SKELETON_COMPLEX_H
+#pragma once
 
 #include "geometry/delaunay.h"
 #include "mesh/solid.h"
@@ -36,5 +35,3 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
 /* Makes the lists of links of edges anew, after links have been removed. */
 void complex_invert(medial_complex *complex);
 void complex_free(medial_complex *complex);
-
-#endif

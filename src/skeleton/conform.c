@@ -26,7 +26,6 @@
  * Cost: the Delaunay tetrahedra, and per round linear in what has changed. */
 #include "skeleton/conform.h"
 
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "skeleton/sample_mesh.h"
@@ -129,15 +128,13 @@ static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
 
 /* The halfedges from v, counter-clockwise, all marked as not found. */
 static starg_status find_ring(conformer *c, uint32_t v) {
-    starg_status status = STARG_OK;
     uint32_t first = c->mesh.net.leaving.data[v], h = first;
     c->ring.count = 0;
     do {
-        STARG_PUSH(c->context, STAGE, &c->ring, ((spoke){.halfedge = h, .head = head(c, h)}));
+        PUSH(c->context, STAGE, &c->ring, ((spoke){.halfedge = h, .head = head(c, h)}));
         h = halfedges_turn(&c->mesh.net, h);
     } while (h != first);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Marks the edges and faces of the ring that occur in tetrahedra of the star. */
@@ -164,23 +161,21 @@ static void find_in_star(conformer *c, uint32_t (*star)[3], size_t count) {
 /* Searches the edges and faces at v in the tetrahedra at v: each edge at its lower end, each face
  * at its lowest corner. */
 static starg_status examine_point(conformer *c, uint32_t v) {
-    starg_status status = STARG_OK;
     uint32_t(*star)[3];
     size_t count;
-    STARG_TRY(find_ring(c, v));
-    STARG_TRY(delaunay_star(c->builder, v, &star, &count));
+    TRY(find_ring(c, v));
+    TRY(delaunay_star(c->builder, v, &star, &count));
     c->work += count + c->ring.count;
     find_in_star(c, star, count);
     for (size_t i = 0; i < c->ring.count; i++) {
         const spoke *s = &c->ring.data[i];
         const mesh_edge e = {v, s->head, s->halfedge};
         if (!s->edge && v < s->head)
-            STARG_PUSH(c->context, STAGE, &c->lost_edges, e);
+            PUSH(c->context, STAGE, &c->lost_edges, e);
         if (!s->face && v < s->head && v < apex(c, s->halfedge))
-            STARG_PUSH(c->context, STAGE, &c->lost_faces, e);
+            PUSH(c->context, STAGE, &c->lost_faces, e);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Must v be examined again? Creating or deleting a tetrahedron changes all of its points, so an
@@ -203,11 +198,9 @@ static bool needs_examination(conformer *c, uint32_t v) {
  * sorted by point; *next is where those of v start. */
 static inline starg_status keep_lost(conformer *c, const lost_list *last, uint32_t v, size_t *next,
                                      lost_list *lost) {
-    starg_status status = STARG_OK;
     for (; *next < last->count && last->data[*next].u == v; ++*next)
-        STARG_PUSH(c->context, STAGE, lost, last->data[*next]);
-done:
-    return status;
+        PUSH(c->context, STAGE, lost, last->data[*next]);
+    return STARG_OK;
 }
 
 static void skip_lost(const lost_list *last, uint32_t v, size_t *next) {
@@ -223,7 +216,6 @@ static void swap_lists(lost_list *a, lost_list *b) {
 }
 
 static starg_status find_lost(conformer *c) {
-    starg_status status = STARG_OK;
     size_t next_edge = 0, next_face = 0;
     swap_lists(&c->lost_edges, &c->last_edges);
     swap_lists(&c->lost_faces, &c->last_faces);
@@ -233,14 +225,13 @@ static starg_status find_lost(conformer *c) {
         if (needs_examination(c, v)) {
             skip_lost(&c->last_edges, v, &next_edge);
             skip_lost(&c->last_faces, v, &next_face);
-            STARG_TRY(examine_point(c, v));
+            TRY(examine_point(c, v));
         } else {
-            STARG_TRY(keep_lost(c, &c->last_edges, v, &next_edge, &c->lost_edges));
-            STARG_TRY(keep_lost(c, &c->last_faces, v, &next_face, &c->lost_faces));
+            TRY(keep_lost(c, &c->last_edges, v, &next_edge, &c->lost_edges));
+            TRY(keep_lost(c, &c->last_faces, v, &next_face, &c->lost_faces));
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Is a b d a face of tetrahedra? */
@@ -301,7 +292,6 @@ static bool is_flat_and_poor(const conformer *c, uint32_t h) {
 }
 
 static starg_status try_flip(conformer *c, uint32_t h, bool *flipped) {
-    starg_status status = STARG_OK;
     uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, twin(c, h));
     bool one = false, other = false;
     *flipped = false;
@@ -314,15 +304,14 @@ static starg_status try_flip(conformer *c, uint32_t h, bool *flipped) {
     }
     if (!is_flat_enough(c, h))
         return STARG_OK;
-    STARG_TRY(is_face(c, w, u, x, &one));
+    TRY(is_face(c, w, u, x, &one));
     if (one)
-        STARG_TRY(is_face(c, w, v, x, &other));
+        TRY(is_face(c, w, v, x, &other));
     if (one && other) {
         sample_mesh_flip(&c->mesh, h);
         *flipped = true;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Is the angle between the two faces of an edge below a fold's? */
@@ -352,33 +341,29 @@ static void unfold(conformer *c, uint32_t f, double fold, size_t *flips) {
 /* Folds wait until no other flip applies: faces lost nearby for another reason could be mistaken
  * for folds. */
 static starg_status flip_lost(conformer *c, const strategy *how, size_t *flips) {
-    starg_status status = STARG_OK;
     *flips = 0;
     for (size_t i = 0; i < c->lost_edges.count; i++) {
         bool flipped;
-        STARG_TRY(try_flip(c, find_edge(c, &c->lost_edges.data[i]), &flipped));
+        TRY(try_flip(c, find_edge(c, &c->lost_edges.data[i]), &flipped));
         *flips += flipped;
     }
     size_t waiting = *flips == 0 && how->fold > -1 ? c->lost_faces.count : 0;
     for (size_t i = 0; i < waiting; i++)
         unfold(c, c->lost_faces.data[i].halfedge / 3, how->fold, flips);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- points ---- */
 
 static starg_status cut_lost_edges(conformer *c) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < c->lost_edges.count; i++) {
         uint32_t u = c->lost_edges.data[i].u, v = c->lost_edges.data[i].v;
         double p[3];
         for (int k = 0; k < 3; k++)
             p[k] = 0.5 * at(c, u)[k] + 0.5 * at(c, v)[k];
-        STARG_TRY(sample_mesh_split_edge(&c->mesh, find_edge(c, &c->lost_edges.data[i]), p));
+        TRY(sample_mesh_split_edge(&c->mesh, find_edge(c, &c->lost_edges.data[i]), p));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static double determinant(const double *a, const double *b, const double *d, const double *p) {
@@ -403,14 +388,13 @@ static bool pierces(const double *const t[3], const double *p, const double *q) 
 
 /* The edge of tetrahedra that pierces the face of h is opposite to one of the face's own edges. */
 static starg_status find_piercing(conformer *c, uint32_t h, double place[3], bool *found) {
-    starg_status status = STARG_OK;
     const uint32_t v[3] = {tail(c, h), head(c, h), apex(c, h)};
     const double *const t[3] = {at(c, v[0]), at(c, v[1]), at(c, v[2])};
     *found = false;
     for (int k = 0; k < 3 && !*found; k++) {
         uint32_t(*star)[3];
         size_t count;
-        STARG_TRY(delaunay_star(c->builder, v[k], &star, &count));
+        TRY(delaunay_star(c->builder, v[k], &star, &count));
         for (size_t i = 0; i < 3 * count && !*found; i++) {
             const double *p = at(c, star[i / 3][i % 3]), *q = at(c, star[i / 3][(i % 3 + 1) % 3]);
             if (!pierces(t, p, q))
@@ -422,25 +406,22 @@ static starg_status find_piercing(conformer *c, uint32_t h, double place[3], boo
             *found = true;
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Skips faces with a lost edge, which were cut with it: their corners changed or wait. */
 static starg_status pierce_lost_faces(conformer *c, const bool *cut) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < c->lost_faces.count; i++) {
         uint32_t h = c->lost_faces.data[i].halfedge;
         double p[3];
         bool found;
         if (cut[h / 3])
             continue;
-        STARG_TRY(find_piercing(c, h, p, &found));
+        TRY(find_piercing(c, h, p, &found));
         if (found)
-            STARG_TRY(sample_mesh_split_face(&c->mesh, h / 3, p));
+            TRY(sample_mesh_split_face(&c->mesh, h / 3, p));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static double length_squared(const conformer *c, uint32_t h) {
@@ -481,7 +462,6 @@ done:
 }
 
 static starg_status bisect_lost_faces(conformer *c) {
-    starg_status status = STARG_OK;
     size_t first = point_count(c);
     for (size_t i = 0; i < c->lost_faces.count; i++) {
         uint32_t h = c->lost_faces.data[i].halfedge;
@@ -491,41 +471,36 @@ static starg_status bisect_lost_faces(conformer *c) {
         double p[3];
         for (int k = 0; k < 3; k++)
             p[k] = 0.5 * at(c, tail(c, h))[k] + 0.5 * at(c, head(c, h))[k];
-        STARG_TRY(sample_mesh_split_edge(&c->mesh, h, p));
+        TRY(sample_mesh_split_edge(&c->mesh, h, p));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status reserve_places(conformer *c) {
-    starg_status status = STARG_OK;
     size_t count = point_count(c);
     if (count <= c->place_capacity)
         return STARG_OK;
     starg_release(c->context, c->place);
     c->place = NULL;
     c->place_capacity = 0;
-    STARG_NEW_ZERO(c->context, STAGE, c->place, 2 * count);
+    NEW_ZERO(c->context, STAGE, c->place, 2 * count);
     c->place_capacity = 2 * count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Flips until no flip applies. */
 static starg_status settle(conformer *c, const strategy *how) {
-    starg_status status = STARG_OK;
-    STARG_TRY(reserve_places(c));
+    TRY(reserve_places(c));
     for (int pass = 0;; pass++) {
         size_t flips;
-        STARG_TRY(find_lost(c));
+        TRY(find_lost(c));
         if (pass == MAX_PASSES || c->work > c->most_work)
             break;
-        STARG_TRY(flip_lost(c, how, &flips));
+        TRY(flip_lost(c, how, &flips));
         if (flips == 0)
             break;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The next round would insert about as many points as there are lost faces. */
@@ -535,11 +510,10 @@ static bool is_spent(const conformer *c) {
 
 /* Alternates points and flips, from a settled state. */
 static starg_status run_rounds(conformer *c, const strategy *how) {
-    starg_status status = STARG_OK;
     size_t least_round = 0;
     c->least = c->lost_faces.count;
     for (size_t round = 0; c->lost_faces.count > 0; round++) {
-        STARG_TRY(starg_check_cancel(c->context, STAGE));
+        TRY(starg_check_cancel(c->context, STAGE));
         size_t before = point_count(c), lost = c->lost_faces.count;
         if (lost < c->least) {
             c->least = lost;
@@ -547,15 +521,14 @@ static starg_status run_rounds(conformer *c, const strategy *how) {
         }
         if (lost > SETBACK * c->least || round - least_round > PATIENCE || is_spent(c))
             return STARG_OK;
-        STARG_TRY(how->pierces ? cut_and_pierce(c) : bisect_lost_faces(c));
+        TRY(how->pierces ? cut_and_pierce(c) : bisect_lost_faces(c));
         if (point_count(c) == before)
             return STARG_OK;
-        STARG_TRY(delaunay_extend(c->builder, c->mesh.points.data, point_count(c)));
-        STARG_TRY(settle(c, how));
+        TRY(delaunay_extend(c->builder, c->mesh.points.data, point_count(c)));
+        TRY(settle(c, how));
     }
     c->least = 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- manners ---- */
@@ -563,55 +536,41 @@ done:
 static void conformer_free(conformer *c) {
     delaunay_builder_free(c->builder);
     sample_mesh_free(&c->mesh);
-    STARG_ARRAY_FREE(c->context, &c->ring);
-    STARG_ARRAY_FREE(c->context, &c->lost_edges);
-    STARG_ARRAY_FREE(c->context, &c->lost_faces);
-    STARG_ARRAY_FREE(c->context, &c->last_edges);
-    STARG_ARRAY_FREE(c->context, &c->last_faces);
-    starg_release(c->context, c->place);
+    RELEASE(c->ring.data, c->lost_edges.data, c->lost_faces.data, c->last_edges.data,
+            c->last_faces.data, c->place);
     *c = (conformer){.context = c->context};
 }
 
 /* The common start of all strategies: flips alone. */
 static starg_status start(conformer *c, surface_samples *samples) {
-    starg_status status = STARG_OK;
-    STARG_TRY(sample_mesh_take(c->context, samples, &c->mesh));
-    STARG_TRY(delaunay_begin(c->context, c->mesh.points.data, point_count(c), &c->builder));
+    TRY(sample_mesh_take(c->context, samples, &c->mesh));
+    TRY(delaunay_begin(c->context, c->mesh.points.data, point_count(c), &c->builder));
     c->most_points = 3 * point_count(c) / 2 + 2000;
     c->most_work = WORK * point_count(c);
-    STARG_TRY(settle(c, &STRATEGIES[0]));
-done:
-    return status;
+    return settle(c, &STRATEGIES[0]);
 }
 
 static starg_status copy_list(starg_context *context, const lost_list *list, lost_list *copy) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < list->count; i++)
-        STARG_PUSH(context, STAGE, copy, list->data[i]);
-done:
-    return status;
+        PUSH(context, STAGE, copy, list->data[i]);
+    return STARG_OK;
 }
 
 static starg_status conformer_copy(const conformer *c, conformer *copy) {
-    starg_status status = STARG_OK;
     copy->most_points = c->most_points;
     copy->most_work = c->most_work;
     copy->work = c->work;
-    STARG_TRY(sample_mesh_copy(&c->mesh, &copy->mesh));
-    STARG_TRY(delaunay_copy(c->builder, &copy->builder));
-    STARG_TRY(copy_list(c->context, &c->lost_edges, &copy->lost_edges));
-    STARG_TRY(copy_list(c->context, &c->lost_faces, &copy->lost_faces));
-done:
-    return status;
+    TRY(sample_mesh_copy(&c->mesh, &copy->mesh));
+    TRY(delaunay_copy(c->builder, &copy->builder));
+    TRY(copy_list(c->context, &c->lost_edges, &copy->lost_edges));
+    return copy_list(c->context, &c->lost_faces, &copy->lost_faces);
 }
 
 static starg_status hand_out(conformer *c, conformed *result) {
-    starg_status status = STARG_OK;
     result->lost = c->lost_faces.count;
-    STARG_TRY(delaunay_finish(c->builder, &result->tetrahedra));
+    TRY(delaunay_finish(c->builder, &result->tetrahedra));
     sample_mesh_give(&c->mesh, &result->samples);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Inserts the last result into the sorted ones before it; stable. */
@@ -626,43 +585,36 @@ static void sort_in(conformed *results, size_t count) {
 /* Continues from a state that stays unchanged except for its work counter. */
 static starg_status try_strategy(conformer *from, const strategy *how, conformed *result,
                                  bool *hopeless) {
-    starg_status status = STARG_OK;
-    conformer c = {.context = from->context};
-    STARG_TRY(conformer_copy(from, &c));
-    STARG_TRY(run_rounds(&c, how));
+    SCOPED_BY(conformer_free) conformer c = {.context = from->context};
+    TRY(conformer_copy(from, &c));
+    TRY(run_rounds(&c, how));
     *hopeless = c.least > point_count(from) / HOPELESS || c.work > c.most_work;
     from->work = c.work;
-    STARG_TRY(hand_out(&c, result));
-done:
-    conformer_free(&c);
-    return status;
+    return hand_out(&c, result);
 }
 
 starg_status conform_samples(starg_context *context, surface_samples *samples,
                              conformed results[CONFORM_RESULTS], size_t *count) {
-    starg_status status = STARG_OK;
-    conformer first = {.context = context};
+    SCOPED_BY(conformer_free) conformer first = {.context = context};
     bool over = false;
     *count = 0;
     memset(results, 0, CONFORM_RESULTS * sizeof *results);
-    STARG_TRY(start(&first, samples));
+    TRY(start(&first, samples));
     for (const strategy *how = STRATEGIES; how < STRATEGIES + STRATEGY_COUNT && !over; how++) {
-        STARG_TRY(try_strategy(&first, how, &results[(*count)++], &over));
+        TRY(try_strategy(&first, how, &results[(*count)++], &over));
         sort_in(results, *count);
         over = over || results[0].lost == 0;
     }
     /* points may have made more faces lost */
     if (results[0].lost > 0) {
-        STARG_TRY(hand_out(&first, &results[(*count)++]));
+        TRY(hand_out(&first, &results[(*count)++]));
         sort_in(results, *count);
     }
-done:
-    conformer_free(&first);
-    return status;
+    return STARG_OK;
 }
 
-void conformed_free(starg_context *context, conformed *result) {
-    samples_free(context, &result->samples);
+void conformed_free(conformed *result) {
+    samples_free(&result->samples);
     delaunay_free(result->tetrahedra);
     *result = (conformed){0};
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Samples of a surface whose faces are faces of their Delaunay tetrahedra. */
-#ifndef STARG_SKELETON_CONFORM_H
-#define STARG_SKELETON_CONFORM_H
+#pragma once
 
 #include "geometry/delaunay.h"
 #include "skeleton/samples.h"
@@ -22,6 +21,4 @@ enum { CONFORM_RESULTS = 5 };
  * be freed, after errors too. Errors: MEMORY, CANCELLED. */
 starg_status conform_samples(starg_context *context, surface_samples *samples,
                              conformed results[CONFORM_RESULTS], size_t *count);
-void conformed_free(starg_context *context, conformed *result);
-
-#endif
+void conformed_free(conformed *result);

@@ -22,7 +22,6 @@
 
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "skeleton/edge_table.h"
@@ -64,11 +63,10 @@ static int compare_seeds(const void *left, const void *right) {
 
 /* Nodes that are near to a neighbour, by falling radius. */
 static starg_status find_seeds(const contractor *k, seed **seeds, size_t *count) {
-    starg_status status = STARG_OK;
     const medial_complex *c = k->complex;
-    bool *close = NULL;
-    STARG_NEW_ZERO(k->context, STAGE, close, c->node_count);
-    STARG_NEW(k->context, STAGE, *seeds, c->node_count);
+    SCOPED bool *close = NULL;
+    NEW_ZERO(k->context, STAGE, close, c->node_count);
+    NEW(k->context, STAGE, *seeds, c->node_count);
     for (size_t l = 0; l < c->link_count; l++) {
         uint32_t a = c->links[l][0], b = c->links[l][1];
         if (is_near(c, a, b) || is_near(c, b, a))
@@ -78,17 +76,14 @@ static starg_status find_seeds(const contractor *k, seed **seeds, size_t *count)
         if (close[v])
             (*seeds)[(*count)++] = (seed){c->radii[v], v};
     qsort(*seeds, *count, sizeof **seeds, compare_seeds);
-done:
-    starg_release(k->context, close);
-    return status;
+    return STARG_OK;
 }
 
 /* Gathers the nodes that links join to `first` within its reach. */
 static starg_status grow(contractor *k, const curve_graph *graph, uint32_t first) {
-    starg_status status = STARG_OK;
     k->queue.count = 0;
     k->leader[first] = first;
-    STARG_PUSH(k->context, STAGE, &k->queue, first);
+    PUSH(k->context, STAGE, &k->queue, first);
     for (size_t i = 0; i < k->queue.count; i++) {
         uint32_t v = k->queue.data[i];
         for (uint32_t j = graph->first[v]; j < graph->first[v + 1]; j++) {
@@ -96,33 +91,28 @@ static starg_status grow(contractor *k, const curve_graph *graph, uint32_t first
             if (k->leader[w] != EDGE_NONE || !is_near(k->complex, first, w))
                 continue;
             k->leader[w] = first;
-            STARG_PUSH(k->context, STAGE, &k->queue, w);
+            PUSH(k->context, STAGE, &k->queue, w);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status find_clusters(contractor *k) {
-    starg_status status = STARG_OK;
     const medial_complex *c = k->complex;
-    curve_graph graph = {0};
-    seed *seeds = NULL;
+    SCOPED_BY(graph_free) curve_graph graph = {0};
+    SCOPED seed *seeds = NULL;
     size_t count = 0;
-    STARG_NEW(k->context, STAGE, k->leader, c->node_count);
+    NEW(k->context, STAGE, k->leader, c->node_count);
     memset(k->leader, 0xff, c->node_count * sizeof *k->leader);
-    STARG_TRY(find_seeds(k, &seeds, &count));
-    STARG_TRY(graph_create(k->context, c->node_count, c->links, NULL, c->link_count, &graph));
+    TRY(find_seeds(k, &seeds, &count));
+    TRY(graph_create(k->context, c->node_count, c->links, NULL, c->link_count, &graph));
     for (size_t i = 0; i < count; i++)
         if (k->leader[seeds[i].node] == EDGE_NONE)
-            STARG_TRY(grow(k, &graph, seeds[i].node));
+            TRY(grow(k, &graph, seeds[i].node));
     for (uint32_t v = 0; v < c->node_count; v++)
         if (k->leader[v] == EDGE_NONE)
             k->leader[v] = v;
-done:
-    graph_free(k->context, &graph);
-    starg_release(k->context, seeds);
-    return status;
+    return STARG_OK;
 }
 
 static bool is_within(const contractor *k, size_t link) {
@@ -131,15 +121,13 @@ static bool is_within(const contractor *k, size_t link) {
 }
 
 static starg_status contract_link(contractor *k, size_t link) {
-    starg_status status = STARG_OK;
     k->contracted[link] = true;
     for (int j = 0; j < 3; j++) {
         uint32_t edge = k->complex->link_edges[link][j];
         if (--k->pending[edge] == 1 && k->within[edge])
-            STARG_PUSH(k->context, STAGE, &k->queue, edge);
+            PUSH(k->context, STAGE, &k->queue, edge);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void count_pending(contractor *k) {
@@ -154,10 +142,9 @@ static void count_pending(contractor *k) {
 }
 
 static starg_status contract_trees(contractor *k) {
-    starg_status status = STARG_OK;
     const medial_complex *c = k->complex;
-    uint32_t *sets = NULL;
-    STARG_NEW(k->context, STAGE, sets, c->node_count);
+    SCOPED uint32_t *sets = NULL;
+    NEW(k->context, STAGE, sets, c->node_count);
     sets_make(sets, c->node_count);
     k->queue.count = 0;
     for (size_t l = 0; l < c->link_count; l++) {
@@ -165,16 +152,13 @@ static starg_status contract_trees(contractor *k) {
         if (!is_within(k, l) || a == b)
             continue;
         sets_join(sets, a, b);
-        STARG_TRY(contract_link(k, l));
+        TRY(contract_link(k, l));
     }
-done:
-    starg_release(k->context, sets);
-    return status;
+    return STARG_OK;
 }
 
 /* Contracts sheets with their last links, which leaves others with one. */
 static starg_status contract_sheets(contractor *k) {
-    starg_status status = STARG_OK;
     const medial_complex *c = k->complex;
     while (k->queue.count > 0) {
         uint32_t edge = k->queue.data[--k->queue.count];
@@ -183,10 +167,9 @@ static starg_status contract_sheets(contractor *k) {
         k->paired[edge] = true;
         for (uint32_t i = c->first_link[edge]; i < c->first_link[edge + 1]; i++)
             if (!k->contracted[c->edge_links[i]])
-                STARG_TRY(contract_link(k, c->edge_links[i]));
+                TRY(contract_link(k, c->edge_links[i]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Clusters of which something is left. */
@@ -230,9 +213,7 @@ static starg_status take_nodes(contractor *k) {
     memcpy(c->radii, radii, count * sizeof *radii);
     c->node_count = count;
 done:
-    starg_release(k->context, numbers);
-    starg_release(k->context, centres);
-    starg_release(k->context, radii);
+    RELEASE(numbers, centres, radii);
     return status;
 }
 
@@ -272,12 +253,6 @@ starg_status contract_complex(starg_context *context, medial_complex *complex) {
     take_links(&k);
     complex_invert(complex);
 done:
-    starg_release(context, k.leader);
-    starg_release(context, k.given_up);
-    starg_release(context, k.contracted);
-    starg_release(context, k.pending);
-    starg_release(context, k.within);
-    starg_release(context, k.paired);
-    STARG_ARRAY_FREE(context, &k.queue);
+    RELEASE(k.leader, k.given_up, k.contracted, k.pending, k.within, k.paired, k.queue.data);
     return status;
 }

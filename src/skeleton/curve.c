@@ -10,7 +10,6 @@
  * Cost: linear, and some inside tests per node. */
 #include "skeleton/curve.h"
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
 
@@ -95,12 +94,12 @@ static starg_status place_rest(curve *c, const bool *placed) {
 /* Replaces centres that rounding put outside (of extremely flat tetrahedra) by those of
  * neighbours. */
 static starg_status place_kept(curve *c) {
-    starg_status status = STARG_OK;
-    bool *placed = NULL, *tried = NULL, changed = true;
+    SCOPED bool *placed = NULL, *tried = NULL;
+    bool changed = true;
     size_t count = c->graph->node_count, missing = 0;
-    STARG_NEW(c->context, STAGE, c->places, count);
-    STARG_NEW_ZERO(c->context, STAGE, placed, count);
-    STARG_NEW_ZERO(c->context, STAGE, tried, count);
+    NEW(c->context, STAGE, c->places, count);
+    NEW_ZERO(c->context, STAGE, placed, count);
+    NEW_ZERO(c->context, STAGE, tried, count);
     for (size_t v = 0; v < count; v++) {
         vec3_copy(c->complex->centres[v], c->places[v]);
         tried[v] = c->pruned->kept[v];
@@ -116,11 +115,8 @@ static starg_status place_kept(curve *c) {
             }
     }
     if (missing > 0)
-        STARG_TRY(place_rest(c, placed));
-done:
-    starg_release(c->context, placed);
-    starg_release(c->context, tried);
-    return status;
+        TRY(place_rest(c, placed));
+    return STARG_OK;
 }
 
 /* The kept neighbour of v other than `from`. */
@@ -134,54 +130,48 @@ static uint32_t step_on(const curve *c, uint32_t v, uint32_t from) {
 /* Follows a branch from the special node v by its neighbour w. Each branch is met from both ends
  * and kept once. */
 static starg_status walk(curve *c, uint32_t v, uint32_t w) {
-    starg_status status = STARG_OK;
     branch found = {.first = c->trails.count};
     uint32_t from = v, at = w;
-    STARG_PUSH(c->context, STAGE, &c->trails, v);
+    PUSH(c->context, STAGE, &c->trails, v);
     while (!c->special[at]) {
-        STARG_PUSH(c->context, STAGE, &c->trails, at);
+        PUSH(c->context, STAGE, &c->trails, at);
         c->walked[at] = true;
         uint32_t next = step_on(c, at, from);
         from = at;
         at = next;
     }
-    STARG_PUSH(c->context, STAGE, &c->trails, at);
+    PUSH(c->context, STAGE, &c->trails, at);
     found.count = c->trails.count - found.first;
     if (v < at || (v == at && w < from))
-        STARG_PUSH(c->context, STAGE, &c->branches, found);
+        PUSH(c->context, STAGE, &c->branches, found);
     else
         c->trails.count = found.first;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status walk_from(curve *c, uint32_t v) {
-    starg_status status = STARG_OK;
     c->walked[v] = true;
     for (uint32_t i = c->graph->first[v]; i < c->graph->first[v + 1]; i++)
         if (c->pruned->kept[c->graph->next[i]])
-            STARG_TRY(walk(c, v, c->graph->next[i]));
-done:
-    return status;
+            TRY(walk(c, v, c->graph->next[i]));
+    return STARG_OK;
 }
 
 static starg_status find_branches(curve *c) {
-    starg_status status = STARG_OK;
     size_t count = c->graph->node_count;
-    STARG_NEW_ZERO(c->context, STAGE, c->special, count);
-    STARG_NEW_ZERO(c->context, STAGE, c->walked, count);
+    NEW_ZERO(c->context, STAGE, c->special, count);
+    NEW_ZERO(c->context, STAGE, c->walked, count);
     for (uint32_t v = 0; v < count; v++)
         c->special[v] = c->pruned->kept[v] && (kept_degree(c, v) != 2 || is_doubly_linked(c, v));
     for (uint32_t v = 0; v < count; v++)
         if (c->special[v])
-            STARG_TRY(walk_from(c, v));
+            TRY(walk_from(c, v));
     for (uint32_t v = 0; v < count; v++)
         if (c->pruned->kept[v] && !c->walked[v]) {
             c->special[v] = true;
-            STARG_TRY(walk_from(c, v));
+            TRY(walk_from(c, v));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Repeatedly moves the inner points of a trail halfway to the midpoint of their neighbours. */
@@ -225,43 +215,35 @@ static double mean_radius(const curve *c) {
 }
 
 static starg_status prepare_trails(curve *c) {
-    starg_status status = STARG_OK;
-    STARG_NEW(c->context, STAGE, c->smooth, c->trails.count);
-    STARG_NEW(c->context, STAGE, c->arcs, c->trails.count);
+    NEW(c->context, STAGE, c->smooth, c->trails.count);
+    NEW(c->context, STAGE, c->arcs, c->trails.count);
     c->radius_floor = 0.05 * mean_radius(c);
     for (size_t i = 0; i < c->branches.count; i++) {
         smooth_trail(c, &c->branches.data[i]);
         measure_trail(c, &c->branches.data[i]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status push_node(curve *c, const double p[3], uint32_t *node) {
-    starg_status status = STARG_OK;
     *node = (uint32_t)(c->positions.count / 3);
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(c->context, STAGE, &c->positions, p[k]);
-done:
-    return status;
+        PUSH(c->context, STAGE, &c->positions, p[k]);
+    return STARG_OK;
 }
 
 static starg_status push_edge(curve *c, uint32_t a, uint32_t b) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(c->context, STAGE, &c->edges, a);
-    STARG_PUSH(c->context, STAGE, &c->edges, b);
-done:
-    return status;
+    PUSH(c->context, STAGE, &c->edges, a);
+    PUSH(c->context, STAGE, &c->edges, b);
+    return STARG_OK;
 }
 
 static starg_status take_special(curve *c) {
-    starg_status status = STARG_OK;
-    STARG_NEW(c->context, STAGE, c->node_of, c->graph->node_count);
+    NEW(c->context, STAGE, c->node_of, c->graph->node_count);
     for (size_t v = 0; v < c->graph->node_count; v++)
         if (c->special[v])
-            STARG_TRY(push_node(c, c->places[v], &c->node_of[v]));
-done:
-    return status;
+            TRY(push_node(c, c->places[v], &c->node_of[v]));
+    return STARG_OK;
 }
 
 /* Number of nodes between the special ones of a branch. */
@@ -285,7 +267,6 @@ static void point_at(const curve *c, size_t i, double arc, double p[3]) {
 
 /* Places the nodes of a branch and assigns each of its kept nodes to the nearest one. */
 static starg_status place_branch(curve *c, const branch *b, double step) {
-    starg_status status = STARG_OK;
     size_t inner = inner_count(c, b, step), at = b->first, last = b->first + b->count - 1;
     uint32_t base = (uint32_t)(c->positions.count / 3), node = 0;
     uint32_t first_node = c->node_of[c->trails.data[b->first]];
@@ -295,11 +276,11 @@ static starg_status place_branch(curve *c, const branch *b, double step) {
         while (at + 1 < last && c->arcs[at + 1] <= arc)
             at++;
         point_at(c, at, arc, p);
-        STARG_TRY(push_node(c, p, &node));
-        STARG_TRY(push_edge(c, previous, node));
+        TRY(push_node(c, p, &node));
+        TRY(push_edge(c, previous, node));
         previous = node;
     }
-    STARG_TRY(push_edge(c, previous, last_node));
+    TRY(push_edge(c, previous, last_node));
     for (size_t i = b->first + 1; i < last; i++) {
         double share = b->length > 0 ? c->arcs[i] / b->length : 0;
         size_t k = (size_t)(share * (double)(inner + 1) + 0.5);
@@ -307,21 +288,18 @@ static starg_status place_branch(curve *c, const branch *b, double step) {
                                         : k > inner ? last_node
                                                     : base + (uint32_t)k - 1;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status place_branches(curve *c, size_t wanted) {
-    starg_status status = STARG_OK;
     double total = 0;
     for (size_t i = 0; i < c->branches.count; i++)
         total += c->branches.data[i].length;
     for (size_t i = 0; i < c->branches.count; i++) {
-        STARG_TRY(starg_check_cancel(c->context, STAGE));
-        STARG_TRY(place_branch(c, &c->branches.data[i], total / (double)wanted));
+        TRY(starg_check_cancel(c->context, STAGE));
+        TRY(place_branch(c, &c->branches.data[i], total / (double)wanted));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Moves nodes of degree two towards the midpoint of their neighbours if that is inside. */
@@ -350,8 +328,7 @@ static starg_status smooth_nodes(curve *c) {
                 vec3_copy(moved, p + 3 * v);
         }
 done:
-    starg_release(c->context, neighbours);
-    starg_release(c->context, degrees);
+    RELEASE(neighbours, degrees);
     return status;
 }
 
@@ -368,12 +345,11 @@ static uint32_t nearest_node(const curve *c, const double p[3]) {
  * the ball to the kept node it was pruned to, and that one to the nearest node on its branch.
  * Vertices without a ball use the nearest node. */
 static starg_status assign_vertices(curve *c) {
-    starg_status status = STARG_OK;
     const medial_complex *complex = c->complex;
     const starg_mesh *mesh = c->solid->mesh;
-    uint32_t *pole = NULL;
-    STARG_NEW(c->context, STAGE, pole, mesh->vertex_count);
-    STARG_NEW(c->context, STAGE, c->skeleton->vertex_nodes, mesh->vertex_count);
+    SCOPED uint32_t *pole = NULL;
+    NEW(c->context, STAGE, pole, mesh->vertex_count);
+    NEW(c->context, STAGE, c->skeleton->vertex_nodes, mesh->vertex_count);
     memset(pole, 0xff, mesh->vertex_count * sizeof *pole);
     for (size_t t = 0; t < complex->tetrahedron_count; t++) {
         uint32_t n = complex->node_of[t];
@@ -389,25 +365,21 @@ static starg_status assign_vertices(curve *c) {
                                            ? nearest_node(c, mesh->vertices + 3 * v)
                                            : c->node_of[c->pruned->owner[pole[v]]];
     c->skeleton->vertex_count = mesh->vertex_count;
-done:
-    starg_release(c->context, pole);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status finish(curve *c) {
-    starg_status status = STARG_OK;
     starg_skeleton *skeleton = c->skeleton;
     skeleton->node_count = c->positions.count / 3;
     skeleton->edge_count = c->edges.count / 2;
-    STARG_NEW(c->context, STAGE, skeleton->radii, skeleton->node_count);
+    NEW(c->context, STAGE, skeleton->radii, skeleton->node_count);
     for (size_t v = 0; v < skeleton->node_count; v++)
         skeleton->radii[v] = starg_solid_distance(c->solid, c->positions.data + 3 * v);
     skeleton->positions = c->positions.data;
     skeleton->edges = c->edges.data;
     c->positions.data = NULL;
     c->edges.data = NULL;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status curve_create(starg_context *context, const starg_solid *solid,
@@ -429,15 +401,7 @@ starg_status curve_create(starg_context *context, const starg_solid *solid,
     STARG_TRY(assign_vertices(&c));
     STARG_TRY(finish(&c));
 done:
-    starg_release(context, c.places);
-    starg_release(context, c.special);
-    starg_release(context, c.walked);
-    starg_release(context, c.node_of);
-    starg_release(context, c.smooth);
-    starg_release(context, c.arcs);
-    STARG_ARRAY_FREE(context, &c.trails);
-    STARG_ARRAY_FREE(context, &c.branches);
-    STARG_ARRAY_FREE(context, &c.positions);
-    STARG_ARRAY_FREE(context, &c.edges);
+    RELEASE(c.places, c.special, c.walked, c.node_of, c.smooth, c.arcs, c.trails.data,
+            c.branches.data, c.positions.data, c.edges.data);
     return status;
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The pruned graph as evenly spaced nodes on smooth branches. */
-#ifndef STARG_SKELETON_CURVE_H
-#define STARG_SKELETON_CURVE_H
+#pragma once
 
-#include "skeleton/complex.h"
-#include "skeleton/graph.h"
 #include "skeleton/prune.h"
 #include "starguard/skeleton.h"
 
@@ -13,5 +10,3 @@
 starg_status curve_create(starg_context *context, const starg_solid *solid,
                           const medial_complex *complex, const curve_graph *graph,
                           const pruned_graph *pruned, size_t wanted, starg_skeleton *skeleton);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Edge numbering: a hash table from vertex pairs to numbers, in order of insertion. */
-#ifndef STARG_SKELETON_EDGE_TABLE_H
-#define STARG_SKELETON_EDGE_TABLE_H
+#pragma once
 
 #include "core/memory.h"
 #include "core/rng.h"
@@ -57,5 +56,3 @@ static inline uint32_t edge_table_number(edge_table *table, uint32_t u, uint32_t
     }
     return table->numbers[slot];
 }
-
-#endif

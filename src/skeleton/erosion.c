@@ -22,7 +22,6 @@
  * Cost: O(n log n) for n links. */
 #include "skeleton/erosion.h"
 
-#include "core/memory.h"
 #include "skeleton/edge_table.h"
 
 static const char STAGE[] = "erosion";
@@ -47,15 +46,13 @@ static bool before(free_link a, free_link b) {
 }
 
 static starg_status push(eroder *e, free_link item) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(e->context, STAGE, &e->heap, item);
+    PUSH(e->context, STAGE, &e->heap, item);
     free_link *heap = e->heap.data;
     size_t at = e->heap.count - 1;
     for (; at > 0 && before(item, heap[(at - 1) / 2]); at = (at - 1) / 2)
         heap[at] = heap[(at - 1) / 2];
     heap[at] = item;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static free_link pop(eroder *e) {
@@ -90,25 +87,22 @@ static starg_status push_if_free(eroder *e, uint32_t link) {
 }
 
 static starg_status remove_sheet(eroder *e, uint32_t edge, double value) {
-    starg_status status = STARG_OK;
     const medial_complex *c = e->complex;
     e->sheet[edge] = false;
     e->values[edge] = value;
     for (uint32_t i = c->first_link[edge]; i < c->first_link[edge + 1]; i++) {
         e->remaining[c->edge_links[i]]--;
-        STARG_TRY(push_if_free(e, c->edge_links[i]));
+        TRY(push_if_free(e, c->edge_links[i]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status prepare(eroder *e) {
-    starg_status status = STARG_OK;
     const medial_complex *c = e->complex;
-    STARG_NEW(e->context, STAGE, e->sheet, c->edge_count);
-    STARG_NEW(e->context, STAGE, e->values, c->edge_count);
-    STARG_NEW_ZERO(e->context, STAGE, e->remaining, c->link_count);
-    STARG_NEW(e->context, STAGE, e->link_left, c->link_count);
+    NEW(e->context, STAGE, e->sheet, c->edge_count);
+    NEW(e->context, STAGE, e->values, c->edge_count);
+    NEW_ZERO(e->context, STAGE, e->remaining, c->link_count);
+    NEW(e->context, STAGE, e->link_left, c->link_count);
     memcpy(e->sheet, c->sheet, c->edge_count * sizeof *e->sheet);
     memcpy(e->values, c->lengths, c->edge_count * sizeof *e->values);
     for (size_t l = 0; l < c->link_count; l++) {
@@ -116,19 +110,18 @@ static starg_status prepare(eroder *e) {
         for (int k = 0; k < 3; k++)
             e->remaining[l] += c->sheet[c->link_edges[l][k]];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Opens volumes until a sweep finds none next to an open one. */
 static starg_status open_volumes(eroder *e) {
-    starg_status status = STARG_OK;
     const medial_complex *c = e->complex;
-    bool *buried = NULL, changed = true;
-    STARG_NEW(e->context, STAGE, buried, c->point_count);
+    SCOPED bool *buried = NULL;
+    bool changed = true;
+    NEW(e->context, STAGE, buried, c->point_count);
     memcpy(buried, c->buried, c->point_count * sizeof *buried);
     while (changed) {
-        STARG_TRY(starg_check_cancel(e->context, STAGE));
+        TRY(starg_check_cancel(e->context, STAGE));
         changed = false;
         for (uint32_t edge = 0; edge < c->edge_count; edge++) {
             bool *a = &buried[c->ends[edge][0]], *b = &buried[c->ends[edge][1]];
@@ -136,19 +129,16 @@ static starg_status open_volumes(eroder *e) {
                 continue;
             *a = *b = false;
             changed = true;
-            STARG_TRY(remove_sheet(e, edge, c->lengths[edge]));
+            TRY(remove_sheet(e, edge, c->lengths[edge]));
         }
     }
-done:
-    starg_release(e->context, buried);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status collapse_all(eroder *e) {
-    starg_status status = STARG_OK;
     for (size_t steps = 0; e->heap.count > 0; steps++) {
         if (steps % 4096 == 0)
-            STARG_TRY(starg_check_cancel(e->context, STAGE));
+            TRY(starg_check_cancel(e->context, STAGE));
         free_link item = pop(e);
         if (e->remaining[item.link] != 1 || !e->link_left[item.link])
             continue;
@@ -156,13 +146,12 @@ static starg_status collapse_all(eroder *e) {
         for (int k = 0; k < 3; k++) {
             uint32_t edge = e->complex->link_edges[item.link][k];
             if (e->sheet[edge]) {
-                STARG_TRY(remove_sheet(e, edge, item.value));
+                TRY(remove_sheet(e, edge, item.value));
                 break;
             }
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status erosion_run(starg_context *context, const medial_complex *complex, erosion *result) {
@@ -186,16 +175,11 @@ starg_status erosion_run(starg_context *context, const medial_complex *complex, 
     e.link_left = NULL;
     e.values = NULL;
 done:
-    STARG_ARRAY_FREE(context, &e.heap);
-    starg_release(context, e.sheet);
-    starg_release(context, e.values);
-    starg_release(context, e.remaining);
-    starg_release(context, e.link_left);
+    RELEASE(e.heap.data, e.sheet, e.values, e.remaining, e.link_left);
     return status;
 }
 
-void erosion_free(starg_context *context, erosion *result) {
-    starg_release(context, result->link_left);
-    starg_release(context, result->values);
+void erosion_free(erosion *result) {
+    RELEASE(result->link_left, result->values);
     *result = (erosion){0};
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Erosion of the medial complex to a graph. */
-#ifndef STARG_SKELETON_EROSION_H
-#define STARG_SKELETON_EROSION_H
+#pragma once
 
 #include "skeleton/complex.h"
 
@@ -13,6 +12,4 @@ typedef struct erosion {
 
 /* Errors: MEMORY, CANCELLED. */
 starg_status erosion_run(starg_context *context, const medial_complex *complex, erosion *result);
-void erosion_free(starg_context *context, erosion *result);
-
-#endif
+void erosion_free(erosion *result);

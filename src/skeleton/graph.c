@@ -23,12 +23,11 @@ starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*
             graph->next[end[links[l][k]]++] = links[l][1 - k];
 done:
     if (status != STARG_OK)
-        graph_free(context, graph);
+        graph_free(graph);
     return status;
 }
 
-void graph_free(starg_context *context, curve_graph *graph) {
-    starg_release(context, graph->first);
-    starg_release(context, graph->next);
+void graph_free(curve_graph *graph) {
+    RELEASE(graph->first, graph->next);
     *graph = (curve_graph){0};
 }

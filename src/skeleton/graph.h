@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Undirected graphs as adjacency lists. */
-#ifndef STARG_SKELETON_GRAPH_H
-#define STARG_SKELETON_GRAPH_H
+#pragma once
 
 #include "core/context.h"
 
@@ -14,10 +13,8 @@ typedef struct curve_graph {
 /* The graph of the marked pairs, or of all if `marked` is NULL. Errors: MEMORY. */
 starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*links)[2],
                           const bool *marked, size_t link_count, curve_graph *graph);
-void graph_free(starg_context *context, curve_graph *graph);
+void graph_free(curve_graph *graph);
 
 static inline uint32_t graph_degree(const curve_graph *graph, size_t v) {
     return graph->first[v + 1] - graph->first[v];
 }
-
-#endif

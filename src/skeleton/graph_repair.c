@@ -12,7 +12,6 @@
  * Cost: linear, plus the searches, which end early, and for each loop cut the number of loops. */
 #include "skeleton/graph_repair.h"
 
-#include "core/memory.h"
 #include "mesh/topology.h"
 #include "skeleton/graph.h"
 
@@ -58,9 +57,8 @@ static uint32_t way_around(searcher *s, uint32_t a, uint32_t b, uint32_t limit) 
 
 static starg_status find_closing(starg_context *context, const medial_complex *complex,
                                  const bool *link_left, searcher *s) {
-    starg_status status = STARG_OK;
-    uint32_t *sets = NULL;
-    STARG_NEW(context, STAGE, sets, complex->node_count);
+    SCOPED uint32_t *sets = NULL;
+    NEW(context, STAGE, sets, complex->node_count);
     sets_make(sets, complex->node_count);
     for (uint32_t l = 0; l < complex->link_count; l++) {
         uint32_t a = complex->links[l][0], b = complex->links[l][1];
@@ -69,11 +67,9 @@ static starg_status find_closing(starg_context *context, const medial_complex *c
         if (sets_find(sets, a) != sets_find(sets, b))
             sets_join(sets, a, b);
         else
-            STARG_PUSH(context, STAGE, &s->closing, ((closing_link){.link = l}));
+            PUSH(context, STAGE, &s->closing, ((closing_link){.link = l}));
     }
-done:
-    starg_release(context, sets);
-    return status;
+    return STARG_OK;
 }
 
 /* The first closing link of a shortest loop, or their number. */
@@ -103,14 +99,13 @@ static void part_from(curve_graph *graph, uint32_t v, uint32_t w) {
 
 starg_status graph_repair_parts(starg_context *context, const medial_complex *complex,
                                 bool *link_left, bool *node_left, size_t wanted) {
-    starg_status status = STARG_OK;
-    uint32_t *sets = NULL;
-    size_t *sizes = NULL;
-    bool *chosen = NULL;
+    SCOPED uint32_t *sets = NULL;
+    SCOPED size_t *sizes = NULL;
+    SCOPED bool *chosen = NULL;
     size_t count = complex->node_count;
-    STARG_NEW(context, STAGE, sets, count);
-    STARG_NEW_ZERO(context, STAGE, sizes, count);
-    STARG_NEW_ZERO(context, STAGE, chosen, count);
+    NEW(context, STAGE, sets, count);
+    NEW_ZERO(context, STAGE, sizes, count);
+    NEW_ZERO(context, STAGE, chosen, count);
     sets_make(sets, count);
     for (size_t l = 0; l < complex->link_count; l++)
         if (link_left[l])
@@ -129,11 +124,7 @@ starg_status graph_repair_parts(starg_context *context, const medial_complex *co
         node_left[v] = chosen[sets_find(sets, v)];
     for (size_t l = 0; l < complex->link_count; l++)
         link_left[l] = link_left[l] && node_left[complex->links[l][0]];
-done:
-    starg_release(context, sets);
-    starg_release(context, sizes);
-    starg_release(context, chosen);
-    return status;
+    return STARG_OK;
 }
 
 starg_status graph_repair_loops(starg_context *context, const medial_complex *complex,
@@ -160,10 +151,7 @@ starg_status graph_repair_loops(starg_context *context, const medial_complex *co
             s.closing.data[j] = s.closing.data[j + 1];
     }
 done:
-    graph_free(context, &s.graph);
-    STARG_ARRAY_FREE(context, &s.closing);
-    starg_release(context, s.queue);
-    starg_release(context, s.depth);
-    starg_release(context, s.stamp);
+    graph_free(&s.graph);
+    RELEASE(s.closing.data, s.queue, s.depth, s.stamp);
     return status;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Removes loops of an eroded graph that the solid does not have. */
-#ifndef STARG_SKELETON_GRAPH_REPAIR_H
-#define STARG_SKELETON_GRAPH_REPAIR_H
+#pragma once
 
 #include "skeleton/complex.h"
 
@@ -13,5 +12,3 @@ starg_status graph_repair_loops(starg_context *context, const medial_complex *co
 /* Keeps the `wanted` largest components and marks their nodes. Errors: MEMORY. */
 starg_status graph_repair_parts(starg_context *context, const medial_complex *complex,
                                 bool *link_left, bool *node_left, size_t wanted);
-
-#endif

@@ -9,7 +9,6 @@
 
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
@@ -53,10 +52,9 @@ static uint32_t find_face(const labelling *l, const uint32_t sorted[3]) {
 
 /* Lists the faces at their lowest corners, by counting sort. */
 static starg_status enter_faces(labelling *l) {
-    starg_status status = STARG_OK;
     const surface_samples *samples = l->samples;
-    STARG_NEW_ZERO(l->context, STAGE, l->first_face, samples->point_count + 2);
-    STARG_NEW(l->context, STAGE, l->keys, samples->face_count);
+    NEW_ZERO(l->context, STAGE, l->first_face, samples->point_count + 2);
+    NEW(l->context, STAGE, l->keys, samples->face_count);
     uint32_t *end = l->first_face + 1; /* of each list as it fills */
     for (size_t f = 0; f < samples->face_count; f++) {
         uint32_t v[3];
@@ -72,8 +70,7 @@ static starg_status enter_faces(labelling *l) {
         sort_corners(v);
         l->keys[end[v[0]]++] = (face_key){v[1], v[2], (uint32_t)f};
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static const double *sample(const labelling *l, uint32_t index) {
@@ -144,9 +141,8 @@ static bool is_tight(const labelling *l) {
 }
 
 static starg_status find_passages(const labelling *l, passage **passages, size_t *count) {
-    starg_status status = STARG_OK;
     bool ordered = !is_tight(l);
-    STARG_NEW(l->context, STAGE, *passages, 2 * l->tetrahedra->count);
+    NEW(l->context, STAGE, *passages, 2 * l->tetrahedra->count);
     for (uint32_t t = 0; t < l->tetrahedra->count; t++)
         for (uint32_t k = 0; k < 4; k++) {
             uint32_t other = l->tetrahedra->neighbours[t][k];
@@ -155,20 +151,18 @@ static starg_status find_passages(const labelling *l, passage **passages, size_t
         }
     if (ordered)
         qsort(*passages, *count, sizeof **passages, compare_passages);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Joins tetrahedra through passages, widest first, but never an inside to an outside: at gaps the
  * two sides meet in the narrowest triangles. */
 static starg_status spread(labelling *l) {
-    starg_status status = STARG_OK;
-    uint32_t *sets = NULL;
-    passage *passages = NULL;
+    SCOPED uint32_t *sets = NULL;
+    SCOPED passage *passages = NULL;
     size_t count = 0;
-    STARG_NEW(l->context, STAGE, sets, l->tetrahedra->count);
+    NEW(l->context, STAGE, sets, l->tetrahedra->count);
     sets_make(sets, l->tetrahedra->count);
-    STARG_TRY(find_passages(l, &passages, &count));
+    TRY(find_passages(l, &passages, &count));
     for (size_t i = 0; i < count; i++) {
         uint32_t a = sets_find(sets, passages[i].t);
         uint32_t b = sets_find(sets, l->tetrahedra->neighbours[passages[i].t][passages[i].side]);
@@ -180,10 +174,7 @@ static starg_status spread(labelling *l) {
     }
     for (uint32_t t = 0; t < l->tetrahedra->count; t++)
         l->side[t] = l->side[sets_find(sets, t)];
-done:
-    starg_release(l->context, sets);
-    starg_release(l->context, passages);
-    return status;
+    return STARG_OK;
 }
 
 starg_status labels_create(starg_context *context, const starg_solid *solid,
@@ -206,17 +197,13 @@ starg_status labels_create(starg_context *context, const starg_solid *solid,
     for (size_t t = 0; t < tetrahedra->count; t++)
         labels->inside[t] = l.side[t] == INSIDE;
 done:
-    starg_release(context, l.first_face);
-    starg_release(context, l.keys);
-    starg_release(context, l.side);
-    starg_release(context, l.walls);
+    RELEASE(l.first_face, l.keys, l.side, l.walls);
     if (status != STARG_OK)
-        labels_free(context, labels);
+        labels_free(labels);
     return status;
 }
 
-void labels_free(starg_context *context, inside_labels *labels) {
-    starg_release(context, labels->inside);
-    starg_release(context, labels->found);
+void labels_free(inside_labels *labels) {
+    RELEASE(labels->inside, labels->found);
     *labels = (inside_labels){0};
 }

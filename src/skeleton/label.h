@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Decides which Delaunay tetrahedra of surface samples lie inside the solid. */
-#ifndef STARG_SKELETON_LABEL_H
-#define STARG_SKELETON_LABEL_H
+#pragma once
 
 #include "geometry/delaunay.h"
-#include "mesh/solid.h"
 #include "skeleton/samples.h"
 
 typedef struct inside_labels {
@@ -18,6 +16,4 @@ typedef struct inside_labels {
 starg_status labels_create(starg_context *context, const starg_solid *solid,
                            const surface_samples *samples, const delaunay *tetrahedra,
                            inside_labels *labels);
-void labels_free(starg_context *context, inside_labels *labels);
-
-#endif
+void labels_free(inside_labels *labels);

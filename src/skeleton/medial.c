@@ -11,9 +11,6 @@
  * and thin parts keep their samples. O(count x wanted). */
 #include "skeleton/medial.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/delaunay.h"
 #include "geometry/vec3.h"
@@ -99,8 +96,7 @@ starg_status medial_balls(starg_context *context, const starg_solid *solid, doub
     job.balls = NULL;
 done:
     delaunay_free(tetrahedra);
-    starg_release(context, job.balls);
-    starg_release(context, job.inside);
+    RELEASE(job.balls, job.inside);
     return status;
 }
 
@@ -127,9 +123,7 @@ starg_status medial_thin(starg_context *context, medial_ball *balls, size_t coun
     *chosen = 0;
     while (done < wanted && done < count) {
         size_t best = farthest(scratch, done, count);
-        starg_status status = starg_check_cancel(context, STAGE);
-        if (status != STARG_OK)
-            return status;
+        TRY(starg_check_cancel(context, STAGE));
         if (!(scratch[best] > 0))
             break; /* only copies of chosen centres are left */
         swap_balls(&balls[done], &balls[best]);

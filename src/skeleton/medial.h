@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Medial axis as centres of maximal balls: Voronoi vertices of the surface's vertices. */
-#ifndef STARG_SKELETON_MEDIAL_H
-#define STARG_SKELETON_MEDIAL_H
+#pragma once
 
 #include "mesh/solid.h"
 
@@ -23,5 +22,3 @@ starg_status medial_balls(starg_context *context, const starg_solid *solid, doub
  * number. Errors: CANCELLED, TIME. */
 starg_status medial_thin(starg_context *context, medial_ball *balls, size_t count, size_t wanted,
                          double *scratch, size_t *chosen);
-
-#endif

@@ -18,7 +18,6 @@
  * Cost: linear in practice; the search for an end is quadratic in the nodes within a hook. */
 #include "skeleton/prune.h"
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
 
@@ -127,17 +126,14 @@ static uint32_t root_of_part(pruner *p, uint32_t start, bool *seen) {
 }
 
 static starg_status find_roots(pruner *p) {
-    starg_status status = STARG_OK;
-    bool *seen = NULL;
-    STARG_NEW_ZERO(p->context, STAGE, seen, p->graph->node_count);
+    SCOPED bool *seen = NULL;
+    NEW_ZERO(p->context, STAGE, seen, p->graph->node_count);
     for (uint32_t v = 0; v < p->graph->node_count; v++) {
         uint32_t root = seen[v] ? EDGE_NONE : root_of_part(p, v, seen);
         if (root != EDGE_NONE)
             p->root[root] = true;
     }
-done:
-    starg_release(p->context, seen);
-    return status;
+    return STARG_OK;
 }
 
 static void peel(pruner *p) {
@@ -438,25 +434,14 @@ starg_status prune_graph(starg_context *context, const starg_solid *solid,
     finish_roots(&p);
     find_owners(&p);
 done:
-    starg_release(context, p.radii);
-    starg_release(context, p.girths);
-    starg_release(context, p.widths);
-    starg_release(context, p.root);
-    starg_release(context, p.degree);
-    starg_release(context, p.below);
-    starg_release(context, p.order);
-    starg_release(context, p.up);
-    starg_release(context, p.height);
-    starg_release(context, p.limb);
-    starg_release(context, p.path);
-    starg_release(context, p.exact);
+    RELEASE(p.radii, p.girths, p.widths, p.root, p.degree, p.below, p.order, p.up, p.height, p.limb,
+            p.path, p.exact);
     if (status != STARG_OK)
-        prune_free(context, pruned);
+        prune_free(pruned);
     return status;
 }
 
-void prune_free(starg_context *context, pruned_graph *pruned) {
-    starg_release(context, pruned->kept);
-    starg_release(context, pruned->owner);
+void prune_free(pruned_graph *pruned) {
+    RELEASE(pruned->kept, pruned->owner);
     *pruned = (pruned_graph){0};
 }

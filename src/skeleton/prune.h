@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pruning: decides which branches of an eroded medial axis are features. */
-#ifndef STARG_SKELETON_PRUNE_H
-#define STARG_SKELETON_PRUNE_H
+#pragma once
 
 #include "skeleton/complex.h"
 #include "skeleton/graph.h"
@@ -19,6 +18,4 @@ starg_status prune_graph(starg_context *context, const starg_solid *solid,
                          const medial_complex *complex, const curve_graph *graph,
                          const bool *node_left, const double *values, double reach, double spacing,
                          pruned_graph *pruned);
-void prune_free(starg_context *context, pruned_graph *pruned);
-
-#endif
+void prune_free(pruned_graph *pruned);

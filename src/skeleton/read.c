@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/file.h"
 #include "mesh/formats/scan.h"
 #include "starguard/skeleton.h"
 
@@ -32,64 +31,56 @@ static starg_status reject(const reader *r, size_t line, const char *what) {
 }
 
 static starg_status read_point(reader *r) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++) {
         double x;
-        STARG_TRY(starg_scan_real(&r->scan, "a coordinate of a node", &x));
+        TRY(starg_scan_real(&r->scan, "a coordinate of a node", &x));
         if (!(fabs(x) < 1e100))
             return reject(r, r->scan.line, "a coordinate is not finite and below 1e100");
-        STARG_PUSH(r->source->context, STAGE, &r->points, x);
+        PUSH(r->source->context, STAGE, &r->points, x);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Appends an end of an edge, counted from `base`. */
 static starg_status push_end(reader *r, int64_t node, int64_t base) {
-    starg_status status = STARG_OK;
     if (node < base || (uint64_t)(node - base) >= UINT32_MAX)
         return reject(r, r->scan.line, "an edge has an impossible node");
-    STARG_PUSH(r->source->context, STAGE, &r->edges, (uint32_t)(node - base));
-done:
-    return status;
+    PUSH(r->source->context, STAGE, &r->edges, (uint32_t)(node - base));
+    return STARG_OK;
 }
 
 /* ---- OBJ and CG ---- */
 
 /* Reads the nodes of a polyline or an edge, and appends an edge per step. */
 static starg_status read_line(reader *r) {
-    starg_status status = STARG_OK;
     starg_word word;
     int64_t before = 0, node;
     size_t count = 0;
     for (; starg_scan_word_here(&r->scan, &word); count++, before = node) {
-        STARG_TRY(starg_word_integer(&r->scan, word, "a node of an edge", &node));
+        TRY(starg_word_integer(&r->scan, word, "a node of an edge", &node));
         if (count == 0)
             continue;
-        STARG_TRY(push_end(r, before, 1));
-        STARG_TRY(push_end(r, node, 1));
+        TRY(push_end(r, before, 1));
+        TRY(push_end(r, node, 1));
     }
     if (count < 2)
-        status = reject(r, r->scan.line, "an edge needs two nodes");
-done:
-    return status;
+        return reject(r, r->scan.line, "an edge needs two nodes");
+    return STARG_OK;
 }
 
 static starg_status read_lines(reader *r) {
-    starg_status status = STARG_OK;
     starg_word word;
     while (starg_scan_word(&r->scan, &word)) {
         if (starg_word_is(word, "v"))
-            STARG_TRY(read_point(r));
+            TRY(read_point(r));
         else if (starg_word_is(word, "l") || starg_word_is(word, "e"))
-            STARG_TRY(read_line(r));
+            TRY(read_line(r));
         else if (starg_word_is(word, "f"))
             return reject(r, word.line,
                           "faces belong to a surface; a skeleton has only nodes and edges");
         starg_scan_next_line(&r->scan);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- VTK ---- */
@@ -113,80 +104,72 @@ static starg_status read_count(reader *r, const char *what, int64_t *count) {
 }
 
 static starg_status read_vtk_points(reader *r) {
-    starg_status status = STARG_OK;
     starg_word word;
     int64_t count;
-    STARG_TRY(read_count(r, "the number of points", &count));
-    STARG_TRY(starg_scan_expect(&r->scan, "a type of numbers", &word));
+    TRY(read_count(r, "the number of points", &count));
+    TRY(starg_scan_expect(&r->scan, "a type of numbers", &word));
     while (count-- > 0)
-        STARG_TRY(read_point(r));
-done:
-    return status;
+        TRY(read_point(r));
+    return STARG_OK;
 }
 
 /* LINES (edges) or VERTICES (ignored): each is a count and that many points. */
 static starg_status read_vtk_cells(reader *r, bool edges) {
-    starg_status status = STARG_OK;
     int64_t cells, numbers, size, node, before = 0;
-    STARG_TRY(read_count(r, "a number of cells", &cells));
-    STARG_TRY(read_count(r, "a number of numbers", &numbers));
+    TRY(read_count(r, "a number of cells", &cells));
+    TRY(read_count(r, "a number of numbers", &numbers));
     while (cells-- > 0) {
-        STARG_TRY(read_count(r, "the size of a cell", &size));
+        TRY(read_count(r, "the size of a cell", &size));
         for (int64_t i = 0; i < size; i++, before = node) {
-            STARG_TRY(starg_scan_integer(&r->scan, "a point of a cell", &node));
+            TRY(starg_scan_integer(&r->scan, "a point of a cell", &node));
             if (!edges || i == 0)
                 continue;
-            STARG_TRY(push_end(r, before, 0));
-            STARG_TRY(push_end(r, node, 0));
+            TRY(push_end(r, before, 0));
+            TRY(push_end(r, node, 0));
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_vtk_radii(reader *r) {
-    starg_status status = STARG_OK;
     starg_word word;
-    STARG_TRY(expect(r, "radius"));
+    TRY(expect(r, "radius"));
     starg_scan_next_line(&r->scan); /* the type */
-    STARG_TRY(expect(r, "LOOKUP_TABLE"));
-    STARG_TRY(starg_scan_expect(&r->scan, "a table's name", &word));
+    TRY(expect(r, "LOOKUP_TABLE"));
+    TRY(starg_scan_expect(&r->scan, "a table's name", &word));
     for (size_t i = 0; i < r->points.count / 3; i++) {
         double radius;
-        STARG_TRY(starg_scan_real(&r->scan, "a radius", &radius));
+        TRY(starg_scan_real(&r->scan, "a radius", &radius));
         if (!(radius >= 0 && radius < 1e101))
             return reject(r, r->scan.line, "a radius is negative or not finite");
-        STARG_PUSH(r->source->context, STAGE, &r->radii, radius);
+        PUSH(r->source->context, STAGE, &r->radii, radius);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_vtk(reader *r) {
-    starg_status status = STARG_OK;
     starg_word word;
     int64_t count;
     starg_scan_next_line(&r->scan); /* the magic */
     starg_scan_next_line(&r->scan); /* the title */
-    STARG_TRY(expect(r, "ASCII"));
-    STARG_TRY(expect(r, "DATASET"));
-    STARG_TRY(expect(r, "POLYDATA"));
+    TRY(expect(r, "ASCII"));
+    TRY(expect(r, "DATASET"));
+    TRY(expect(r, "POLYDATA"));
     while (starg_scan_word(&r->scan, &word)) {
         if (starg_word_is(word, "POINTS"))
-            STARG_TRY(read_vtk_points(r));
+            TRY(read_vtk_points(r));
         else if (starg_word_is(word, "LINES") || starg_word_is(word, "VERTICES"))
-            STARG_TRY(read_vtk_cells(r, starg_word_is(word, "LINES")));
+            TRY(read_vtk_cells(r, starg_word_is(word, "LINES")));
         else if (starg_word_is(word, "POINT_DATA"))
-            STARG_TRY(read_count(r, "the number of points", &count));
+            TRY(read_count(r, "the number of points", &count));
         else if (starg_word_is(word, "SCALARS") && r->radii.count == 0)
-            STARG_TRY(read_vtk_radii(r));
+            TRY(read_vtk_radii(r));
         else
             return starg_source_fail(r->source, starg_at_line(word.line),
                                      "'%s' is not part of a skeleton",
                                      starg_word_excerpt(word).text);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- SWC ---- */
@@ -197,28 +180,25 @@ static int compare_ids(const void *left, const void *right) {
 }
 
 static starg_status read_swc_line(reader *r) {
-    starg_status status = STARG_OK;
     swc_node node = {.index = (uint32_t)(r->points.count / 3)};
     int64_t type;
     double radius;
-    STARG_TRY(starg_scan_integer(&r->scan, "the id of a node", &node.id));
+    TRY(starg_scan_integer(&r->scan, "the id of a node", &node.id));
     node.line = r->scan.line;
-    STARG_TRY(starg_scan_integer(&r->scan, "the type of a node", &type));
-    STARG_TRY(read_point(r));
-    STARG_TRY(starg_scan_real(&r->scan, "a radius", &radius));
+    TRY(starg_scan_integer(&r->scan, "the type of a node", &type));
+    TRY(read_point(r));
+    TRY(starg_scan_real(&r->scan, "a radius", &radius));
     if (!(radius >= 0 && radius < 1e101))
         return reject(r, r->scan.line, "a radius is negative or not finite");
-    STARG_PUSH(r->source->context, STAGE, &r->radii, radius);
-    STARG_TRY(starg_scan_integer(&r->scan, "the parent of a node", &node.parent));
-    STARG_PUSH(r->source->context, STAGE, &r->nodes, node);
+    PUSH(r->source->context, STAGE, &r->radii, radius);
+    TRY(starg_scan_integer(&r->scan, "the parent of a node", &node.parent));
+    PUSH(r->source->context, STAGE, &r->nodes, node);
     starg_scan_next_line(&r->scan);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Finds parents by their ids. */
 static starg_status join_parents(reader *r) {
-    starg_status status = STARG_OK;
     swc_node *nodes = r->nodes.data;
     size_t count = r->nodes.count;
     qsort(nodes, count, sizeof *nodes, compare_ids);
@@ -231,23 +211,19 @@ static starg_status join_parents(reader *r) {
         const swc_node *parent = bsearch(&wanted, nodes, count, sizeof *nodes, compare_ids);
         if (parent == NULL || parent == &nodes[i])
             return reject(r, nodes[i].line, "the parent of a node is missing");
-        STARG_PUSH(r->source->context, STAGE, &r->edges, parent->index);
-        STARG_PUSH(r->source->context, STAGE, &r->edges, nodes[i].index);
+        PUSH(r->source->context, STAGE, &r->edges, parent->index);
+        PUSH(r->source->context, STAGE, &r->edges, nodes[i].index);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_swc(reader *r) {
-    starg_status status = STARG_OK;
     starg_scan ahead;
     starg_word word;
     r->scan.comments = true;
     while (ahead = r->scan, starg_scan_word(&ahead, &word))
-        STARG_TRY(read_swc_line(r));
-    STARG_TRY(join_parents(r));
-done:
-    return status;
+        TRY(read_swc_line(r));
+    return join_parents(r);
 }
 
 /* The first word is a number. */
@@ -268,10 +244,9 @@ static uint32_t root_of(uint32_t *parents, uint32_t v) {
 
 /* Counts components, loops, joints and ends. */
 static starg_status count_graph(starg_context *context, starg_skeleton *s) {
-    starg_status status = STARG_OK;
-    uint32_t *parents = NULL, *degrees = NULL;
-    STARG_NEW(context, STAGE, parents, s->node_count);
-    STARG_NEW_ZERO(context, STAGE, degrees, s->node_count);
+    SCOPED uint32_t *parents = NULL, *degrees = NULL;
+    NEW(context, STAGE, parents, s->node_count);
+    NEW_ZERO(context, STAGE, degrees, s->node_count);
     for (size_t v = 0; v < s->node_count; v++)
         parents[v] = (uint32_t)v;
     s->components = s->node_count;
@@ -287,10 +262,7 @@ static starg_status count_graph(starg_context *context, starg_skeleton *s) {
         s->joints += degrees[v] > 2;
         s->ends += degrees[v] == 1;
     }
-done:
-    starg_release(context, parents);
-    starg_release(context, degrees);
-    return status;
+    return STARG_OK;
 }
 
 /* Moves the arrays into the skeleton. */
@@ -331,23 +303,16 @@ starg_status starg_skeleton_read_memory(starg_context *context, const void *byte
     *out = skeleton;
 done:
     starg_c_locale_leave(&locale);
-    STARG_ARRAY_FREE(context, &r.points);
-    STARG_ARRAY_FREE(context, &r.radii);
-    STARG_ARRAY_FREE(context, &r.edges);
-    STARG_ARRAY_FREE(context, &r.nodes);
+    RELEASE(r.points.data, r.radii.data, r.edges.data, r.nodes.data);
     if (status != STARG_OK)
         starg_skeleton_free(context, skeleton);
     return status;
 }
 
 starg_status starg_skeleton_read(starg_context *context, const char *path, starg_skeleton **out) {
-    starg_status status = STARG_OK;
-    char *bytes = NULL;
+    SCOPED char *bytes = NULL;
     size_t size;
     *out = NULL;
-    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    STARG_TRY(starg_skeleton_read_memory(context, bytes, size, path, out));
-done:
-    starg_release(context, bytes);
-    return status;
+    TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    return starg_skeleton_read_memory(context, bytes, size, path, out);
 }

@@ -5,45 +5,37 @@
  * faces change become dirty. */
 #include "skeleton/sample_mesh.h"
 
-#include "mesh/topology.h"
-
 static const char STAGE[] = "surface samples";
 
 enum { MAX_DEPTH = 12 };
 
 static starg_status add_point(sample_mesh *m, const double p[3], uint8_t depth) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(m->context, STAGE, &m->points, p[k]);
-    STARG_PUSH(m->context, STAGE, &m->depth, depth);
-    STARG_PUSH(m->context, STAGE, &m->dirty, true);
-done:
-    return status;
+        PUSH(m->context, STAGE, &m->points, p[k]);
+    PUSH(m->context, STAGE, &m->depth, depth);
+    PUSH(m->context, STAGE, &m->dirty, true);
+    return STARG_OK;
 }
 
 starg_status sample_mesh_take(starg_context *context, surface_samples *samples, sample_mesh *m) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     const starg_mesh mesh = {.context = context,
                              .vertex_count = samples->point_count,
                              .face_count = samples->face_count,
                              .vertices = samples->points,
                              .faces = samples->faces};
-    uint32_t *faces = samples->faces;
+    SCOPED uint32_t *faces = samples->faces;
     *m = (sample_mesh){.context = context};
     m->points.data = samples->points;
     m->points.count = m->points.capacity = 3 * samples->point_count;
     *samples = (surface_samples){0};
-    STARG_TRY(wings_create(context, &mesh, &topology));
-    STARG_TRY(halfedges_create(topology, &mesh, STAGE, &m->net));
+    TRY(wings_create(context, &mesh, &topology));
+    TRY(halfedges_create(topology, &mesh, STAGE, &m->net));
     for (size_t v = 0; v < mesh.vertex_count; v++) {
-        STARG_PUSH(context, STAGE, &m->depth, 0);
-        STARG_PUSH(context, STAGE, &m->dirty, true);
+        PUSH(context, STAGE, &m->depth, 0);
+        PUSH(context, STAGE, &m->dirty, true);
     }
-done:
-    starg_release(context, faces);
-    topology_free(topology);
-    return status;
+    return STARG_OK;
 }
 
 void sample_mesh_give(sample_mesh *m, surface_samples *samples) {
@@ -57,21 +49,17 @@ void sample_mesh_give(sample_mesh *m, surface_samples *samples) {
 }
 
 starg_status sample_mesh_copy(const sample_mesh *m, sample_mesh *copy) {
-    starg_status status = STARG_OK;
     *copy = (sample_mesh){.context = m->context};
-    STARG_TRY(halfedges_copy(&m->net, &copy->net));
+    TRY(halfedges_copy(&m->net, &copy->net));
     for (uint32_t v = 0; v < sample_mesh_points(m); v++) {
-        STARG_TRY(add_point(copy, sample_mesh_at(m, v), m->depth.data[v]));
+        TRY(add_point(copy, sample_mesh_at(m, v), m->depth.data[v]));
         copy->dirty.data[v] = m->dirty.data[v];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 void sample_mesh_free(sample_mesh *m) {
-    STARG_ARRAY_FREE(m->context, &m->points);
-    STARG_ARRAY_FREE(m->context, &m->depth);
-    STARG_ARRAY_FREE(m->context, &m->dirty);
+    RELEASE(m->points.data, m->depth.data, m->dirty.data);
     halfedges_free(&m->net);
     *m = (sample_mesh){0};
 }
@@ -92,7 +80,6 @@ static uint8_t max_depth(uint8_t a, uint8_t b) {
 }
 
 starg_status sample_mesh_split_edge(sample_mesh *m, uint32_t h, const double place[3]) {
-    starg_status status = STARG_OK;
     uint32_t p;
     uint8_t depth = max_depth(m->depth.data[halfedges_start(&m->net, h)],
                               m->depth.data[halfedges_end(&m->net, h)]);
@@ -100,10 +87,8 @@ starg_status sample_mesh_split_edge(sample_mesh *m, uint32_t h, const double pla
         return STARG_OK;
     mark_face(m, h / 3);
     mark_face(m, halfedges_twin(&m->net, h) / 3);
-    STARG_TRY(add_point(m, place, depth + 1));
-    STARG_TRY(halfedges_split_edge(&m->net, h, &p));
-done:
-    return status;
+    TRY(add_point(m, place, depth + 1));
+    return halfedges_split_edge(&m->net, h, &p);
 }
 
 uint8_t sample_mesh_depth(const sample_mesh *m, uint32_t f) {
@@ -112,14 +97,11 @@ uint8_t sample_mesh_depth(const sample_mesh *m, uint32_t f) {
 }
 
 starg_status sample_mesh_split_face(sample_mesh *m, uint32_t f, const double place[3]) {
-    starg_status status = STARG_OK;
     uint32_t p;
     uint8_t depth = sample_mesh_depth(m, f);
     if (depth == MAX_DEPTH)
         return STARG_OK;
     mark_face(m, f);
-    STARG_TRY(add_point(m, place, depth + 1));
-    STARG_TRY(halfedges_split_face(&m->net, f, &p));
-done:
-    return status;
+    TRY(add_point(m, place, depth + 1));
+    return halfedges_split_face(&m->net, f, &p);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Samples of a surface as a changing mesh: halfedges with the attributes of samples. */
-#ifndef STARG_SKELETON_SAMPLE_MESH_H
-#define STARG_SKELETON_SAMPLE_MESH_H
+#pragma once
 
 #include "mesh/halfedges.h"
 #include "skeleton/samples.h"
@@ -39,5 +38,3 @@ starg_status sample_mesh_split_face(sample_mesh *m, uint32_t f, const double pla
 
 /* The greatest depth of a face's corners. */
 uint8_t sample_mesh_depth(const sample_mesh *m, uint32_t f);
-
-#endif

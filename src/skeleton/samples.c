@@ -128,26 +128,24 @@ static starg_status refine(starg_context *context, surface_samples *samples, dou
     place_points(samples, &table, finer.points);
     finer.face_count = cut_faces(samples, &table, finer.points, finer.faces);
     *splits = table.count;
-    samples_free(context, samples);
+    samples_free(samples);
     *samples = finer;
     finer = (surface_samples){0};
 done:
-    samples_free(context, &finer);
+    samples_free(&finer);
     edge_table_free(context, &table);
     return status;
 }
 
 static starg_status copy_mesh(starg_context *context, const starg_mesh *mesh,
                               surface_samples *samples) {
-    starg_status status = STARG_OK;
     samples->point_count = mesh->vertex_count;
     samples->face_count = mesh->face_count;
-    STARG_NEW(context, STAGE, samples->points, 3 * mesh->vertex_count);
-    STARG_NEW(context, STAGE, samples->faces, 3 * mesh->face_count);
+    NEW(context, STAGE, samples->points, 3 * mesh->vertex_count);
+    NEW(context, STAGE, samples->faces, 3 * mesh->face_count);
     memcpy(samples->points, mesh->vertices, 3 * mesh->vertex_count * sizeof *samples->points);
     memcpy(samples->faces, mesh->faces, 3 * mesh->face_count * sizeof *samples->faces);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
@@ -165,12 +163,11 @@ starg_status samples_create(starg_context *context, const starg_solid *solid, si
     }
 done:
     if (status != STARG_OK)
-        samples_free(context, samples);
+        samples_free(samples);
     return status;
 }
 
-void samples_free(starg_context *context, surface_samples *samples) {
-    starg_release(context, samples->points);
-    starg_release(context, samples->faces);
+void samples_free(surface_samples *samples) {
+    RELEASE(samples->points, samples->faces);
     *samples = (surface_samples){0};
 }

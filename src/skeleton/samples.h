@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Samples of a surface: a subdivision of its mesh, dense enough for the Voronoi diagram. */
-#ifndef STARG_SKELETON_SAMPLES_H
-#define STARG_SKELETON_SAMPLES_H
+#pragma once
 
 #include "mesh/solid.h"
 
@@ -16,6 +15,4 @@ typedef struct surface_samples {
  * Errors: MEMORY, CANCELLED. */
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
                             surface_samples *samples);
-void samples_free(starg_context *context, surface_samples *samples);
-
-#endif
+void samples_free(surface_samples *samples);

@@ -11,23 +11,16 @@
  *
  * Cost: O(n log n) in practice for n samples, per strategy that loses faces. */
 #include "core/fields.h"
-#include "skeleton/complex.h"
 #include "skeleton/conform.h"
 #include "skeleton/contract.h"
 #include "skeleton/curve.h"
 #include "skeleton/erosion.h"
-#include "skeleton/graph.h"
 #include "skeleton/graph_repair.h"
 #include "skeleton/label.h"
-#include "skeleton/prune.h"
-#include "skeleton/samples.h"
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
-#include "mesh/topology.h"
 #include "skeleton/edge_table.h"
-#include "starguard/skeleton.h"
 
 static const char STAGE[] = "skeleton";
 
@@ -44,11 +37,11 @@ typedef struct attempt {
     size_t mends;        /* components and loops cut afterwards */
 } attempt;
 
-static void attempt_free(starg_context *context, attempt *a) {
+static void attempt_free(attempt *a) {
     complex_free(a->complex);
-    labels_free(context, &a->labels);
-    erosion_free(context, &a->eroded);
-    starg_release(context, a->node_left);
+    labels_free(&a->labels);
+    erosion_free(&a->eroded);
+    RELEASE(a->node_left);
     *a = (attempt){0};
 }
 
@@ -56,10 +49,9 @@ static void attempt_free(starg_context *context, attempt *a) {
 static starg_status count_topology(starg_context *context, size_t node_count, const uint32_t *links,
                                    const bool *marked, size_t link_count, size_t *parts,
                                    size_t *loops) {
-    starg_status status = STARG_OK;
-    uint32_t *sets = NULL;
+    SCOPED uint32_t *sets = NULL;
     size_t joined = 0, used = 0;
-    STARG_NEW(context, STAGE, sets, node_count);
+    NEW(context, STAGE, sets, node_count);
     sets_make(sets, node_count);
     for (size_t l = 0; l < link_count; l++) {
         if (marked != NULL && !marked[l])
@@ -71,9 +63,7 @@ static starg_status count_topology(starg_context *context, size_t node_count, co
     }
     *parts = node_count - joined;
     *loops = used - joined;
-done:
-    starg_release(context, sets);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status count_attempt(starg_context *context, attempt *a) {
@@ -84,35 +74,30 @@ static starg_status count_attempt(starg_context *context, attempt *a) {
 /* Complex and erosion of labelled samples. */
 static starg_status erode(starg_context *context, const starg_solid *solid, const conformed *from,
                           bool contract, attempt *a) {
-    starg_status status = STARG_OK;
     const surface_samples *samples = &from->samples;
-    STARG_TRY(complex_create(context, solid, samples->points, samples->point_count,
-                             from->tetrahedra, a->labels.inside, &a->complex));
+    TRY(complex_create(context, solid, samples->points, samples->point_count, from->tetrahedra,
+                       a->labels.inside, &a->complex));
     if (contract)
-        STARG_TRY(contract_complex(context, a->complex));
-    STARG_TRY(erosion_run(context, a->complex, &a->eroded));
-done:
-    return status;
+        TRY(contract_complex(context, a->complex));
+    return erosion_run(context, a->complex, &a->eroded);
 }
 
 /* Labels, complex and erosion of conformed samples. What shrinks to a point may be stuck once parts
  * of it are contracted; then nothing is contracted. */
 static starg_status make_attempt(starg_context *context, const starg_solid *solid,
                                  const conformed *from, attempt *a) {
-    starg_status status = STARG_OK;
     const surface_samples *samples = &from->samples;
-    STARG_TRY(labels_create(context, solid, samples, from->tetrahedra, &a->labels));
-    STARG_TRY(erode(context, solid, from, true, a));
+    TRY(labels_create(context, solid, samples, from->tetrahedra, &a->labels));
+    TRY(erode(context, solid, from, true, a));
     if (a->eroded.cut_count > solid->check->cavities) {
         complex_free(a->complex);
         a->complex = NULL;
-        erosion_free(context, &a->eroded);
-        STARG_TRY(erode(context, solid, from, false, a));
+        erosion_free(&a->eroded);
+        TRY(erode(context, solid, from, false, a));
     }
-    STARG_TRY(count_attempt(context, a));
+    TRY(count_attempt(context, a));
     a->spacing = sqrt(1.1547 * solid->check->area / (double)samples->point_count);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The topology required by the surface: half its Euler characteristic is the solid's. */
@@ -144,52 +129,46 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
         STARG_TRY(make_attempt(context, solid, &results[i], &a));
         if (best->complex == NULL ||
             count_faults(solid->check, &a) < count_faults(solid->check, best)) {
-            attempt_free(context, best);
+            attempt_free(best);
             *best = a;
             a = (attempt){0};
         }
-        attempt_free(context, &a);
+        attempt_free(&a);
         if (count_faults(solid->check, best) == 0)
             break;
     }
 done:
-    attempt_free(context, &a);
-    samples_free(context, &samples);
+    attempt_free(&a);
+    samples_free(&samples);
     for (size_t i = 0; i < CONFORM_RESULTS; i++)
-        conformed_free(context, &results[i]);
+        conformed_free(&results[i]);
     return status;
 }
 
 /* Removes components and loops that the solid does not have. */
 static starg_status repair_topology(starg_context *context, const starg_solid *solid, attempt *a) {
-    starg_status status = STARG_OK;
     const starg_check *check = solid->check;
     size_t parts = check->components - check->cavities, loops = (size_t)check->genus;
-    STARG_NEW(context, STAGE, a->node_left, a->complex->node_count);
+    NEW(context, STAGE, a->node_left, a->complex->node_count);
     memset(a->node_left, true, a->complex->node_count * sizeof *a->node_left);
     if (a->parts > parts) {
         a->mends += a->parts - parts;
-        STARG_TRY(
-            graph_repair_parts(context, a->complex, a->eroded.link_left, a->node_left, parts));
-        STARG_TRY(count_attempt(context, a));
+        TRY(graph_repair_parts(context, a->complex, a->eroded.link_left, a->node_left, parts));
+        TRY(count_attempt(context, a));
     }
     if (a->loops > loops && a->loops - loops <= MAX_MENDS) {
         a->mends += a->loops - loops;
-        STARG_TRY(graph_repair_loops(context, a->complex, a->eroded.link_left, a->loops - loops));
+        TRY(graph_repair_loops(context, a->complex, a->eroded.link_left, a->loops - loops));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status find_graph(starg_context *context, const starg_solid *solid, attempt *a) {
-    starg_status status = STARG_OK;
-    STARG_TRY(find_best(context, solid, a));
+    TRY(find_best(context, solid, a));
     if (a->complex->node_count == 0)
-        STARG_TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
-                             "the solid is too flat for interior tetrahedra"));
-    STARG_TRY(repair_topology(context, solid, a));
-done:
-    return status;
+        TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
+                       "the solid is too flat for interior tetrahedra"));
+    return repair_topology(context, solid, a);
 }
 
 static void count_degrees(const starg_skeleton *skeleton, uint32_t *degrees, size_t *joints,
@@ -204,21 +183,18 @@ static void count_degrees(const starg_skeleton *skeleton, uint32_t *degrees, siz
 
 static starg_status describe(starg_context *context, const starg_solid *solid, const attempt *a,
                              starg_skeleton *skeleton) {
-    starg_status status = STARG_OK;
-    uint32_t *degrees = NULL;
-    STARG_NEW_ZERO(context, STAGE, degrees, skeleton->node_count);
+    SCOPED uint32_t *degrees = NULL;
+    NEW_ZERO(context, STAGE, degrees, skeleton->node_count);
     count_degrees(skeleton, degrees, &skeleton->joints, &skeleton->ends);
-    STARG_TRY(count_topology(context, skeleton->node_count, skeleton->edges, NULL,
-                             skeleton->edge_count, &skeleton->components, &skeleton->loops));
+    TRY(count_topology(context, skeleton->node_count, skeleton->edges, NULL, skeleton->edge_count,
+                       &skeleton->components, &skeleton->loops));
     skeleton->cuts = a->eroded.cut_count;
     skeleton->mends = a->mends;
     /* what collapses to a graph is a handlebody; what was cut or mended need not be one */
     skeleton->homotopic = solid->check->cavities == 0 && skeleton->cuts == 0 &&
                           skeleton->mends == 0 &&
                           is_as_expected(solid->check, skeleton->components, skeleton->loops);
-done:
-    starg_release(context, degrees);
-    return status;
+    return STARG_OK;
 }
 
 static void tell(starg_context *context, const starg_solid *solid, const starg_skeleton *skeleton) {
@@ -307,19 +283,17 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     skeleton = NULL;
 done:
     starg_time_end(context, former);
-    attempt_free(context, &a);
-    graph_free(context, &graph);
-    prune_free(context, &pruned);
+    attempt_free(&a);
+    graph_free(&graph);
+    prune_free(&pruned);
     starg_skeleton_free(context, skeleton);
     return status;
 }
 
 void starg_skeleton_free(starg_context *context, starg_skeleton *skeleton) {
+    (void)context;
     if (skeleton == NULL)
         return;
-    starg_release(context, skeleton->positions);
-    starg_release(context, skeleton->radii);
-    starg_release(context, skeleton->edges);
-    starg_release(context, skeleton->vertex_nodes);
-    starg_release(context, skeleton);
+    RELEASE(skeleton->positions, skeleton->radii, skeleton->edges, skeleton->vertex_nodes,
+            skeleton);
 }

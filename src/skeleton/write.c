@@ -4,8 +4,6 @@
  * radius and parent, from 1; it holds trees, so a skeleton with a loop is refused. */
 #include <inttypes.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "mesh/formats/io.h"
 #include "skeleton/graph.h"
 #include "starguard/skeleton.h"
@@ -63,15 +61,14 @@ static const uint32_t NO_NODE = UINT32_MAX;
  * its first node. */
 static starg_status order_trees(starg_context *context, const starg_skeleton *s, uint32_t *order,
                                 uint32_t *parent) {
-    starg_status status = STARG_OK;
-    curve_graph graph = {0};
-    uint32_t *stack = NULL;
-    bool *seen = NULL;
+    SCOPED_BY(graph_free) curve_graph graph = {0};
+    SCOPED uint32_t *stack = NULL;
+    SCOPED bool *seen = NULL;
     size_t count = 0;
-    STARG_NEW(context, STAGE, stack, s->node_count);
-    STARG_NEW_ZERO(context, STAGE, seen, s->node_count);
-    STARG_TRY(graph_create(context, s->node_count, (uint32_t(*)[2])s->edges, NULL, s->edge_count,
-                           &graph));
+    NEW(context, STAGE, stack, s->node_count);
+    NEW_ZERO(context, STAGE, seen, s->node_count);
+    TRY(graph_create(context, s->node_count, (uint32_t(*)[2])s->edges, NULL, s->edge_count,
+                     &graph));
     for (uint32_t root = 0; root < s->node_count; root++) {
         if (seen[root])
             continue;
@@ -92,21 +89,16 @@ static starg_status order_trees(starg_context *context, const starg_skeleton *s,
             }
         }
     }
-done:
-    graph_free(context, &graph);
-    starg_release(context, stack);
-    starg_release(context, seen);
-    return status;
+    return STARG_OK;
 }
 
 /* The type is 0, undefined; a radius that is not known is 0. */
 static starg_status write_swc(starg_context *context, FILE *stream, const starg_skeleton *s) {
-    starg_status status = STARG_OK;
-    uint32_t *order = NULL, *parent = NULL, *number = NULL;
-    STARG_NEW(context, STAGE, order, s->node_count);
-    STARG_NEW(context, STAGE, parent, s->node_count);
-    STARG_NEW(context, STAGE, number, s->node_count);
-    STARG_TRY(order_trees(context, s, order, parent));
+    SCOPED uint32_t *order = NULL, *parent = NULL, *number = NULL;
+    NEW(context, STAGE, order, s->node_count);
+    NEW(context, STAGE, parent, s->node_count);
+    NEW(context, STAGE, number, s->node_count);
+    TRY(order_trees(context, s, order, parent));
     fprintf(stream, "# curve skeleton: id type x y z radius parent\n");
     for (size_t i = 0; i < s->node_count; i++) {
         uint32_t v = order[i];
@@ -119,11 +111,7 @@ static starg_status write_swc(starg_context *context, FILE *stream, const starg_
         else
             fprintf(stream, "%" PRIu32 "\n", number[parent[v]]);
     }
-done:
-    starg_release(context, order);
-    starg_release(context, parent);
-    starg_release(context, number);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status write_format(starg_context *context, FILE *stream, const starg_skeleton *s,
@@ -143,9 +131,8 @@ static starg_status write_format(starg_context *context, FILE *stream, const sta
 
 starg_status starg_skeleton_write(starg_context *context, const starg_skeleton *skeleton,
                                   const char *path, starg_skeleton_format format) {
-    starg_status status = STARG_OK;
-    starg_output output = {0};
-    starg_c_locale locale = {0};
+    SCOPED_BY(starg_output_discard) starg_output output = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     if (format == STARG_SKELETON_AUTO)
         format = format_of(path);
     if (format < STARG_SKELETON_OBJ || format > STARG_SKELETON_SWC)
@@ -155,17 +142,13 @@ starg_status starg_skeleton_write(starg_context *context, const starg_skeleton *
                           path);
     if (format == STARG_SKELETON_SWC && skeleton->loops > 0)
         return starg_fail(
-            context, STARG_ERROR_ARGUMENT, STAGE,
+            context, STARG_ERROR_MESH, STAGE,
             "the skeleton has %zu %s, and SWC holds only trees; write it as .vtk, .cg "
             "or .obj",
             skeleton->loops, skeleton->loops == 1 ? "loop" : "loops");
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    STARG_TRY(write_format(context, output.stream, skeleton, format));
-    STARG_TRY(starg_check_cancel(context, STAGE));
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_output_discard(&output);
-    starg_c_locale_leave(&locale);
-    return status;
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(starg_output_open(context, STAGE, path, &output));
+    TRY(write_format(context, output.stream, skeleton, format));
+    TRY(starg_check_cancel(context, STAGE));
+    return starg_output_commit(&output);
 }

@@ -17,8 +17,6 @@
  * place must pass the exact predicate. Cost: O(edges) a sweep. */
 #include "sphere/sphere.h"
 
-#include <math.h>
-
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 

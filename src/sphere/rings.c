@@ -16,9 +16,6 @@
  * with its neighbourhood, O(log n) for the queue. */
 #include "sphere/sphere.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/levels/heap.h"
@@ -38,38 +35,32 @@ static size_t ring_find(const ring *r, uint32_t vertex) {
 
 static starg_status ring_from(rings *r, const starg_mesh *mesh, const uint32_t *twin,
                               uint32_t first) {
-    starg_status status = STARG_OK;
     ring *own = &r->of[mesh->faces[first]];
     uint32_t h = first;
     do {
-        STARG_PUSH(r->context, STAGE, own, mesh->faces[corner_next(h)]);
+        PUSH(r->context, STAGE, own, mesh->faces[corner_next(h)]);
         h = twin[corner_previous(h)];
     } while (h != first);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status rings_create(starg_context *context, const starg_mesh *mesh, rings **out) {
-    starg_status status = STARG_OK;
-    rings *r = NULL;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(rings_drop) rings *r = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     *out = NULL;
-    STARG_TRY(topology_create(context, mesh, &topology));
-    STARG_NEW_ZERO(context, STAGE, r, 1);
+    TRY(topology_create(context, mesh, &topology));
+    NEW_ZERO(context, STAGE, r, 1);
     r->context = context;
     r->positions = mesh->vertices;
     r->vertex_count = r->left = mesh->vertex_count;
-    STARG_NEW_ZERO(context, STAGE, r->of, r->vertex_count);
-    STARG_NEW_ZERO(context, STAGE, r->mark, r->vertex_count);
+    NEW_ZERO(context, STAGE, r->of, r->vertex_count);
+    NEW_ZERO(context, STAGE, r->mark, r->vertex_count);
     for (uint32_t h = 0; h < 3 * mesh->face_count; h++)
         if (r->of[mesh->faces[h]].count == 0)
-            STARG_TRY(ring_from(r, mesh, topology->twin, h));
+            TRY(ring_from(r, mesh, topology->twin, h));
     *out = r;
     r = NULL;
-done:
-    topology_free(topology);
-    rings_free(r);
-    return status;
+    return STARG_OK;
 }
 
 void rings_free(rings *r) {
@@ -77,11 +68,7 @@ void rings_free(rings *r) {
         return;
     for (size_t v = 0; r->of != NULL && v < r->vertex_count; v++)
         STARG_ARRAY_FREE(r->context, &r->of[v]);
-    starg_release(r->context, r->of);
-    starg_release(r->context, r->mark);
-    STARG_ARRAY_FREE(r->context, &r->removed);
-    STARG_ARRAY_FREE(r->context, &r->removals);
-    starg_release(r->context, r);
+    RELEASE(r->of, r->mark, r->removed.data, r->removals.data, r);
 }
 
 /* ---- remove ---- */
@@ -146,32 +133,27 @@ static void ring_drop(ring *r, size_t first, size_t count) {
 }
 
 static starg_status ring_insert(starg_context *context, ring *r, size_t at, uint32_t vertex) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(context, STAGE, r, vertex);
+    PUSH(context, STAGE, r, vertex);
     memmove(r->data + at + 1, r->data + at, (r->count - at - 1) * sizeof *r->data);
     r->data[at] = vertex;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Records b and its neighbours, starting at a. */
 static starg_status record(rings *r, uint32_t b, uint32_t a) {
-    starg_status status = STARG_OK;
     const ring *own = &r->of[b];
     size_t first = ring_find(own, a);
     ring_removal removal = {b, (uint32_t)own->count, r->removed.count};
     for (size_t i = 0; i < own->count; i++)
-        STARG_PUSH(r->context, STAGE, &r->removed, own->data[(first + i) % own->count]);
-    STARG_PUSH(r->context, STAGE, &r->removals, removal);
-done:
-    return status;
+        PUSH(r->context, STAGE, &r->removed, own->data[(first + i) % own->count]);
+    PUSH(r->context, STAGE, &r->removals, removal);
+    return STARG_OK;
 }
 
 /* With the neighbours p0 = a, p1, ..., of b: p1 and the last lose b, those between get a instead,
  * and a gets them in place of b. */
 static starg_status merge(rings *r, uint32_t b, uint32_t a) {
-    starg_status status = STARG_OK;
-    STARG_TRY(record(r, b, a));
+    TRY(record(r, b, a));
     const ring_removal *last = &r->removals.data[r->removals.count - 1];
     const uint32_t *p = r->removed.data + last->ring;
     size_t count = last->count, at;
@@ -186,11 +168,10 @@ static starg_status merge(rings *r, uint32_t b, uint32_t a) {
     at = ring_find(&r->of[a], b);
     ring_drop(&r->of[a], at, 1);
     for (size_t i = 2; i + 1 < count; i++)
-        STARG_TRY(ring_insert(r->context, &r->of[a], at + i - 2, p[i]));
+        TRY(ring_insert(r->context, &r->of[a], at + i - 2, p[i]));
     r->of[b].count = 0;
     r->left--;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void enqueue(rings *r, const rings_limits *limits, mesh_heap *heap, uint32_t vertex) {
@@ -203,52 +184,47 @@ static void enqueue(rings *r, const rings_limits *limits, mesh_heap *heap, uint3
 }
 
 starg_status rings_reduce(rings *r, const rings_limits *limits) {
-    starg_status status = STARG_OK;
-    mesh_heap *heap = NULL;
+    SCOPED_BY(heap_drop) mesh_heap *heap = NULL;
     uint32_t b, a;
-    STARG_TRY(heap_create(r->context, r->vertex_count, &heap));
+    TRY(heap_create(r->context, r->vertex_count, &heap));
     for (uint32_t v = 0; v < r->vertex_count; v++)
         enqueue(r, limits, heap, v);
     while (r->left > limits->least && heap_pop(heap, &b)) {
-        STARG_TRY(starg_check_cancel(r->context, STAGE));
+        TRY(starg_check_cancel(r->context, STAGE));
         if (choose_target(r, limits, b, &a) == INFINITY)
             continue;
-        STARG_TRY(merge(r, b, a));
+        TRY(merge(r, b, a));
         const ring_removal *last = &r->removals.data[r->removals.count - 1];
         for (size_t i = 0; i < last->count; i++)
             enqueue(r, limits, heap, r->removed.data[last->ring + i]);
     }
-done:
-    heap_free(heap);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- restore ---- */
 
 starg_status rings_restore(rings *r) {
-    starg_status status = STARG_OK;
     ring_removal last = r->removals.data[r->removals.count - 1];
     const uint32_t *p = r->removed.data + last.ring;
     uint32_t a = p[0], b = last.vertex;
     size_t count = last.count;
     for (size_t i = 0; i < count; i++)
-        STARG_PUSH(r->context, STAGE, &r->of[b], p[i]);
+        PUSH(r->context, STAGE, &r->of[b], p[i]);
     for (size_t i = 1; i < count; i++) {
         ring *of = &r->of[p[i]];
         if (i == 1) /* the next one counter-clockwise after p2 is b, then a */
-            STARG_TRY(ring_insert(r->context, of, ring_find(of, a), b));
+            TRY(ring_insert(r->context, of, ring_find(of, a), b));
         else if (i + 1 == count)
-            STARG_TRY(ring_insert(r->context, of, ring_find(of, a) + 1, b));
+            TRY(ring_insert(r->context, of, ring_find(of, a) + 1, b));
         else
             of->data[ring_find(of, a)] = b;
     }
     ring *center = &r->of[a];
     if (count > 3)
         ring_drop(center, ring_find(center, p[2]), count - 3);
-    STARG_TRY(ring_insert(r->context, center, ring_find(center, p[1]) + 1, b));
+    TRY(ring_insert(r->context, center, ring_find(center, p[1]) + 1, b));
     r->removed.count = last.ring;
     r->removals.count--;
     r->left++;
-done:
-    return status;
+    return STARG_OK;
 }

@@ -17,9 +17,6 @@
  * Cost: O(n log n + sweeps n); each level costs a sixth more than the next coarser one. */
 #include "sphere/sphere.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "geometry/linear_program.h"
 #include "geometry/vec3.h"
 
@@ -62,7 +59,6 @@ static void side_row(const double p[3], const double q[3], double row[5]) {
 
 static starg_status kernel_middle(const sphere *s, sphere_work *work, const ring *around,
                                   double out[3]) {
-    starg_status status = STARG_OK;
     linear_solution solution;
     work->rows.count = work->order.count = 0;
     for (size_t i = 0; i < around->count; i++) {
@@ -70,8 +66,8 @@ static starg_status kernel_middle(const sphere *s, sphere_work *work, const ring
         side_row(s->directions + 3 * (size_t)around->data[i],
                  s->directions + 3 * (size_t)around->data[(i + 1) % around->count], row);
         for (int k = 0; k < 5; k++)
-            STARG_PUSH(s->context, STAGE, &work->rows, row[k]);
-        STARG_PUSH(s->context, STAGE, &work->order, 0);
+            PUSH(s->context, STAGE, &work->rows, row[k]);
+        PUSH(s->context, STAGE, &work->order, 0);
     }
     const linear_program program = {.dimension = 4,
                                     .rows = work->rows.data,
@@ -83,8 +79,7 @@ static starg_status kernel_middle(const sphere *s, sphere_work *work, const ring
     double length = vec3_length(solution.point);
     for (int k = 0; k < 3; k++)
         out[k] = solution.feasible && length > 0 ? solution.point[k] / length : 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A place close to the vertex that b had been merged into, by halving: close enough to it the
@@ -111,17 +106,16 @@ static bool place_near(const sphere *s, const ring *around, double out[3]) {
 }
 
 void sphere_work_free(starg_context *context, sphere_work *work) {
-    STARG_ARRAY_FREE(context, &work->rows);
-    STARG_ARRAY_FREE(context, &work->order);
+    (void)context;
+    RELEASE(work->rows.data, work->order.data);
 }
 
 starg_status sphere_insert(sphere *s, sphere_work *work) {
-    starg_status status = STARG_OK;
     uint32_t b = s->rings->removals.data[s->rings->removals.count - 1].vertex;
     double *x = s->directions + 3 * (size_t)b;
-    STARG_TRY(rings_restore(s->rings));
+    TRY(rings_restore(s->rings));
     const ring *around = &s->rings->of[b];
-    STARG_TRY(kernel_middle(s, work, around, x));
+    TRY(kernel_middle(s, work, around, x));
     if (!relax_is_positive(around, s->directions, x) && !place_near(s, around, x)) {
         uint64_t vertex = b;
         return starg_fail_at(s->context, STARG_ERROR_SOLVER, STAGE, STARG_ELEMENT_VERTEX, &vertex,
@@ -131,14 +125,12 @@ starg_status sphere_insert(sphere *s, sphere_work *work) {
                              b);
     }
     s->alive[s->rings->left - 1] = b;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- levels ---- */
 
 starg_status sphere_relax(sphere *s, const uint8_t *pinned, int sweeps) {
-    starg_status status = STARG_OK;
     const relaxation r = {.rings = s->rings,
                           .directions = s->directions,
                           .alive = s->alive,
@@ -147,30 +139,26 @@ starg_status sphere_relax(sphere *s, const uint8_t *pinned, int sweeps) {
                           .floor =
                               s->floor * (double)s->rings->vertex_count / (double)s->rings->left};
     for (int i = 0; i < sweeps; i++) {
-        STARG_TRY(starg_check_cancel(s->context, STAGE));
+        TRY(starg_check_cancel(s->context, STAGE));
         relax_sweep(&r);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status refine(sphere *s, sphere_work *work) {
-    starg_status status = STARG_OK;
     double next = 4;
-    starg_progress_begin(s->context, STAGE);
+    IN_STAGE(s->context, STAGE);
     while (s->rings->removals.count > 0) {
-        STARG_TRY(sphere_insert(s, work));
+        TRY(sphere_insert(s, work));
         if ((double)s->rings->left >= next) {
-            STARG_TRY(sphere_relax(s, NULL, LEVEL_SWEEPS));
+            TRY(sphere_relax(s, NULL, LEVEL_SWEEPS));
             next = GROWTH * (double)s->rings->left;
         }
         starg_progress_step(s->context, s->rings->left, s->rings->vertex_count);
     }
-    STARG_TRY(sphere_relax(s, NULL, FINAL_SWEEPS));
+    TRY(sphere_relax(s, NULL, FINAL_SWEEPS));
     sphere_list_alive(s);
-done:
-    starg_progress_end(s->context);
-    return status;
+    return STARG_OK;
 }
 
 void sphere_list_alive(sphere *s) {
@@ -190,34 +178,28 @@ bool sphere_is_positive(const sphere *s) {
 
 /* With all vertices, and no directions yet. */
 static starg_status begin(starg_context *context, const starg_mesh *mesh, sphere **out) {
-    starg_status status = STARG_OK;
     sphere *s = NULL;
-    STARG_NEW_ZERO(context, STAGE, s, 1);
+    NEW_ZERO(context, STAGE, s, 1);
     *out = s;
     s->context = context;
     s->mesh = mesh;
     s->floor = FLOOR * starg_mesh_area(mesh) / (double)mesh->face_count;
-    STARG_NEW_ZERO(context, STAGE, s->directions, 3 * mesh->vertex_count);
-    STARG_NEW(context, STAGE, s->alive, mesh->vertex_count);
-    status = rings_create(context, mesh, &s->rings);
-done:
-    return status;
+    NEW_ZERO(context, STAGE, s->directions, 3 * mesh->vertex_count);
+    NEW(context, STAGE, s->alive, mesh->vertex_count);
+    return rings_create(context, mesh, &s->rings);
 }
 
 starg_status sphere_even(starg_context *context, const starg_mesh *mesh, const double *directions,
                          sphere **out) {
-    starg_status status = STARG_OK;
-    sphere *s = NULL;
+    SCOPED_BY(sphere_drop) sphere *s = NULL;
     *out = NULL;
-    STARG_TRY(begin(context, mesh, &s));
+    TRY(begin(context, mesh, &s));
     memcpy(s->directions, directions, 3 * mesh->vertex_count * sizeof *directions);
     sphere_list_alive(s);
-    STARG_TRY(sphere_relax(s, NULL, FINAL_SWEEPS));
+    TRY(sphere_relax(s, NULL, FINAL_SWEEPS));
     *out = s;
     s = NULL;
-done:
-    sphere_free(s);
-    return status;
+    return STARG_OK;
 }
 
 starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out) {
@@ -246,7 +228,5 @@ void sphere_free(sphere *s) {
     if (s == NULL)
         return;
     rings_free(s->rings);
-    starg_release(s->context, s->alive);
-    starg_release(s->context, s->directions);
-    starg_release(s->context, s);
+    RELEASE(s->alive, s->directions, s);
 }

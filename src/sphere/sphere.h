@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Maps of closed surfaces of genus 0 to the sphere. */
-#ifndef STARG_SPHERE_SPHERE_H
-#define STARG_SPHERE_SPHERE_H
+#pragma once
 
-#include <stdbool.h>
-
-#include "core/memory.h"
 #include "mesh/mesh.h"
 
 /* A closed triangulated sphere with removable vertices. */
@@ -33,6 +29,7 @@ typedef struct rings {
  * which is not checked; it is borrowed. Errors: MEMORY. */
 starg_status rings_create(starg_context *context, const starg_mesh *mesh, rings **out);
 void rings_free(rings *r);
+STARG_DROP(rings, rings)
 
 /* Limits of the reduction; NULL: it ends with a tetrahedron. */
 typedef struct rings_limits {
@@ -88,6 +85,7 @@ starg_status sphere_create(starg_context *context, const starg_mesh *mesh, spher
 starg_status sphere_even(starg_context *context, const starg_mesh *mesh, const double *directions,
                          sphere **out);
 void sphere_free(sphere *s) STARG_PRIVATE(sphere_free);
+STARG_DROP(sphere, sphere)
 
 /* Is every present face positive? Exact. */
 bool sphere_is_positive(const sphere *s) STARG_PRIVATE(sphere_is_positive);
@@ -108,5 +106,3 @@ void sphere_work_free(starg_context *context, sphere_work *work) STARG_PRIVATE(s
 /* Restores the last removed vertex, at the centre of the kernel of its polygon, and appends it to
  * `alive`. Errors: SOLVER (no room in doubles), MEMORY. */
 starg_status sphere_insert(sphere *s, sphere_work *work) STARG_PRIVATE(sphere_insert);
-
-#endif

@@ -12,13 +12,9 @@
  * Cost: linear, and sorting of the angles and the faces. Rounded; decides nothing. */
 #include "star/piece_faces.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
-#include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces";
 static const double DEGREES = 57.295779513082323;
@@ -75,20 +71,17 @@ static int ascending(const void *a, const void *b) {
 }
 
 starg_status angles_measure(starg_context *context, starg_decomposition *d) {
-    starg_status status = STARG_OK;
-    double *angles = NULL;
+    SCOPED double *angles = NULL;
     size_t count = d->mesh->count;
     int exponent = tetmesh_exponent(d->mesh);
-    STARG_NEW(context, STAGE, angles, count);
+    NEW(context, STAGE, angles, count);
     for (size_t t = 0; t < count; t++)
         angles[t] = smallest_dihedral(d->mesh, t, exponent);
     qsort(angles, count, sizeof *angles, ascending);
     d->smallest_angle = angles[0];
     d->median_angle = angles[count / 2];
     d->smallest_angle_made = -1;
-done:
-    starg_release(context, angles);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- faces of the model ---- */
@@ -165,11 +158,10 @@ static bool is_forced(const starg_decomposition *d, const placed_face *faces, si
 
 starg_status angles_tell_apart(starg_context *context, const starg_mesh *model,
                                starg_decomposition *d) {
-    starg_status status = STARG_OK;
-    placed_face *faces = NULL;
+    SCOPED placed_face *faces = NULL;
     double least = 180;
     int exponent = tetmesh_exponent(d->mesh);
-    STARG_NEW(context, STAGE, faces, model->face_count);
+    NEW(context, STAGE, faces, model->face_count);
     for (size_t f = 0; f < model->face_count; f++)
         faces[f] = place_face(model->vertices, model->faces + 3 * f);
     qsort(faces, model->face_count, sizeof *faces, compare_faces);
@@ -179,7 +171,5 @@ starg_status angles_tell_apart(starg_context *context, const starg_mesh *model,
             least = angle;
     }
     d->smallest_angle_made = least;
-done:
-    starg_release(context, faces);
-    return status;
+    return STARG_OK;
 }

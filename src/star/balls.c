@@ -18,11 +18,8 @@
  * sphere/sphere.c. */
 #include "star/decomposition.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/singular_values.h"
 #include "geometry/vec3.h"
@@ -92,12 +89,11 @@ static void place_vertices(const ball *b, size_t count, double *vertices) {
 }
 
 static starg_status take_faces(starg_context *context, ball *b) {
-    starg_status status = STARG_OK;
     const starg_decomposition *d = b->all->d;
-    uint32_t *faces = NULL;
-    double *vertices = NULL;
-    STARG_NEW(context, STAGE, faces, 3 * b->count);
-    STARG_NEW(context, STAGE, b->names, 3 * b->count);
+    SCOPED uint32_t *faces = NULL;
+    SCOPED double *vertices = NULL;
+    NEW(context, STAGE, faces, 3 * b->count);
+    NEW(context, STAGE, b->names, 3 * b->count);
     for (size_t i = 0; i < b->count; i++) {
         size_t t = b->tetrahedra[i];
         piece_face_corners(d->mesh, 4 * t + (size_t)guard_corner(d, t), faces + 3 * i);
@@ -108,15 +104,12 @@ static starg_status take_faces(starg_context *context, ball *b) {
         const uint32_t *name = bsearch(&faces[i], b->names, count, sizeof *faces, compare_names);
         faces[i] = (uint32_t)(name - b->names);
     }
-    STARG_NEW(context, STAGE, vertices, 3 * count);
+    NEW(context, STAGE, vertices, 3 * count);
     place_vertices(b, count, vertices);
-    STARG_TRY(starg_mesh_adopt(context, vertices, count, faces, b->count, &b->mesh));
+    TRY(starg_mesh_adopt(context, vertices, count, faces, b->count, &b->mesh));
     vertices = NULL;
     faces = NULL;
-done:
-    starg_release(context, vertices);
-    starg_release(context, faces);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- directions ---- */
@@ -141,14 +134,11 @@ static bool is_positive(const ball *b) {
 }
 
 static starg_status spread(starg_context *context, ball *b, bool aimed) {
-    starg_status status = STARG_OK;
-    sphere *s = NULL;
-    STARG_TRY(aimed ? sphere_even(context, b->mesh, b->directions, &s)
-                    : sphere_create(context, b->mesh, &s));
+    SCOPED_BY(sphere_drop) sphere *s = NULL;
+    TRY(aimed ? sphere_even(context, b->mesh, b->directions, &s)
+              : sphere_create(context, b->mesh, &s));
     memcpy(b->directions, s->directions, 3 * b->mesh->vertex_count * sizeof *b->directions);
-done:
-    sphere_free(s);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- results ---- */
@@ -211,8 +201,7 @@ static starg_status map_piece(starg_context *context, mapping *all, size_t item)
     measure(&b);
 done:
     starg_mesh_free(b.mesh);
-    starg_release(context, b.names);
-    starg_release(context, b.directions);
+    RELEASE(b.names, b.directions);
     return status;
 }
 
@@ -238,18 +227,16 @@ static starg_status check_fans(starg_context *context, const starg_decomposition
 }
 
 static starg_status sort_tetrahedra(starg_context *context, mapping *all) {
-    starg_status status = STARG_OK;
     const starg_decomposition *d = all->d;
-    STARG_NEW_ZERO(context, STAGE, all->first, d->piece_count + 2);
-    STARG_NEW(context, STAGE, all->order, d->mesh->count);
+    NEW_ZERO(context, STAGE, all->first, d->piece_count + 2);
+    NEW(context, STAGE, all->order, d->mesh->count);
     for (size_t t = 0; t < d->mesh->count; t++)
         all->first[d->labels[t] + 2]++;
     for (size_t p = 0; p < d->piece_count; p++)
         all->first[p + 2] += all->first[p + 1];
     for (size_t t = 0; t < d->mesh->count; t++)
         all->order[all->first[d->labels[t] + 1]++] = (uint32_t)t;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status balls_make(starg_context *context, starg_decomposition *d, starg_balls kind) {
@@ -270,7 +257,6 @@ starg_status balls_make(starg_context *context, starg_decomposition *d, starg_ba
     d->ball_above_10 = fmin(all.high / all.all, 1);
 done:
     starg_progress_end(context);
-    starg_release(context, all.first);
-    starg_release(context, all.order);
+    RELEASE(all.first, all.order);
     return status;
 }

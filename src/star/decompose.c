@@ -1,23 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
-#include <math.h>
 
-#include "core/context.h"
-#include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
-#include "mesh/solid.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
 #include "tetra/fields.h"
-#include "tetra/tetmesh.h"
-#include "visibility/kernel.h"
 
 static const char STAGE[] = "pieces";
 
 static const starg_field OPTIONS[] = {
     {.key = "mode",
      .option = "mode",
+     .group = "search",
+     .brief = "certified pieces, or those of the paper",
      .kind = STARG_FIELD_CHOICE,
      FIELD_MEMBER(starg_decompose_options, mode),
      .words = decompose_mode_words,
@@ -27,6 +22,7 @@ static const starg_field OPTIONS[] = {
              "report lists the star-shaped pieces."},
     {.key = "density",
      .option = "density",
+     .group = "search",
      .kind = STARG_FIELD_REAL,
      .flags = STARG_FIELD_NULLABLE,
      FIELD_MEMBER(starg_decompose_options, tetra.density),
@@ -39,6 +35,8 @@ static const starg_field OPTIONS[] = {
      .default_text = "0 for strict, 17.5 (as published) for paper"},
     {.key = "max_pieces",
      .option = "max-pieces",
+     .group = "number",
+     .brief = "stop at so many pieces",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, max_pieces),
      .most = UINT32_MAX,
@@ -48,6 +46,8 @@ static const starg_field OPTIONS[] = {
      .default_text = "0, as few as possible"},
     {.key = "effort",
      .option = "effort",
+     .group = "search",
+     .brief = "how long it searches for fewer pieces",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, effort),
      .most = INT64_MAX,
@@ -60,17 +60,21 @@ static const starg_field OPTIONS[] = {
      .default_text = "normal; with --time-limit all of that time"},
     {.key = "fill",
      .option = "fill",
+     .group = "search",
      .kind = STARG_FIELD_FLAG,
      FIELD_MEMBER(starg_decompose_options, fill),
      .help = "Fill a surface with holes even if the filled volume is farther from it than a fifth "
              "of its diagonal."},
     {.key = "quality",
      .option = "quality",
+     .group = "search",
      .kind = STARG_FIELD_FLAG,
      FIELD_MEMBER(starg_decompose_options, quality),
      .help = "strict: spend more on room for the guards, which makes better tetrahedra."},
     {.key = "prove",
      .option = "prove",
+     .group = "number",
+     .brief = "a bound for every way to cut",
      .kind = STARG_FIELD_FLAG,
      FIELD_MEMBER(starg_decompose_options, prove),
      .help =
@@ -78,6 +82,7 @@ static const starg_field OPTIONS[] = {
          "the search ends as soon as there are no more."},
     {.key = "prove_work",
      .option = "prove-work",
+     .group = "search",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, prove_work),
      .most = UINT64_MAX >> 1,
@@ -87,6 +92,8 @@ static const starg_field OPTIONS[] = {
              "each)."},
     {.key = "balls",
      .option = "balls",
+     .group = "output",
+     .brief = "a certified map of each piece to a ball",
      .kind = STARG_FIELD_CHOICE,
      .flags = STARG_FIELD_ALONE,
      FIELD_MEMBER(starg_decompose_options, balls),
@@ -126,9 +133,7 @@ static starg_tetra_options tetra_options(const starg_decompose_options *o) {
 }
 
 static starg_status check_options(starg_context *context, const starg_decompose_options *o) {
-    starg_status status = fields_check(context, STAGE, &OPTIONS_TABLE, o);
-    if (status != STARG_OK)
-        return status;
+    TRY(fields_check(context, STAGE, &OPTIONS_TABLE, o));
     if (o->balls != STARG_BALLS_NONE && o->mode != STARG_DECOMPOSE_STRICT)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "only the pieces of --mode strict can be mapped to balls: those of the "
@@ -214,17 +219,14 @@ static starg_status decompose_filled(starg_context *context, const starg_solid *
                                      const starg_mesh *surface,
                                      const starg_decompose_options *options,
                                      starg_decomposition **out) {
-    starg_status status = STARG_OK;
     starg_tetra_report report;
-    starg_tetmesh *mesh = NULL;
-    STARG_TRY(fill(context, solid, surface, options, &report, &mesh));
+    SCOPED_BY(starg_tetmesh_drop) starg_tetmesh *mesh = NULL;
+    TRY(fill(context, solid, surface, options, &report, &mesh));
     if (solid == NULL && !options->fill)
-        STARG_TRY(check_filling(context, surface, &report));
-    STARG_TRY(run_mode(context, mesh, options, out));
+        TRY(check_filling(context, surface, &report));
+    TRY(run_mode(context, mesh, options, out));
     (*out)->tetra = report;
-done:
-    starg_tetmesh_free(mesh);
-    return status;
+    return STARG_OK;
 }
 
 /* What is known without a search: each part of the solid needs a piece, and two if its kernel has
@@ -237,7 +239,7 @@ static starg_status bound_by_parts(starg_context *context, const starg_solid *so
     STARG_TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
     d->optimal = d->lower_bound == d->piece_count;
 done:
-    solid_parts_free(context, &parts);
+    solid_parts_free(&parts);
     return status;
 }
 
@@ -245,40 +247,33 @@ done:
 static starg_status decompose_surface(starg_context *context, const starg_solid *solid,
                                       const starg_decompose_options *options,
                                       starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    uint32_t *faces = NULL;
-    STARG_TRY(touching_weld(context, solid, &faces));
+    SCOPED uint32_t *faces = NULL;
+    TRY(touching_weld(context, solid, &faces));
     if (faces == NULL)
-        goto done;
+        return STARG_OK;
     const kernel_faces surface = {solid->mesh->vertices, faces, solid->mesh->face_count};
-    STARG_TRY(strict_decompose_surface(context, &surface, options, out));
+    TRY(strict_decompose_surface(context, &surface, options, out));
     if (*out != NULL) {
         (*out)->flattest_given = -1;
-        STARG_TRY(bound_by_parts(context, solid, *out));
+        TRY(bound_by_parts(context, solid, *out));
     }
-done:
-    starg_release(context, faces);
-    return status;
+    return STARG_OK;
 }
 
 /* A surface that intersects itself is cut where it does; *out stays NULL where that cannot be. */
 static starg_status decompose_union(starg_context *context, const starg_solid *solid,
                                     const starg_decompose_options *options,
                                     starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_solid *united = NULL;
-    STARG_TRY(united_make(context, solid, &united));
+    SCOPED_BY(starg_solid_drop) starg_solid *united = NULL;
+    TRY(united_make(context, solid, &united));
     if (united == NULL)
-        goto done;
-    STARG_TRY(decompose_surface(context, united, options, out));
+        return STARG_OK;
+    TRY(decompose_surface(context, united, options, out));
     if (*out == NULL)
-        goto done;
+        return STARG_OK;
     (*out)->lower_bound = 0; /* it is that of the union */
     (*out)->optimal = false;
-    STARG_TRY(united_report(context, solid, united, *out));
-done:
-    starg_solid_free(united);
-    return status;
+    return united_report(context, solid, united, *out);
 }
 
 /* What is asked for: one of the three models is given. */
@@ -294,18 +289,17 @@ typedef struct request {
 
 static starg_status decompose_model(const request *r, const starg_decompose_options *options,
                                     starg_decomposition **out) {
-    starg_status status = STARG_OK;
     starg_context *context = r->context;
     const starg_solid *solid = r->solid;
     const bool strict = solid != NULL && options->mode == STARG_DECOMPOSE_STRICT;
     if (r->tetmesh != NULL)
-        STARG_TRY(run_mode(context, r->tetmesh, options, out));
+        TRY(run_mode(context, r->tetmesh, options, out));
     if (strict)
-        STARG_TRY(decompose_surface(context, solid, options, out));
+        TRY(decompose_surface(context, solid, options, out));
     if (strict && *out == NULL)
-        STARG_TRY(decompose_union(context, solid, options, out));
+        TRY(decompose_union(context, solid, options, out));
     if (*out == NULL)
-        STARG_TRY(decompose_filled(context, solid, r->surface, options, out));
+        TRY(decompose_filled(context, solid, r->surface, options, out));
     starg_decomposition *d = *out;
     const starg_mesh *model = solid != NULL ? solid->mesh : r->surface;
     d->model_vertices = solid != NULL   ? solid->model_vertices
@@ -314,12 +308,11 @@ static starg_status decompose_model(const request *r, const starg_decompose_opti
     d->model_faces = model != NULL ? model->face_count : 0;
     d->model_tetrahedra = model != NULL ? 0 : r->tetmesh->count;
     d->flattest = tetmesh_flattest(d->mesh);
-    STARG_TRY(balls_make(context, d, options->balls));
+    TRY(balls_make(context, d, options->balls));
     if (solid != NULL && d->tetra.surface_kept)
-        STARG_TRY(angles_tell_apart(context, model, d));
+        TRY(angles_tell_apart(context, model, d));
     remember(context, options, d);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A lower bound for star decompositions.
@@ -387,7 +380,6 @@ static starg_status find_bound(request *r, bool *time_limited) {
 
 /* The search ends at the proven bound; the points that see all corners are its first guards. */
 static starg_status decompose_proven(request *r, starg_decomposition **out) {
-    starg_status status = STARG_OK;
     starg_decompose_options own = *r->options;
     const corner_guards *bound = &r->bound;
     bool time_limited;
@@ -399,23 +391,22 @@ static starg_status decompose_proven(request *r, starg_decomposition **out) {
         return starg_fail(r->context, STARG_ERROR_MESH, STAGE,
                           "a bound for pieces is proven for closed surfaces only; close it with "
                           "'starguard repair', or leave out the proof");
-    STARG_TRY(find_bound(r, &time_limited));
+    TRY(find_bound(r, &time_limited));
     if (own.max_pieces < bound->bound)
         own.max_pieces = bound->bound;
     if (own.guards == NULL) {
         own.guards = bound->positions;
         own.guard_count = bound->count;
     }
-    STARG_TRY(decompose_model(r, &own, out));
+    TRY(decompose_model(r, &own, out));
     if (r->certified || (*out)->lower_bound < bound->bound)
         (*out)->lower_bound = bound->bound;
     (*out)->optimal = (*out)->lower_bound == (*out)->piece_count;
     (*out)->time_limited = (*out)->time_limited || time_limited;
     remember(r->context, r->options, *out);
     if (r->certified && bound->certificate == NULL)
-        status = starg_fail_time(r->context, STAGE);
-done:
-    return status;
+        return starg_fail_time(r->context, STAGE);
+    return STARG_OK;
 }
 
 static starg_status decompose(request *r, starg_decomposition **out) {
@@ -439,7 +430,7 @@ starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                              const starg_decompose_options *options, starg_decomposition **out) {
     request r = {.context = context, .solid = solid, .options = options};
     starg_status status = decompose(&r, out);
-    corner_guards_free(context, &r.bound);
+    corner_guards_free(&r.bound);
     return status;
 }
 
@@ -460,7 +451,7 @@ starg_status starg_decompose_certified(starg_context *context, const starg_solid
         *size = r.bound.size;
         r.bound.certificate = NULL;
     }
-    corner_guards_free(context, &r.bound);
+    corner_guards_free(&r.bound);
     return status;
 }
 

@@ -13,10 +13,8 @@
  * the mesh. Cost: O(n) and a sort of the inner faces between pieces; sight: star/piece_faces.c. */
 #include "star/decomposition.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "star/piece_faces.h"
@@ -111,7 +109,7 @@ static starg_status measure_pieces(starg_context *context, starg_decomposition *
     for (size_t p = 0; p < d->piece_count; p++)
         d->strictly_star += d->pieces[p].star;
 done:
-    piece_faces_free(context, &m.faces);
+    piece_faces_free(&m.faces);
     return status;
 }
 
@@ -170,30 +168,25 @@ static size_t join_inner(starg_decomposition *d, const inner_face *faces, size_t
 }
 
 static starg_status find_contacts(starg_context *context, starg_decomposition *d) {
-    starg_status status = STARG_OK;
-    inner_face *faces = NULL;
+    SCOPED inner_face *faces = NULL;
     size_t count = count_inner(d);
-    STARG_NEW(context, STAGE, faces, count);
-    STARG_NEW(context, STAGE, d->contacts, count);
+    NEW(context, STAGE, faces, count);
+    NEW(context, STAGE, d->contacts, count);
     collect_inner(d, faces);
     qsort(faces, count, sizeof *faces, compare_inner);
     d->contact_count = join_inner(d, faces, count);
-done:
-    starg_release(context, faces);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the result ---- */
 
 static starg_status add_pieces(starg_context *context, starg_decomposition *d, const double *guards,
                                size_t count) {
-    starg_status status = STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, d->pieces, count);
+    NEW_ZERO(context, STAGE, d->pieces, count);
     d->piece_count = count;
     for (size_t p = 0; p < count; p++)
         vec3_copy(guards + 3 * p, d->pieces[p].guard);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status decomposition_finish(starg_context *context, starg_decompose_mode mode,
@@ -229,13 +222,10 @@ done:
 }
 
 void starg_decomposition_free(starg_context *context, starg_decomposition *decomposition) {
+    (void)context;
     if (decomposition == NULL)
         return;
     starg_tetmesh_free(decomposition->mesh);
-    starg_release(context, decomposition->file);
-    starg_release(context, decomposition->labels);
-    starg_release(context, decomposition->pieces);
-    starg_release(context, decomposition->contacts);
-    starg_release(context, decomposition->ball_corners);
-    starg_release(context, decomposition);
+    RELEASE(decomposition->file, decomposition->labels, decomposition->pieces,
+            decomposition->contacts, decomposition->ball_corners, decomposition);
 }

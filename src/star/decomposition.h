@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Star decompositions: their files, and the steps of decompose.c. */
-#ifndef STARG_STAR_DECOMPOSITION_H
-#define STARG_STAR_DECOMPOSITION_H
+#pragma once
 
-#include "core/context.h"
 #include "core/fields.h"
-#include "geometry/bvh.h"
 #include "guard/corners.h"
-#include "mesh/solid.h"
 #include "starguard/decompose.h"
-#include "starguard/mesh.h"
 #include "visibility/kernel.h"
 
 /* The result of a star decomposition, whichever mode has found it. */
@@ -64,7 +59,8 @@ starg_status touching_bounds(starg_context *context, const starg_solid *solid, b
  * is too much by no more than the larger of its half and rounding, nor than the step. `extent` is
  * the size of the model. Errors: MEMORY, CANCELLED. */
 starg_status deviation_bound(starg_context *context, const starg_mesh *from, const bvh *to,
-                             double extent, double step, double *out);
+                             double extent, double step, double *out)
+    STARG_PRIVATE(deviation_bound);
 
 /* The solid that a surface encloses which intersects itself. */
 
@@ -99,5 +95,3 @@ starg_status strict_decompose_surface(starg_context *context, const kernel_faces
 starg_status strict_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
                                       const starg_decompose_options *options,
                                       starg_decomposition **out);
-
-#endif

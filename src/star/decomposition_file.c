@@ -5,13 +5,10 @@
 #include <float.h>
 #include <math.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "core/record.h"
 #include "star/decomposition.h"
 #include "starguard/verify.h"
 #include "tetra/io.h"
-#include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces file";
 
@@ -128,44 +125,38 @@ done:
 
 starg_status starg_decomposition_read(starg_context *context, const char *pieces_path,
                                       const char *report_path, starg_decomposition **out) {
-    starg_status status = STARG_OK;
     starg_file_bytes pieces = {.name = pieces_path}, report = {.name = report_path};
-    char *pieces_bytes = NULL, *report_bytes = NULL;
+    SCOPED char *pieces_bytes = NULL, *report_bytes = NULL;
     *out = NULL;
-    STARG_TRY(starg_file_read(context, STAGE, report_path, &report_bytes, &report.size));
+    TRY(starg_file_read(context, STAGE, report_path, &report_bytes, &report.size));
     if (pieces_path != NULL)
-        STARG_TRY(starg_file_read(context, STAGE, pieces_path, &pieces_bytes, &pieces.size));
+        TRY(starg_file_read(context, STAGE, pieces_path, &pieces_bytes, &pieces.size));
     report.bytes = report_bytes;
     pieces.bytes = pieces_bytes;
-    STARG_TRY(starg_decomposition_read_memory(context, pieces_path != NULL ? &pieces : NULL,
-                                              &report, out));
-done:
-    starg_release(context, report_bytes);
-    starg_release(context, pieces_bytes);
-    return status;
+    return starg_decomposition_read_memory(context, pieces_path != NULL ? &pieces : NULL, &report,
+                                           out);
 }
 
 /* ---- either file alone, as it stands: verification checks what it says ---- */
 
 starg_status starg_pieces_mesh_read_memory(starg_context *context, const void *bytes, size_t size,
                                            const char *name, starg_pieces_mesh **out) {
-    starg_status status = STARG_OK;
     char shown[256];
     starg_source_shorten(name, shown, sizeof shown);
     const starg_source source = {context, shown, bytes, size};
-    tet_builder builder = {.points = {.source = &source}};
-    starg_c_locale locale = {0};
+    SCOPED_BY(tet_builder_free) tet_builder builder = {.points = {.source = &source}};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     *out = NULL;
-    starg_progress_begin(context, "read");
-    STARG_TRY(starg_c_locale_enter(context, &locale));
+    IN_STAGE(context, "read");
+    TRY(starg_c_locale_enter(context, &locale));
     if (!tet_vtk_matches(&source))
-        STARG_TRY(starg_source_fail(&source, starg_at_file(), "this is no legacy VTK file"));
-    STARG_TRY(tet_vtk_read(&builder));
-    STARG_TRY(tet_builder_check(&builder));
+        TRY(starg_source_fail(&source, starg_at_file(), "this is no legacy VTK file"));
+    TRY(tet_vtk_read(&builder));
+    TRY(tet_builder_check(&builder));
     if (!builder.labelled)
-        STARG_TRY(starg_source_fail(&source, starg_at_file(),
-                                    "the cells have no labels: whole numbers \"piece\""));
-    STARG_NEW(context, STAGE, *out, 1);
+        TRY(starg_source_fail(&source, starg_at_file(),
+                              "the cells have no labels: whole numbers \"piece\""));
+    NEW(context, STAGE, *out, 1);
     **out = (starg_pieces_mesh){.vertex_count = starg_builder_vertex_count(&builder.points),
                                 .vertices = builder.points.vertices.data,
                                 .count = tet_builder_count(&builder),
@@ -176,21 +167,14 @@ starg_status starg_pieces_mesh_read_memory(starg_context *context, const void *b
     builder.tetrahedra.data = NULL;
     builder.regions.data = NULL;
     builder.corners = NULL;
-done:
-    starg_c_locale_leave(&locale);
-    tet_builder_free(&builder);
-    starg_progress_end(context);
-    return status;
+    return STARG_OK;
 }
 
 void starg_pieces_mesh_free(starg_context *context, starg_pieces_mesh *mesh) {
+    (void)context;
     if (mesh == NULL)
         return;
-    starg_release(context, mesh->vertices);
-    starg_release(context, mesh->tetrahedra);
-    starg_release(context, mesh->labels);
-    starg_release(context, mesh->corners);
-    starg_release(context, mesh);
+    RELEASE(mesh->vertices, mesh->tetrahedra, mesh->labels, mesh->corners, mesh);
 }
 
 /* Keys that the table lets be missing, as files of earlier versions are read, and claims need. */
@@ -264,12 +248,10 @@ done:
 }
 
 void starg_pieces_report_free(starg_context *context, starg_pieces_report *report) {
+    (void)context;
     if (report == NULL)
         return;
-    starg_release(context, report->file);
-    starg_release(context, report->pieces);
-    starg_release(context, report->contacts);
-    starg_release(context, report);
+    RELEASE(report->file, report->pieces, report->contacts, report);
 }
 
 /* ---- writing ---- */

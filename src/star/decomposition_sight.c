@@ -5,7 +5,6 @@
  * A star-shaped piece is seen as a whole, by its proof. For the others each vertex is a segment
  * against the boundary of the whole mesh; a guard that is not strictly inside of it sees nothing.
  * Cost: O(n) and one look-up for each vertex of a piece that is not star-shaped. */
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
@@ -42,7 +41,6 @@ static void file_tetrahedra(const starg_decomposition *d, size_t *first, uint32_
 /* Takes each vertex of one piece once; `taken` says by which piece it was last. */
 static starg_status take_piece(starg_context *context, counting *c, size_t piece,
                                const uint32_t *tetrahedra, size_t count, uint32_t *taken) {
-    starg_status status = STARG_OK;
     const starg_piece *p = &c->d->pieces[piece];
     bool test = !p->star && tet_sight_contains(c->sight, p->guard);
     for (size_t i = 0; i < 4 * count; i++) {
@@ -53,29 +51,23 @@ static starg_status take_piece(starg_context *context, counting *c, size_t piece
         c->total++;
         c->seen += p->star;
         if (test)
-            STARG_PUSH(context, STAGE, &c->pairs, ((pair){(uint32_t)piece, vertex}));
+            PUSH(context, STAGE, &c->pairs, ((pair){(uint32_t)piece, vertex}));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_all(starg_context *context, counting *c) {
-    starg_status status = STARG_OK;
     const starg_decomposition *d = c->d;
-    size_t *first = NULL;
-    uint32_t *order = NULL, *taken = NULL;
-    STARG_NEW_ZERO(context, STAGE, first, d->piece_count + 1);
-    STARG_NEW(context, STAGE, order, d->mesh->count);
-    STARG_NEW(context, STAGE, taken, d->mesh->vertex_count);
+    SCOPED size_t *first = NULL;
+    SCOPED uint32_t *order = NULL, *taken = NULL;
+    NEW_ZERO(context, STAGE, first, d->piece_count + 1);
+    NEW(context, STAGE, order, d->mesh->count);
+    NEW(context, STAGE, taken, d->mesh->vertex_count);
     memset(taken, 0xff, d->mesh->vertex_count * sizeof *taken);
     file_tetrahedra(d, first, order);
     for (size_t p = 0; p < d->piece_count; p++)
-        STARG_TRY(take_piece(context, c, p, order + first[p], first[p + 1] - first[p], taken));
-done:
-    starg_release(context, first);
-    starg_release(context, order);
-    starg_release(context, taken);
-    return status;
+        TRY(take_piece(context, c, p, order + first[p], first[p + 1] - first[p], taken));
+    return STARG_OK;
 }
 
 static starg_status test_chunk(starg_context *context, void *shared, void *scratch, size_t item) {

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The closed surfaces of all pieces in one mesh or one file: the faces of each with vertices of its
  * own, which are numbered in the order in which its faces name them. Cost: O(n). */
-#include "core/file.h"
-#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/formats/io.h"
-#include "mesh/mesh.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
 
@@ -30,53 +27,41 @@ static size_t number_vertices(const piece_faces *faces, uint32_t *owner, uint32_
 }
 
 static starg_status copy_first(starg_context *context, const piece_faces *faces, uint32_t **out) {
-    starg_status status = STARG_OK;
-    STARG_NEW(context, STAGE, *out, faces->piece_count + 1);
+    NEW(context, STAGE, *out, faces->piece_count + 1);
     for (size_t p = 0; p <= faces->piece_count; p++)
         (*out)[p] = (uint32_t)faces->first[p];
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_decomposition_surfaces(starg_context *context,
                                           const starg_decomposition *decomposition,
                                           starg_mesh **out, uint32_t **first_face) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = decomposition->mesh;
-    piece_faces faces = {0};
-    uint32_t *owner = NULL, *number = NULL, *corners = NULL, *first = NULL;
-    double *vertices = NULL;
+    SCOPED_BY(piece_faces_free) piece_faces faces = {0};
+    SCOPED uint32_t *owner = NULL, *number = NULL, *corners = NULL, *first = NULL;
+    SCOPED double *vertices = NULL;
     *out = NULL;
     *first_face = NULL;
-    STARG_TRY(piece_faces_create(context, mesh, decomposition->labels, decomposition->piece_count,
-                                 &faces));
+    TRY(piece_faces_create(context, mesh, decomposition->labels, decomposition->piece_count,
+                           &faces));
     size_t face_count = faces.first[faces.piece_count];
-    if (face_count > STARG_MESH_LIMIT / 3) {
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "the pieces have %zu faces, more than can be numbered in one mesh",
-                            face_count);
-        goto done;
-    }
-    STARG_NEW(context, STAGE, owner, mesh->vertex_count);
-    STARG_NEW(context, STAGE, number, mesh->vertex_count);
-    STARG_NEW(context, STAGE, corners, 3 * face_count);
-    STARG_NEW(context, STAGE, vertices, 9 * face_count);
+    if (face_count > STARG_MESH_LIMIT / 3)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the pieces have %zu faces, more than can be numbered in one mesh",
+                          face_count);
+    NEW(context, STAGE, owner, mesh->vertex_count);
+    NEW(context, STAGE, number, mesh->vertex_count);
+    NEW(context, STAGE, corners, 3 * face_count);
+    NEW(context, STAGE, vertices, 9 * face_count);
     memset(owner, 0xff, mesh->vertex_count * sizeof *owner);
     size_t vertex_count = number_vertices(&faces, owner, number, corners, vertices);
-    STARG_TRY(copy_first(context, &faces, &first));
-    STARG_TRY(starg_mesh_adopt(context, vertices, vertex_count, corners, face_count, out));
+    TRY(copy_first(context, &faces, &first));
+    TRY(starg_mesh_adopt(context, vertices, vertex_count, corners, face_count, out));
     vertices = NULL;
     corners = NULL;
     *first_face = first;
     first = NULL;
-done:
-    piece_faces_free(context, &faces);
-    starg_release(context, owner);
-    starg_release(context, number);
-    starg_release(context, corners);
-    starg_release(context, vertices);
-    starg_release(context, first);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- file ---- */

@@ -15,12 +15,8 @@
  * face where the surfaces coincide, at most area / step^2. */
 #include "star/decomposition.h"
 
-#include <math.h>
-#include <stdatomic.h>
-
 #include "core/parallel.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
 
 static const char STAGE[] = "pieces";
 

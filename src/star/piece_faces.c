@@ -3,7 +3,6 @@
  * (counting sort). Cost: O(n). */
 #include "star/piece_faces.h"
 
-#include "core/memory.h"
 #include "geometry/intersect.h"
 
 static const char STAGE[] = "pieces";
@@ -44,28 +43,25 @@ starg_status piece_faces_create(starg_context *context, const starg_tetmesh *mes
 done:
     starg_release(context, next);
     if (status != STARG_OK)
-        piece_faces_free(context, out);
+        piece_faces_free(out);
     return status;
 }
 
-void piece_faces_free(starg_context *context, piece_faces *faces) {
-    starg_release(context, faces->first);
-    starg_release(context, faces->corners);
+void piece_faces_free(piece_faces *faces) {
+    RELEASE(faces->first, faces->corners);
     *faces = (piece_faces){0};
 }
 
 starg_status piece_faces_add(starg_context *context, const starg_tetmesh *mesh,
                              const uint32_t *labels, size_t face, uint32_t piece, uint32_t other,
                              face_corners *out) {
-    starg_status status = STARG_OK;
     uint32_t corners[3], across = mesh->neighbours[face];
     if (across != STARG_TETMESH_NONE && (labels[across] == piece || labels[across] == other))
         return STARG_OK;
     piece_face_corners(mesh, face, corners);
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(context, STAGE, out, corners[k]);
-done:
-    return status;
+        PUSH(context, STAGE, out, corners[k]);
+    return STARG_OK;
 }
 
 /* Does a point inside of a tetrahedral mesh see another one? By a tree over the boundary faces,

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tetrahedra with labels: their neighbours and faces, lines of sight through them, their angles. */
-#ifndef STARG_STAR_PIECE_FACES_H
-#define STARG_STAR_PIECE_FACES_H
+#pragma once
 
-#include "core/memory.h"
-#include "core/private.h"
-#include "geometry/bvh.h"
 #include "starguard/decompose.h"
 #include "tetra/tetmesh.h"
 #include "visibility/kernel.h"
@@ -23,7 +19,7 @@ typedef struct piece_faces {
 /* In the order of tetrahedra and their faces within a piece. Errors: MEMORY. */
 starg_status piece_faces_create(starg_context *context, const starg_tetmesh *mesh,
                                 const int32_t *labels, size_t piece_count, piece_faces *out);
-void piece_faces_free(starg_context *context, piece_faces *faces);
+void piece_faces_free(piece_faces *faces);
 
 static inline kernel_faces piece_faces_of(const piece_faces *faces, size_t p) {
     return (kernel_faces){faces->vertices, faces->corners + 3 * faces->first[p],
@@ -73,5 +69,3 @@ starg_status angles_measure(starg_context *context, starg_decomposition *d);
 /* Sets smallest_angle_made, for the model whose surface was kept. Errors: MEMORY. */
 starg_status angles_tell_apart(starg_context *context, const starg_mesh *model,
                                starg_decomposition *d);
-
-#endif

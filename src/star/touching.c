@@ -9,9 +9,7 @@
  * behind it. Exact. Cost: that of finding the pairs again, where the check has found contacts. */
 #include "star/decomposition.h"
 
-#include "core/memory.h"
 #include "mesh/examine.h"
-#include "mesh/topology.h"
 
 static const char STAGE[] = "pieces";
 
@@ -28,27 +26,24 @@ static bool meet_well(void *user, uint32_t a, uint32_t b) {
 }
 
 starg_status touching_weld(starg_context *context, const starg_solid *solid, uint32_t **faces) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = solid->mesh;
     const starg_finding *found = solid->check->findings;
-    uint32_t *first = NULL;
+    SCOPED uint32_t *first = NULL;
     size_t count = 3 * mesh->face_count, moved;
     *faces = NULL;
     if (found[STARG_FINDING_SELF_INTERSECTION].count > 0 ||
         found[STARG_FINDING_DEGENERATE_FACE].count > 0)
         return STARG_OK;
-    STARG_TRY(mesh_find_coincident(context, mesh, &first, &moved));
-    STARG_NEW(context, STAGE, *faces, count);
+    TRY(mesh_find_coincident(context, mesh, &first, &moved));
+    NEW(context, STAGE, *faces, count);
     for (size_t i = 0; i < count; i++)
         (*faces)[i] = first[mesh->faces[i]];
     welded w = {mesh->vertices, *faces};
     if (found[STARG_FINDING_SELF_CONTACT].count == 0 || bvh_query_pairs(solid->tree, meet_well, &w))
-        goto done;
+        return STARG_OK;
     starg_release(context, *faces);
     *faces = NULL;
-done:
-    starg_release(context, first);
-    return status;
+    return STARG_OK;
 }
 
 starg_status touching_bounds(starg_context *context, const starg_solid *solid, bool *bounds) {

@@ -8,9 +8,7 @@
 
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
 #include "starguard/repair.h"
 
 static const char STAGE[] = "pieces";
@@ -53,13 +51,12 @@ static int compare_faces(const void *left, const void *right) {
 /* The faces of the model that the boundary lacks, as a mesh on the model's vertices (borrowed). */
 static starg_status find_lost(starg_context *context, const starg_mesh *model,
                               const starg_mesh *boundary, starg_mesh *lost) {
-    starg_status status = STARG_OK;
-    placed_face *sorted = NULL;
+    SCOPED placed_face *sorted = NULL;
     *lost = *model;
     lost->face_count = 0;
     lost->faces = NULL;
-    STARG_NEW(context, STAGE, sorted, boundary->face_count);
-    STARG_NEW(context, STAGE, lost->faces, 3 * model->face_count);
+    NEW(context, STAGE, sorted, boundary->face_count);
+    NEW(context, STAGE, lost->faces, 3 * model->face_count);
     for (uint32_t f = 0; f < boundary->face_count; f++)
         sorted[f] = place_face(boundary, f);
     qsort(sorted, boundary->face_count, sizeof *sorted, compare_faces);
@@ -69,9 +66,7 @@ static starg_status find_lost(starg_context *context, const starg_mesh *model,
             memcpy(lost->faces + 3 * lost->face_count++, model->faces + 3 * (size_t)f,
                    3 * sizeof *lost->faces);
     }
-done:
-    starg_release(context, sorted);
-    return status;
+    return STARG_OK;
 }
 
 starg_status united_report(starg_context *context, const starg_solid *solid,
@@ -108,17 +103,13 @@ static bool is_refusal(starg_status status) {
 }
 
 static starg_status make(starg_context *context, const starg_solid *solid, starg_solid **out) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
     starg_repair_options options;
     starg_repair_report report;
     starg_repair_options_default(&options);
     options.unite = true;
-    STARG_TRY(starg_mesh_repair(context, solid->mesh, &options, &mesh, &report));
-    STARG_TRY(solid_make(context, mesh, out));
-done:
-    starg_mesh_free(mesh);
-    return status;
+    TRY(starg_mesh_repair(context, solid->mesh, &options, &mesh, &report));
+    return solid_make(context, mesh, out);
 }
 
 starg_status united_make(starg_context *context, const starg_solid *solid, starg_solid **out) {

@@ -9,7 +9,6 @@
  * Cost: O(n log d) for vertices of degree d. */
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "tetrahedra";
@@ -116,9 +115,7 @@ static starg_status join_all(starg_tetmesh *mesh, const size_t *start, entry *en
             size_t count = 1;
             while (low + count < high && same_face(entries + low, entries + low + count))
                 count++;
-            starg_status status = join(mesh, entries + low, count);
-            if (status != STARG_OK)
-                return status;
+            TRY(join(mesh, entries + low, count));
             low += count;
         }
     }
@@ -126,16 +123,11 @@ static starg_status join_all(starg_tetmesh *mesh, const size_t *start, entry *en
 }
 
 starg_status tetmesh_connect(starg_tetmesh *mesh) {
-    starg_status status = STARG_OK;
-    size_t *start = NULL;
-    entry *entries = NULL;
-    STARG_NEW(mesh->context, STAGE, mesh->neighbours, 4 * mesh->count);
-    STARG_NEW_ZERO(mesh->context, STAGE, start, mesh->vertex_count + 2);
-    STARG_NEW(mesh->context, STAGE, entries, 4 * mesh->count);
+    SCOPED size_t *start = NULL;
+    SCOPED entry *entries = NULL;
+    NEW(mesh->context, STAGE, mesh->neighbours, 4 * mesh->count);
+    NEW_ZERO(mesh->context, STAGE, start, mesh->vertex_count + 2);
+    NEW(mesh->context, STAGE, entries, 4 * mesh->count);
     file_faces(mesh, start, entries);
-    STARG_TRY(join_all(mesh, start, entries));
-done:
-    starg_release(mesh->context, start);
-    starg_release(mesh->context, entries);
-    return status;
+    return join_all(mesh, start, entries);
 }

@@ -2,15 +2,12 @@
 /* The tetrahedral mesh under construction by a reader, and the reader's numbers. */
 #include "tetra/io.h"
 
-#include "core/memory.h"
-
 static const char STAGE[] = STARG_MESH_FILE;
 
 starg_status tet_builder_reserve(tet_builder *builder, size_t vertices, size_t tetrahedra) {
-    starg_status status = STARG_OK;
     starg_context *context = builder->points.source->context;
     if (vertices > 0)
-        STARG_TRY(starg_builder_reserve(&builder->points, vertices, 0));
+        TRY(starg_builder_reserve(&builder->points, vertices, 0));
     if (tetrahedra > 0) {
         void *corners =
             starg_reallocate(context, builder->tetrahedra.data, builder->tetrahedra.count,
@@ -20,13 +17,11 @@ starg_status tet_builder_reserve(tet_builder *builder, size_t vertices, size_t t
         builder->tetrahedra.data = corners;
         builder->tetrahedra.capacity = 4 * tetrahedra;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status tet_builder_add(tet_builder *builder, const int64_t corners[4], int64_t region,
                              starg_place place) {
-    starg_status status = STARG_OK;
     const starg_source *source = builder->points.source;
     for (int k = 0; k < 4; k++) {
         if (corners[k] < 0 || corners[k] > (int64_t)STARG_MESH_LIMIT)
@@ -34,11 +29,10 @@ starg_status tet_builder_add(tet_builder *builder, const int64_t corners[4], int
                 source, place,
                 "tetrahedron %zu has the impossible vertex %lld (both counted from 0)",
                 tet_builder_count(builder), (long long)corners[k]);
-        STARG_PUSH(source->context, STAGE, &builder->tetrahedra, (uint32_t)corners[k]);
+        PUSH(source->context, STAGE, &builder->tetrahedra, (uint32_t)corners[k]);
     }
-    STARG_PUSH(source->context, STAGE, &builder->regions, (int32_t)(uint32_t)(uint64_t)region);
-done:
-    return status;
+    PUSH(source->context, STAGE, &builder->regions, (int32_t)(uint32_t)(uint64_t)region);
+    return STARG_OK;
 }
 
 starg_status tet_builder_refuse(tet_builder *builder, const char *what, starg_place place) {
@@ -84,90 +78,6 @@ starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out) {
 }
 
 void tet_builder_free(tet_builder *builder) {
-    starg_context *context = builder->points.source->context;
-    STARG_ARRAY_FREE(context, &builder->tetrahedra);
-    STARG_ARRAY_FREE(context, &builder->regions);
-    starg_release(context, builder->corners);
+    RELEASE(builder->tetrahedra.data, builder->regions.data, builder->corners);
     starg_builder_free(&builder->points);
-}
-
-/* ---- numbers ---- */
-
-starg_place tet_place(const tet_numbers *numbers) {
-    if (numbers->encoding == TET_TEXT)
-        return starg_at_line(numbers->scan.line);
-    return starg_at_byte((size_t)(numbers->scan.at - numbers->scan.source->bytes));
-}
-
-static size_t type_bytes(tet_type type) {
-    return type == TET_INT8 ? 1 : type == TET_INT32 || type == TET_FLOAT32 ? 4 : 8;
-}
-
-size_t tet_least_bytes(const tet_numbers *numbers, tet_type type) {
-    return numbers->encoding == TET_TEXT ? 2 : type_bytes(type);
-}
-
-/* The next bytes as a 64-bit number, zero extended. */
-static starg_status take_bits(tet_numbers *numbers, tet_type type, const char *what,
-                              uint64_t *bits) {
-    size_t size = type_bytes(type);
-    if ((size_t)(numbers->scan.end - numbers->scan.at) < size)
-        return starg_source_fail(numbers->scan.source, tet_place(numbers),
-                                 "the file ends where %s is expected; it seems to be truncated",
-                                 what);
-    *bits = 0;
-    for (size_t i = 0; i < size; i++) {
-        size_t from = numbers->encoding == TET_LITTLE ? size - 1 - i : i;
-        *bits = *bits << 8 | (unsigned char)numbers->scan.at[from];
-    }
-    numbers->scan.at += size;
-    return STARG_OK;
-}
-
-static double decode_real(uint64_t bits, tet_type type) {
-    double wide;
-    float narrow;
-    uint32_t half = (uint32_t)bits;
-    if (type == TET_FLOAT64) {
-        memcpy(&wide, &bits, sizeof wide);
-        return wide;
-    }
-    memcpy(&narrow, &half, sizeof narrow);
-    return (double)narrow;
-}
-
-starg_status tet_real(tet_numbers *numbers, tet_type type, const char *what, double *value) {
-    uint64_t bits = 0;
-    if (numbers->encoding == TET_TEXT)
-        return starg_scan_real(&numbers->scan, what, value);
-    starg_status status = take_bits(numbers, type, what, &bits);
-    if (status == STARG_OK)
-        *value = decode_real(bits, type);
-    return status;
-}
-
-starg_status tet_integer(tet_numbers *numbers, tet_type type, const char *what, int64_t *value) {
-    uint64_t bits = 0;
-    if (numbers->encoding == TET_TEXT)
-        return starg_scan_integer(&numbers->scan, what, value);
-    starg_status status = take_bits(numbers, type, what, &bits);
-    if (status != STARG_OK)
-        return status;
-    if (type == TET_INT8)
-        *value = (int64_t)(bits ^ 0x80) - 0x80;
-    else
-        *value = type == TET_INT32 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
-    return STARG_OK;
-}
-
-starg_status tet_check_count(const tet_numbers *numbers, int64_t count, size_t bytes,
-                             const char *what) {
-    /* the last number of a text needs no blank after it */
-    size_t left = (size_t)(numbers->scan.end - numbers->scan.at) + 1;
-    if (count >= 0 && (uint64_t)count <= left / bytes)
-        return STARG_OK;
-    return starg_source_fail(numbers->scan.source, tet_place(numbers),
-                             "the file declares %lld %s, too many for the %zu bytes that follow; "
-                             "the count is wrong or the file is truncated",
-                             (long long)count, what, left - 1);
 }

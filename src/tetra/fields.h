@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rows of the tetrahedra options, shared with the table of decompositions. */
-#ifndef STARG_TETRA_FIELDS_H
-#define STARG_TETRA_FIELDS_H
+#pragma once
 
 #include "core/fields.h"
-#include "starguard/tetra.h"
 #include "tetra/tetmesh.h"
 
 #define TETRA_PAPER_DENSITY 17.5 /* tetrahedra per surface vertex [YL11] */
@@ -18,6 +16,7 @@ enum { TETRA_MACHINE_FIELDS = 2 };
 #define TETRA_FIELDS(T, PREFIX)                                                                    \
     {.key = "generator",                                                                           \
      .option = "generator",                                                                        \
+     .group = "search",                                                                            \
      .kind = STARG_FIELD_CHOICE,                                                                   \
      FIELD_MEMBER(T, PREFIX generator),                                                            \
      .words = tetra_generator_words,                                                               \
@@ -41,5 +40,3 @@ enum { TETRA_MACHINE_FIELDS = 2 };
         FIELD_MEMBER(T, PREFIX tetgen_limit), .high = 1e100, .standard = 30, .value = "S",         \
         .help = "Limit of tetgen in seconds of processor time."                                    \
     }
-
-#endif

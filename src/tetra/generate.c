@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "mesh/mesh.h"
-
 static const char STAGE[] = TETRA_STAGE;
 
 static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, relative to the mean volume */
@@ -55,20 +53,18 @@ static starg_status by_tetgen(starg_context *context, const starg_solid *solid,
 static starg_status by_stuffing(starg_context *context, const tetra_shape *shape,
                                 const starg_tetra_options *o, starg_tetra_report *report,
                                 starg_tetmesh **out) {
-    starg_status status = STARG_OK;
     double count = wanted(shape->mesh, o);
     if (count == 0)
         count = TETRA_PAPER_DENSITY * (double)shape->mesh->vertex_count;
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
     report->spacing = cbrt(LATTICE_DENSITY * fabs(shape->volume) / count);
-    STARG_TRY(tetra_by_stuffing(context, shape, &report->spacing, out));
+    TRY(tetra_by_stuffing(context, shape, &report->spacing, out));
     report->step = report->spacing / STEPS_PER_CUBE;
-    STARG_TRY(tetra_measure(context, shape, *out, report->step, &report->to_surface,
-                            &report->from_surface));
+    TRY(tetra_measure(context, shape, *out, report->step, &report->to_surface,
+                      &report->from_surface));
     report->distance = report->to_surface + report->step;
     report->distance_back = report->from_surface + report->step;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Inputs that crash the program. What it changes silently (coincident vertices) is found by
@@ -173,7 +169,7 @@ done:
         starg_tetmesh_free(*out);
         *out = NULL;
     }
-    winding_free(context, &field);
+    winding_free(&field);
     bvh_free(tree);
     starg_progress_end(context);
     return status;

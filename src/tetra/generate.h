@@ -1,31 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Generators of tetrahedra. */
-#ifndef STARG_TETRA_GENERATE_H
-#define STARG_TETRA_GENERATE_H
+#pragma once
 
-#include "core/context.h"
-#include "core/memory.h"
-#include "geometry/bvh.h"
-#include "mesh/mesh.h"
+#include "core/process.h"
 #include "mesh/solid.h"
 #include "tetra/tetmesh.h"
-
-/* Runs another program, and makes private folders for its files. */
-
-/* Runs a program: `arguments` ends with NULL, the first is the program (looked up in the search
- * path unless it contains a slash). It gets no input, its output is discarded, and it leaves no
- * core file. It is stopped after `seconds` of processor time (rounded up to whole ones), and killed
- * with its children at the context's time limit or on cancellation. Errors: SOLVER (not found,
- * killed by a signal, status other than 0, too slow; the message says which), CANCELLED. */
-starg_status starg_process_run(starg_context *context, const char *stage,
-                               const char *const *arguments, double seconds);
-
-/* Makes a folder accessible to the user only, below TMPDIR or /tmp; *path is a block of the
- * context. Errors: WRITE, MEMORY. */
-starg_status starg_scratch_create(starg_context *context, const char *stage, char **path);
-
-/* Removes the folder and its files, and frees the path; NULL is allowed. */
-void starg_scratch_remove(starg_context *context, char *path);
 
 /* The generators behind starg_tetmesh_from_solid. */
 
@@ -135,5 +114,3 @@ void lattice_position(const lattice *l, const lattice_point *p, double out[3]);
 
 /* The cut on the edge between two neighbours, live or dead; NULL if there never was one. */
 lattice_cut *lattice_cut_between(const lattice *l, const lattice_point *p, const lattice_point *q);
-
-#endif

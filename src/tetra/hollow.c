@@ -14,9 +14,7 @@
 #include "tetra/generate.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 
@@ -77,13 +75,12 @@ static void load_triple(const starg_mesh *mesh, size_t face, place_triple *out) 
 }
 
 starg_status tetra_is_hollow(starg_context *context, const starg_mesh *mesh, bool *hollow) {
-    starg_status status = STARG_OK;
-    place_triple *triples = NULL;
+    SCOPED place_triple *triples = NULL;
     size_t count = mesh->face_count;
     *hollow = is_flat(mesh);
     if (*hollow)
         return STARG_OK;
-    STARG_NEW(context, TETRA_STAGE, triples, count);
+    NEW(context, TETRA_STAGE, triples, count);
     for (size_t f = 0; f < count; f++)
         load_triple(mesh, f, &triples[f]);
     qsort(triples, count, sizeof *triples, compare_triples);
@@ -94,7 +91,5 @@ starg_status tetra_is_hollow(starg_context *context, const starg_mesh *mesh, boo
             sum += triples[next].sign;
         *hollow = sum == 0;
     }
-done:
-    starg_release(context, triples);
-    return status;
+    return STARG_OK;
 }

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Shared by the readers of tetrahedral meshes: the builder, and numbers in text or binary data. */
-#ifndef STARG_TETRA_IO_H
-#define STARG_TETRA_IO_H
+#pragma once
 
-#include "mesh/formats/scan.h"
+#include "mesh/formats/numbers.h"
 #include "tetra/tetmesh.h"
 
 /* A tetrahedral mesh under construction. Zero-initialize all but points.source. */
@@ -37,33 +36,12 @@ starg_status tet_builder_check(const tet_builder *builder);
 starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out);
 void tet_builder_free(tet_builder *builder);
 
-/* ---- numbers in text or binary data ---- */
-
-typedef enum tet_encoding { TET_TEXT, TET_LITTLE, TET_BIG } tet_encoding;
-typedef enum tet_type { TET_INT32, TET_INT64, TET_FLOAT32, TET_FLOAT64, TET_INT8 } tet_type;
-
-typedef struct tet_numbers {
-    starg_scan scan; /* binary data uses only its `at`, text lines in between all of it */
-    tet_encoding encoding;
-} tet_numbers;
-
-starg_place tet_place(const tet_numbers *numbers);
-
-/* The next number, of this type in binary data. `what` as in scan.h. Errors: FORMAT. */
-starg_status tet_real(tet_numbers *numbers, tet_type type, const char *what, double *value);
-starg_status tet_integer(tet_numbers *numbers, tet_type type, const char *what, int64_t *value);
-
-/* Smallest size of a number: in text one digit and a blank. */
-size_t tet_least_bytes(const tet_numbers *numbers, tet_type type);
-
-/* Fails unless 0 <= count and `count` items of `bytes` each fit into the rest of the file. */
-starg_status tet_check_count(const tet_numbers *numbers, int64_t count, size_t bytes,
-                             const char *what);
-
 /* ---- formats ---- */
 
 bool tet_medit_matches(const starg_source *source);
 bool tet_vtk_matches(const starg_source *source);
+/* A surface, which mesh/formats/read_vtk.c reads. */
+bool tet_vtk_is_surface(const starg_source *source);
 bool tet_gmsh_matches(const starg_source *source);
 starg_status tet_medit_read(tet_builder *builder);
 starg_status tet_vtk_read(tet_builder *builder);
@@ -71,5 +49,3 @@ starg_status tet_gmsh_read(tet_builder *builder);
 
 /* TetGen's two files: the builder's source is the .node file. */
 starg_status tet_tetgen_read(tet_builder *builder, const starg_source *elements);
-
-#endif

@@ -15,13 +15,11 @@
  * rest. */
 #include "tetra/generate.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "core/parallel.h"
 #include "geometry/intersect.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
 
 static const char STAGE[] = TETRA_STAGE;
 
@@ -95,21 +93,19 @@ typedef struct column {
 } column;
 
 static starg_status make_column(starg_context *context, void *shared, void **scratch) {
-    starg_status status = STARG_OK;
     const lattice *l = shared;
     column *c = NULL;
-    STARG_NEW_ZERO(context, STAGE, c, 1);
+    NEW_ZERO(context, STAGE, c, 1);
     c->context = context;
     c->tree = l->shape->tree;
     *scratch = c;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void free_column(starg_context *context, void *scratch) {
+    (void)context;
     column *c = scratch;
-    STARG_ARRAY_FREE(context, &c->triangles);
-    starg_release(context, c);
+    RELEASE(c->triangles.data, c);
 }
 
 /* Runs on any thread, so it records no error detail. */
@@ -185,7 +181,6 @@ static starg_status classify_column(starg_context *context, void *shared, void *
 }
 
 static starg_status find_insides(lattice *l) {
-    starg_status status = STARG_OK;
     size_t columns = (size_t)(l->cubes[0] + 1) * (size_t)(l->cubes[1] + 1) +
                      (size_t)l->cubes[0] * (size_t)l->cubes[1];
     starg_parallel_loop loop = {.stage = STAGE,
@@ -194,13 +189,12 @@ static starg_status find_insides(lattice *l) {
                                 .item = classify_column,
                                 .make_scratch = make_column,
                                 .free_scratch = free_column};
-    STARG_TRY(starg_parallel_for(l->context, &loop));
+    TRY(starg_parallel_for(l->context, &loop));
     for (size_t i = 0; i < l->points; i++) {
         l->side[i] = l->winding[i] > 0 ? LATTICE_INSIDE : LATTICE_OUTSIDE;
         l->inside += l->winding[i] > 0;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status lattice_create(starg_context *context, const tetra_shape *shape, double spacing,
@@ -230,10 +224,7 @@ done:
 }
 
 void lattice_free(lattice *l) {
-    starg_release(l->context, l->winding);
-    starg_release(l->context, l->side);
-    starg_release(l->context, l->node);
-    STARG_ARRAY_FREE(l->context, &l->nodes);
+    RELEASE(l->winding, l->side, l->node, l->nodes.data);
     *l = (lattice){.context = l->context};
 }
 
@@ -318,29 +309,26 @@ static double find_cut(const lattice *l, size_t inside, const lattice_point *p,
 
 /* The node of a point, created on first use. */
 static starg_status add_node(lattice *l, const lattice_point *p, size_t number, uint32_t *out) {
-    starg_status status = STARG_OK;
     if (l->node[number] == UINT32_MAX) {
         lattice_node fresh = {.point = *p};
         lattice_position(l, p, fresh.position);
         for (int i = 0; i < LATTICE_OWNED; i++)
             fresh.cuts[i].vertex = UINT32_MAX;
         l->node[number] = (uint32_t)l->nodes.count;
-        STARG_PUSH(l->context, STAGE, &l->nodes, fresh);
+        PUSH(l->context, STAGE, &l->nodes, fresh);
     }
     *out = l->node[number];
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status cut_edge(lattice *l, const lattice_point *p, size_t number, int step) {
-    starg_status status = STARG_OK;
     lattice_point q = point_step(p, step);
     size_t other = lattice_number(l, &q);
     uint32_t owner, end;
     if (other == SIZE_MAX || l->side[other] == l->side[number])
         return STARG_OK;
-    STARG_TRY(add_node(l, p, number, &owner));
-    STARG_TRY(add_node(l, &q, other, &end));
+    TRY(add_node(l, p, number, &owner));
+    TRY(add_node(l, &q, other, &end));
     bool inside = l->side[number] == LATTICE_INSIDE;
     double t = inside ? find_cut(l, number, p, &q) : 1 - find_cut(l, other, &q, p);
     const double *a = l->nodes.data[owner].position, *b = l->nodes.data[end].position;
@@ -348,30 +336,24 @@ static starg_status cut_edge(lattice *l, const lattice_point *p, size_t number, 
     cut->alive = true;
     for (int k = 0; k < 3; k++)
         cut->position[k] = a[k] + t * (b[k] - a[k]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status cut_column(lattice *l, size_t item) {
-    starg_status status = STARG_OK;
     lattice_point p;
     size_t count = column_start(l, item, &p), number = lattice_number(l, &p);
     for (size_t i = 0; i < count; i++, p.x[2] += 2)
         for (int step = 0; step < LATTICE_OWNED; step++)
-            STARG_TRY(cut_edge(l, &p, number + i, step));
-    STARG_TRY(starg_check_cancel(l->context, STAGE));
-done:
-    return status;
+            TRY(cut_edge(l, &p, number + i, step));
+    return starg_check_cancel(l->context, STAGE);
 }
 
 starg_status lattice_cut_edges(lattice *l) {
-    starg_status status = STARG_OK;
     size_t columns = (size_t)(l->cubes[0] + 1) * (size_t)(l->cubes[1] + 1) +
                      (size_t)l->cubes[0] * (size_t)l->cubes[1];
     for (size_t item = 0; item < columns; item++)
-        STARG_TRY(cut_column(l, item));
-done:
-    return status;
+        TRY(cut_column(l, item));
+    return STARG_OK;
 }
 
 /* ---- warp ---- */

@@ -7,13 +7,9 @@
  * Invariant: skipped parts do not exceed the result, so it does not depend on the order of the
  * threads. Cost: look-ups of O(log n), in the number of parts of about the size of the largest
  * distance, at most area / step^2. */
-#include <math.h>
-#include <stdatomic.h>
 
 #include "core/parallel.h"
-#include "geometry/bvh.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
 #include "tetra/generate.h"
 
 static const char STAGE[] = TETRA_STAGE;
@@ -79,16 +75,10 @@ starg_status tetra_measure_one_way(starg_context *context, const starg_mesh *fro
 starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
                            const starg_tetmesh *mesh, double step, double *to_surface,
                            double *from_surface) {
-    starg_status status = STARG_OK;
-    starg_mesh *boundary = NULL;
-    bvh *tree = NULL;
-    STARG_TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
-    STARG_TRY(
-        bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
-    STARG_TRY(tetra_measure_one_way(context, boundary, shape->tree, step, to_surface));
-    STARG_TRY(tetra_measure_one_way(context, shape->mesh, tree, step, from_surface));
-done:
-    bvh_free(tree);
-    starg_mesh_free(boundary);
-    return status;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *boundary = NULL;
+    SCOPED_BY(bvh_drop) bvh *tree = NULL;
+    TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
+    TRY(bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
+    TRY(tetra_measure_one_way(context, boundary, shape->tree, step, to_surface));
+    return tetra_measure_one_way(context, shape->mesh, tree, step, from_surface);
 }

@@ -11,7 +11,6 @@
  *
  * Stages: the boundary; pairs of its faces that cross; parts; a point in each. All exact. Cost:
  * O(n) for n tetrahedra, and O(m log m) for m boundary faces with few contacts. */
-#include "core/memory.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "mesh/topology.h"
@@ -34,12 +33,11 @@ typedef struct checker {
 } checker;
 
 static starg_status collect_boundary(checker *c) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = c->mesh;
     for (size_t f = 0; f < 4 * mesh->count; f++)
         c->face_count += mesh->neighbours[f] == STARG_TETMESH_NONE;
-    STARG_NEW(mesh->context, STAGE, c->faces, 3 * c->face_count);
-    STARG_NEW(mesh->context, STAGE, c->owner, c->face_count);
+    NEW(mesh->context, STAGE, c->faces, 3 * c->face_count);
+    NEW(mesh->context, STAGE, c->owner, c->face_count);
     size_t count = 0;
     for (size_t f = 0; f < 4 * mesh->count; f++) {
         if (mesh->neighbours[f] != STARG_TETMESH_NONE)
@@ -49,9 +47,7 @@ static starg_status collect_boundary(checker *c) {
                 mesh->tetrahedra[(f & ~(size_t)3) + (size_t)TETMESH_FACE[f & 3][k]];
         c->owner[count++] = (uint32_t)(f / 4);
     }
-    STARG_TRY(bvh_create(mesh->context, mesh->vertices, c->faces, c->face_count, &c->tree));
-done:
-    return status;
+    return bvh_create(mesh->context, mesh->vertices, c->faces, c->face_count, &c->tree);
 }
 
 /* ---- faces that cross ---- */
@@ -119,12 +115,11 @@ static starg_status fail_winding(const checker *c, size_t t, int winding) {
 
 /* Tests the first tetrahedron of each part that has an inner point. */
 static starg_status check_parts(checker *c) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = c->mesh;
-    uint32_t *part = NULL;
-    bool *done_part = NULL;
-    STARG_NEW(mesh->context, STAGE, part, mesh->count);
-    STARG_NEW_ZERO(mesh->context, STAGE, done_part, mesh->count);
+    SCOPED uint32_t *part = NULL;
+    SCOPED bool *done_part = NULL;
+    NEW(mesh->context, STAGE, part, mesh->count);
+    NEW_ZERO(mesh->context, STAGE, done_part, mesh->count);
     join_parts(mesh, part);
     for (size_t t = 0; t < mesh->count; t++) {
         double p[3];
@@ -134,16 +129,11 @@ static starg_status check_parts(checker *c) {
             continue;
         done_part[own] = true;
         int winding = bvh_winding(c->tree, p, &on_surface);
-        if (winding != 1 && !on_surface) {
-            status = fail_winding(c, t, winding);
-            goto done;
-        }
-        STARG_TRY(starg_check_cancel(mesh->context, STAGE));
+        if (winding != 1 && !on_surface)
+            return fail_winding(c, t, winding);
+        TRY(starg_check_cancel(mesh->context, STAGE));
     }
-done:
-    starg_release(mesh->context, part);
-    starg_release(mesh->context, done_part);
-    return status;
+    return STARG_OK;
 }
 
 starg_status tetmesh_check_overlap(const starg_tetmesh *mesh) {
@@ -154,7 +144,6 @@ starg_status tetmesh_check_overlap(const starg_tetmesh *mesh) {
     STARG_TRY(check_parts(&c));
 done:
     bvh_free(c.tree);
-    starg_release(mesh->context, c.faces);
-    starg_release(mesh->context, c.owner);
+    RELEASE(c.faces, c.owner);
     return status;
 }

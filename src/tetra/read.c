@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reads a tetrahedral mesh of any format, recognized by content; TetGen's pair of files by name. */
-#include "core/file.h"
-#include "core/memory.h"
 #include "tetra/io.h"
 
 static const struct format {
@@ -26,7 +24,7 @@ static bool is_tetgen(const char *name) {
 
 bool starg_tetmesh_recognized(const void *bytes, size_t size, const char *name) {
     const starg_source source = {NULL, name, bytes, size};
-    return is_tetgen(name) || detect(&source) != NULL;
+    return is_tetgen(name) || (detect(&source) != NULL && !tet_vtk_is_surface(&source));
 }
 
 /* Runs a reader on sources with shortened names. */
@@ -72,13 +70,11 @@ starg_status starg_tetmesh_read_memory(starg_context *context, const void *bytes
 /* The name with another extension, in a block of the context. */
 static starg_status with_extension(starg_context *context, const char *path, const char *extension,
                                    char **out) {
-    starg_status status = STARG_OK;
     size_t stem = (size_t)(strrchr(path, '.') - path), tail = strlen(extension);
-    STARG_NEW(context, STARG_MESH_FILE, *out, stem + tail + 1);
+    NEW(context, STARG_MESH_FILE, *out, stem + tail + 1);
     memcpy(*out, path, stem);
     memcpy(*out + stem, extension, tail + 1);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_pair(starg_context *context, const char *path, starg_tetmesh **out) {
@@ -96,23 +92,18 @@ static starg_status read_pair(starg_context *context, const char *path, starg_te
     STARG_TRY(read_source(&points, &elements, out));
 done:
     for (int i = 0; i < 2; i++) {
-        starg_release(context, names[i]);
-        starg_release(context, bytes[i]);
+        RELEASE(names[i], bytes[i]);
     }
     return status;
 }
 
 starg_status starg_tetmesh_read(starg_context *context, const char *path, starg_tetmesh **out) {
-    starg_status status = STARG_OK;
-    char *bytes = NULL;
+    SCOPED char *bytes = NULL;
     size_t size = 0;
     *out = NULL;
     if (is_tetgen(path))
         return read_pair(context, path, out);
-    STARG_TRY(starg_file_read(context, STARG_MESH_FILE, path, &bytes, &size));
+    TRY(starg_file_read(context, STARG_MESH_FILE, path, &bytes, &size));
     const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
-    STARG_TRY(starg_tetmesh_read_memory(context, bytes, size, name, out));
-done:
-    starg_release(context, bytes);
-    return status;
+    return starg_tetmesh_read_memory(context, bytes, size, name, out);
 }

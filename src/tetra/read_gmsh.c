@@ -6,7 +6,6 @@
  * line. Version 4: entity blocks in both, tags as size_t. */
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "tetra/io.h"
 
 static const char STAGE[] = STARG_MESH_FILE;
@@ -18,9 +17,9 @@ typedef struct node {
 
 typedef struct gmsh_reader {
     tet_builder *builder;
-    tet_numbers numbers;
+    number_scan numbers;
     bool version4;
-    tet_type size_type; /* of counts and tags in binary data of version 4 */
+    number_type size_type; /* of counts and tags in binary data of version 4 */
     STARG_ARRAY(node) nodes;
 } gmsh_reader;
 
@@ -42,8 +41,8 @@ static starg_status tick(gmsh_reader *gmsh) {
                               (size_t)(gmsh->numbers.scan.at - source_of(gmsh)->bytes));
 }
 
-static starg_status integer(gmsh_reader *gmsh, tet_type type, const char *what, int64_t *value) {
-    return tet_integer(&gmsh->numbers, type, what, value);
+static starg_status integer(gmsh_reader *gmsh, number_type type, const char *what, int64_t *value) {
+    return numbers_integer(&gmsh->numbers, type, what, value);
 }
 
 /* Counts and tags that are size_t in version 4. */
@@ -52,7 +51,7 @@ static starg_status size(gmsh_reader *gmsh, const char *what, int64_t *value) {
 }
 
 static void begin_data(gmsh_reader *gmsh) {
-    if (gmsh->numbers.encoding != TET_TEXT)
+    if (gmsh->numbers.encoding != NUMBERS_TEXT)
         starg_scan_next_line(&gmsh->numbers.scan);
 }
 
@@ -60,13 +59,12 @@ static void begin_data(gmsh_reader *gmsh) {
 
 /* Version, 0 or 1 for binary, size of a size_t; binary: a one that reveals the byte order. */
 static starg_status read_format(gmsh_reader *gmsh) {
-    starg_status status = STARG_OK;
     starg_scan *scan = &gmsh->numbers.scan;
     double version;
     int64_t binary, bytes, one;
-    STARG_TRY(starg_scan_real(scan, "the version", &version));
-    STARG_TRY(starg_scan_integer(scan, "the file type", &binary));
-    STARG_TRY(starg_scan_integer(scan, "the data size", &bytes));
+    TRY(starg_scan_real(scan, "the version", &version));
+    TRY(starg_scan_integer(scan, "the file type", &binary));
+    TRY(starg_scan_integer(scan, "the data size", &bytes));
     gmsh->version4 = version >= 4.1 && version < 5;
     if (!gmsh->version4 && !(version >= 2 && version < 3))
         return starg_source_fail(
@@ -76,67 +74,59 @@ static starg_status read_format(gmsh_reader *gmsh) {
         return starg_source_fail(source_of(gmsh), starg_at_line(scan->line),
                                  "file type %lld with numbers of %lld bytes is not read",
                                  (long long)binary, (long long)bytes);
-    gmsh->size_type = bytes == 8 ? TET_INT64 : TET_INT32;
+    gmsh->size_type = bytes == 8 ? NUMBER_INT64 : NUMBER_INT32;
     if (binary == 0)
         return STARG_OK;
-    gmsh->numbers.encoding = TET_LITTLE;
+    gmsh->numbers.encoding = NUMBERS_LITTLE;
     begin_data(gmsh);
-    STARG_TRY(integer(gmsh, TET_INT32, "the number one", &one));
+    TRY(integer(gmsh, NUMBER_INT32, "the number one", &one));
     if (one != 1)
-        gmsh->numbers.encoding = TET_BIG;
-done:
-    return status;
+        gmsh->numbers.encoding = NUMBERS_BIG;
+    return STARG_OK;
 }
 
 static starg_status add_node(gmsh_reader *gmsh, int64_t tag, const double point[3]) {
-    starg_status status = STARG_OK;
     node n = {tag, gmsh->nodes.count};
-    STARG_PUSH(source_of(gmsh)->context, STAGE, &gmsh->nodes, n);
-    STARG_TRY(starg_builder_vertex(&gmsh->builder->points, point, tet_place(&gmsh->numbers)));
-    STARG_TRY(tick(gmsh));
-done:
-    return status;
+    PUSH(source_of(gmsh)->context, STAGE, &gmsh->nodes, n);
+    TRY(starg_builder_vertex(&gmsh->builder->points, point, numbers_place(&gmsh->numbers)));
+    return tick(gmsh);
 }
 
 static starg_status read_point(gmsh_reader *gmsh, double point[3]) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
-        STARG_TRY(tet_real(&gmsh->numbers, TET_FLOAT64, "a coordinate of a node", &point[k]));
-done:
-    return status;
+        TRY(numbers_real(&gmsh->numbers, NUMBER_FLOAT64, "a coordinate of a node", &point[k]));
+    return STARG_OK;
 }
 
 static starg_status read_nodes2(gmsh_reader *gmsh) {
-    starg_status status = STARG_OK;
     int64_t count, tag;
     double point[3];
-    STARG_TRY(starg_scan_integer(&gmsh->numbers.scan, "the number of nodes", &count));
+    TRY(starg_scan_integer(&gmsh->numbers.scan, "the number of nodes", &count));
     begin_data(gmsh);
-    size_t bytes = tet_least_bytes(&gmsh->numbers, TET_INT32) +
-                   3 * tet_least_bytes(&gmsh->numbers, TET_FLOAT64);
-    STARG_TRY(tet_check_count(&gmsh->numbers, count, bytes, "nodes"));
+    size_t bytes = numbers_least_bytes(&gmsh->numbers, NUMBER_INT32) +
+                   3 * numbers_least_bytes(&gmsh->numbers, NUMBER_FLOAT64);
+    TRY(numbers_check_count(&gmsh->numbers, count, bytes, "nodes"));
     for (int64_t i = 0; i < count; i++) {
-        STARG_TRY(integer(gmsh, TET_INT32, "the tag of a node", &tag));
-        STARG_TRY(read_point(gmsh, point));
-        STARG_TRY(add_node(gmsh, tag, point));
+        TRY(integer(gmsh, NUMBER_INT32, "the tag of a node", &tag));
+        TRY(read_point(gmsh, point));
+        TRY(add_node(gmsh, tag, point));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Nodes of one entity: all tags, then all positions (with parameters if present). */
 static starg_status read_node_block(gmsh_reader *gmsh) {
     starg_status status = STARG_OK;
     int64_t dimension, entity, parametric, count, *tags = NULL;
-    STARG_TRY(integer(gmsh, TET_INT32, "a dimension", &dimension));
-    STARG_TRY(integer(gmsh, TET_INT32, "the tag of an entity", &entity));
-    STARG_TRY(integer(gmsh, TET_INT32, "0 or 1", &parametric));
+    STARG_TRY(integer(gmsh, NUMBER_INT32, "a dimension", &dimension));
+    STARG_TRY(integer(gmsh, NUMBER_INT32, "the tag of an entity", &entity));
+    STARG_TRY(integer(gmsh, NUMBER_INT32, "0 or 1", &parametric));
     STARG_TRY(size(gmsh, "the number of nodes in a block", &count));
-    size_t bytes = tet_least_bytes(&gmsh->numbers, gmsh->size_type) +
-                   3 * tet_least_bytes(&gmsh->numbers, TET_FLOAT64);
-    STARG_TRY(tet_check_count(&gmsh->numbers, count, bytes, "nodes"));
+    size_t bytes = numbers_least_bytes(&gmsh->numbers, gmsh->size_type) +
+                   3 * numbers_least_bytes(&gmsh->numbers, NUMBER_FLOAT64);
+    STARG_TRY(numbers_check_count(&gmsh->numbers, count, bytes, "nodes"));
     if (dimension < 0 || dimension > 3)
-        return starg_source_fail(source_of(gmsh), tet_place(&gmsh->numbers),
+        return starg_source_fail(source_of(gmsh), numbers_place(&gmsh->numbers),
                                  "an entity has the dimension %lld", (long long)dimension);
     STARG_NEW(source_of(gmsh)->context, STAGE, tags, (size_t)count);
     for (int64_t i = 0; i < count; i++)
@@ -145,7 +135,8 @@ static starg_status read_node_block(gmsh_reader *gmsh) {
         double point[3], ignored;
         STARG_TRY(read_point(gmsh, point));
         for (int64_t k = 0; parametric != 0 && k < dimension; k++)
-            STARG_TRY(tet_real(&gmsh->numbers, TET_FLOAT64, "a parameter of a node", &ignored));
+            STARG_TRY(
+                numbers_real(&gmsh->numbers, NUMBER_FLOAT64, "a parameter of a node", &ignored));
         STARG_TRY(add_node(gmsh, tags[i], point));
     }
 done:
@@ -155,18 +146,16 @@ done:
 
 /* Header of version 4 sections: blocks, items, least and greatest tag. */
 static starg_status read_blocks(gmsh_reader *gmsh, starg_status (*read)(gmsh_reader *)) {
-    starg_status status = STARG_OK;
     int64_t header[4];
     begin_data(gmsh);
     for (int i = 0; i < 4; i++)
-        STARG_TRY(size(gmsh, "a count", &header[i]));
-    STARG_TRY(tet_check_count(&gmsh->numbers, header[0], 8, "blocks"));
-    STARG_TRY(tet_check_count(&gmsh->numbers, header[1], tet_least_bytes(&gmsh->numbers, TET_INT32),
-                              "items"));
+        TRY(size(gmsh, "a count", &header[i]));
+    TRY(numbers_check_count(&gmsh->numbers, header[0], 8, "blocks"));
+    TRY(numbers_check_count(&gmsh->numbers, header[1],
+                            numbers_least_bytes(&gmsh->numbers, NUMBER_INT32), "items"));
     for (int64_t i = 0; i < header[0]; i++)
-        STARG_TRY(read(gmsh));
-done:
-    return status;
+        TRY(read(gmsh));
+    return STARG_OK;
 }
 
 /* ---- elements ---- */
@@ -193,7 +182,7 @@ static starg_status check_type(gmsh_reader *gmsh, int64_t type) {
     if (type == TETRAHEDRON || is_flat(type))
         return STARG_OK;
     snprintf(what, sizeof what, "an element of type %lld", (long long)type);
-    return tet_builder_refuse(gmsh->builder, what, tet_place(&gmsh->numbers));
+    return tet_builder_refuse(gmsh->builder, what, numbers_place(&gmsh->numbers));
 }
 
 static int compare_nodes(const void *left, const void *right) {
@@ -209,89 +198,80 @@ static starg_status find_node(gmsh_reader *gmsh, int64_t tag, int64_t *index) {
     else if (gmsh->nodes.count > 0)
         found = bsearch(&key, gmsh->nodes.data, gmsh->nodes.count, sizeof key, compare_nodes);
     if (found == NULL)
-        return starg_source_fail(source_of(gmsh), tet_place(&gmsh->numbers),
+        return starg_source_fail(source_of(gmsh), numbers_place(&gmsh->numbers),
                                  "an element refers to the missing node %lld", (long long)tag);
     *index = (int64_t)found->index;
     return STARG_OK;
 }
 
 /* Reads the nodes of an element, after its tag and other tags. */
-static starg_status read_corners(gmsh_reader *gmsh, tet_type number, int64_t type, int64_t region) {
-    starg_status status = STARG_OK;
+static starg_status read_corners(gmsh_reader *gmsh, number_type number, int64_t type,
+                                 int64_t region) {
     int64_t corner[4] = {0}, tag;
-    starg_place place = tet_place(&gmsh->numbers);
+    starg_place place = numbers_place(&gmsh->numbers);
     for (int64_t k = 0; k < type_nodes(type); k++) {
-        STARG_TRY(integer(gmsh, number, "the tag of a node", &tag));
+        TRY(integer(gmsh, number, "the tag of a node", &tag));
         if (type == TETRAHEDRON)
-            STARG_TRY(find_node(gmsh, tag, &corner[k]));
+            TRY(find_node(gmsh, tag, &corner[k]));
     }
     if (type == TETRAHEDRON)
-        STARG_TRY(tet_builder_add(gmsh->builder, corner, region, place));
-    STARG_TRY(tick(gmsh));
-done:
-    return status;
+        TRY(tet_builder_add(gmsh->builder, corner, region, place));
+    return tick(gmsh);
 }
 
 /* Version 2: an element's tag, its other tags (the first is the physical group), its nodes. */
 static starg_status read_element2(gmsh_reader *gmsh, int64_t type, int64_t tags) {
-    starg_status status = STARG_OK;
     int64_t region = 0, tag;
     for (int64_t k = 0; k < tags; k++) {
-        STARG_TRY(integer(gmsh, TET_INT32, "a tag of an element", &tag));
+        TRY(integer(gmsh, NUMBER_INT32, "a tag of an element", &tag));
         if (k == 0)
             region = tag;
     }
-    STARG_TRY(read_corners(gmsh, TET_INT32, type, region));
-done:
-    return status;
+    return read_corners(gmsh, NUMBER_INT32, type, region);
 }
 
 static starg_status read_elements2(gmsh_reader *gmsh) {
-    starg_status status = STARG_OK;
-    bool text = gmsh->numbers.encoding == TET_TEXT;
+    bool text = gmsh->numbers.encoding == NUMBERS_TEXT;
     int64_t count, number, type, tags, block = 1;
-    STARG_TRY(starg_scan_integer(&gmsh->numbers.scan, "the number of elements", &count));
+    TRY(starg_scan_integer(&gmsh->numbers.scan, "the number of elements", &count));
     begin_data(gmsh);
-    STARG_TRY(tet_check_count(&gmsh->numbers, count, 2 * tet_least_bytes(&gmsh->numbers, TET_INT32),
-                              "elements"));
+    TRY(numbers_check_count(&gmsh->numbers, count,
+                            2 * numbers_least_bytes(&gmsh->numbers, NUMBER_INT32), "elements"));
     for (int64_t i = 0; i < count; i += block) {
         if (text)
-            STARG_TRY(integer(gmsh, TET_INT32, "the tag of an element", &number));
-        STARG_TRY(integer(gmsh, TET_INT32, "the type of an element", &type));
-        STARG_TRY(check_type(gmsh, type));
+            TRY(integer(gmsh, NUMBER_INT32, "the tag of an element", &number));
+        TRY(integer(gmsh, NUMBER_INT32, "the type of an element", &type));
+        TRY(check_type(gmsh, type));
         if (!text)
-            STARG_TRY(integer(gmsh, TET_INT32, "the number of elements in a block", &block));
-        STARG_TRY(integer(gmsh, TET_INT32, "the number of tags", &tags));
+            TRY(integer(gmsh, NUMBER_INT32, "the number of elements in a block", &block));
+        TRY(integer(gmsh, NUMBER_INT32, "the number of tags", &tags));
         if (block < 1 || block > count - i || tags < 0)
-            return starg_source_fail(source_of(gmsh), tet_place(&gmsh->numbers),
+            return starg_source_fail(source_of(gmsh), numbers_place(&gmsh->numbers),
                                      "a block announces %lld elements with %lld tags",
                                      (long long)block, (long long)tags);
         for (int64_t k = 0; k < block; k++) {
             if (!text)
-                STARG_TRY(integer(gmsh, TET_INT32, "the tag of an element", &number));
-            STARG_TRY(read_element2(gmsh, type, tags));
+                TRY(integer(gmsh, NUMBER_INT32, "the tag of an element", &number));
+            TRY(read_element2(gmsh, type, tags));
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_element_block(gmsh_reader *gmsh) {
-    starg_status status = STARG_OK;
     int64_t dimension, entity, type, count, tag;
-    STARG_TRY(integer(gmsh, TET_INT32, "a dimension", &dimension));
-    STARG_TRY(integer(gmsh, TET_INT32, "the tag of an entity", &entity));
-    STARG_TRY(integer(gmsh, TET_INT32, "the type of the elements", &type));
-    STARG_TRY(check_type(gmsh, type));
-    STARG_TRY(size(gmsh, "the number of elements in a block", &count));
-    STARG_TRY(tet_check_count(&gmsh->numbers, count,
-                              2 * tet_least_bytes(&gmsh->numbers, gmsh->size_type), "elements"));
+    TRY(integer(gmsh, NUMBER_INT32, "a dimension", &dimension));
+    TRY(integer(gmsh, NUMBER_INT32, "the tag of an entity", &entity));
+    TRY(integer(gmsh, NUMBER_INT32, "the type of the elements", &type));
+    TRY(check_type(gmsh, type));
+    TRY(size(gmsh, "the number of elements in a block", &count));
+    TRY(numbers_check_count(&gmsh->numbers, count,
+                            2 * numbers_least_bytes(&gmsh->numbers, gmsh->size_type), "elements"));
     for (int64_t i = 0; i < count; i++) {
-        STARG_TRY(size(gmsh, "the tag of an element", &tag));
-        STARG_TRY(read_corners(gmsh, gmsh->size_type, type, entity));
+        TRY(size(gmsh, "the tag of an element", &tag));
+        TRY(read_corners(gmsh, gmsh->size_type, type, entity));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the file ---- */
@@ -312,22 +292,20 @@ static starg_status skip_section(gmsh_reader *gmsh, starg_word name) {
 }
 
 static starg_status read_section(gmsh_reader *gmsh, starg_word name) {
-    starg_status status = STARG_OK;
     if (starg_word_is(name, "$Nodes")) {
-        STARG_TRY(gmsh->version4 ? read_blocks(gmsh, read_node_block) : read_nodes2(gmsh));
+        TRY(gmsh->version4 ? read_blocks(gmsh, read_node_block) : read_nodes2(gmsh));
     } else if (starg_word_is(name, "$Elements")) {
         if (gmsh->nodes.count > 0)
             qsort(gmsh->nodes.data, gmsh->nodes.count, sizeof *gmsh->nodes.data, compare_nodes);
-        STARG_TRY(gmsh->version4 ? read_blocks(gmsh, read_element_block) : read_elements2(gmsh));
+        TRY(gmsh->version4 ? read_blocks(gmsh, read_element_block) : read_elements2(gmsh));
     } else if (name.text[0] == '$') {
         return skip_section(gmsh, name);
     } else {
-        return starg_source_fail(source_of(gmsh), tet_place(&gmsh->numbers),
+        return starg_source_fail(source_of(gmsh), numbers_place(&gmsh->numbers),
                                  "found '%s' where a section should begin",
                                  starg_word_excerpt(name).text);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status tet_gmsh_read(tet_builder *builder) {

@@ -11,73 +11,64 @@ bool tet_medit_matches(const starg_source *source) {
                                              starg_word_is(word, "MeshVersionUnformatted"));
 }
 
-static starg_status read_header(tet_numbers *numbers) {
-    starg_status status = STARG_OK;
+static starg_status read_header(number_scan *numbers) {
     starg_word word;
     int64_t version;
-    STARG_TRY(starg_scan_expect(&numbers->scan, "MeshVersionFormatted", &word));
+    TRY(starg_scan_expect(&numbers->scan, "MeshVersionFormatted", &word));
     if (!starg_word_is(word, "MeshVersionFormatted"))
         return starg_source_fail(
             numbers->scan.source, starg_at_line(word.line),
             "found '%s' instead of MeshVersionFormatted; only MEDIT's text format is supported",
             starg_word_excerpt(word).text);
-    STARG_TRY(starg_scan_integer(&numbers->scan, "the version", &version));
-done:
-    return status;
+    return starg_scan_integer(&numbers->scan, "the version", &version);
 }
 
-static starg_status read_dimension(tet_numbers *numbers) {
-    starg_status status = STARG_OK;
+static starg_status read_dimension(number_scan *numbers) {
     int64_t dimension;
-    STARG_TRY(starg_scan_integer(&numbers->scan, "the dimension", &dimension));
+    TRY(starg_scan_integer(&numbers->scan, "the dimension", &dimension));
     if (dimension != 3)
-        return starg_source_fail(numbers->scan.source, tet_place(numbers),
+        return starg_source_fail(numbers->scan.source, numbers_place(numbers),
                                  "the dimension is %lld; it must be 3", (long long)dimension);
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status read_vertices(tet_builder *builder, tet_numbers *numbers) {
+static starg_status read_vertices(tet_builder *builder, number_scan *numbers) {
     enum { LEAST_BYTES = 8 }; /* "0 0 0 0\n" */
-    starg_status status = STARG_OK;
     starg_scan *scan = &numbers->scan;
     int64_t count;
-    STARG_TRY(starg_scan_integer(scan, "the vertex count", &count));
-    STARG_TRY(tet_check_count(numbers, count, LEAST_BYTES, "vertices"));
-    STARG_TRY(tet_builder_reserve(builder,
-                                  starg_builder_vertex_count(&builder->points) + (size_t)count, 0));
+    TRY(starg_scan_integer(scan, "the vertex count", &count));
+    TRY(numbers_check_count(numbers, count, LEAST_BYTES, "vertices"));
+    TRY(tet_builder_reserve(builder, starg_builder_vertex_count(&builder->points) + (size_t)count,
+                            0));
     for (int64_t i = 0; i < count; i++) {
         double point[3], reference;
         for (int k = 0; k < 3; k++)
-            STARG_TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
-        STARG_TRY(starg_builder_vertex(&builder->points, point, tet_place(numbers)));
-        STARG_TRY(starg_scan_real(scan, "the reference of a vertex", &reference));
-        STARG_TRY(starg_builder_tick(&builder->points, (size_t)(scan->at - scan->source->bytes)));
+            TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
+        TRY(starg_builder_vertex(&builder->points, point, numbers_place(numbers)));
+        TRY(starg_scan_real(scan, "the reference of a vertex", &reference));
+        TRY(starg_builder_tick(&builder->points, (size_t)(scan->at - scan->source->bytes)));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status read_tetrahedra(tet_builder *builder, tet_numbers *numbers) {
+static starg_status read_tetrahedra(tet_builder *builder, number_scan *numbers) {
     enum { LEAST_BYTES = 10 }; /* "1 2 3 4 0\n" */
-    starg_status status = STARG_OK;
     starg_scan *scan = &numbers->scan;
     int64_t count;
-    STARG_TRY(starg_scan_integer(scan, "the number of tetrahedra", &count));
-    STARG_TRY(tet_check_count(numbers, count, LEAST_BYTES, "tetrahedra"));
-    STARG_TRY(tet_builder_reserve(builder, 0, tet_builder_count(builder) + (size_t)count));
+    TRY(starg_scan_integer(scan, "the number of tetrahedra", &count));
+    TRY(numbers_check_count(numbers, count, LEAST_BYTES, "tetrahedra"));
+    TRY(tet_builder_reserve(builder, 0, tet_builder_count(builder) + (size_t)count));
     for (int64_t i = 0; i < count; i++) {
         int64_t corner[4], reference;
         for (int k = 0; k < 4; k++) {
-            STARG_TRY(starg_scan_integer(scan, "a vertex index", &corner[k]));
+            TRY(starg_scan_integer(scan, "a vertex index", &corner[k]));
             corner[k]--;
         }
-        STARG_TRY(starg_scan_integer(scan, "the reference of a tetrahedron", &reference));
-        STARG_TRY(tet_builder_add(builder, corner, reference, tet_place(numbers)));
-        STARG_TRY(starg_builder_tick(&builder->points, (size_t)(scan->at - scan->source->bytes)));
+        TRY(starg_scan_integer(scan, "the reference of a tetrahedron", &reference));
+        TRY(tet_builder_add(builder, corner, reference, numbers_place(numbers)));
+        TRY(starg_builder_tick(&builder->points, (size_t)(scan->at - scan->source->bytes)));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_keyword(starg_word word) {
@@ -86,7 +77,7 @@ static bool is_keyword(starg_word word) {
 }
 
 /* Sections of other solid cells are accepted only if empty. */
-static starg_status check_cells(tet_builder *builder, tet_numbers *numbers, starg_word keyword) {
+static starg_status check_cells(tet_builder *builder, number_scan *numbers, starg_word keyword) {
     static const char *const cells[][2] = {{"Hexahedra", "a hexahedron"},
                                            {"Prisms", "a prism"},
                                            {"Pyramids", "a pyramid"},
@@ -95,20 +86,18 @@ static starg_status check_cells(tet_builder *builder, tet_numbers *numbers, star
                                            {"Hexaedra", "a hexahedron"},
                                            {"TetrahedraP3", "a curved tetrahedron"},
                                            {"HexahedraQ2", "a curved hexahedron"}};
-    starg_status status = STARG_OK;
     int64_t count;
     for (size_t i = 0; i < sizeof cells / sizeof *cells; i++) {
         if (!starg_word_is(keyword, cells[i][0]))
             continue;
-        STARG_TRY(starg_scan_integer(&numbers->scan, "a count", &count));
+        TRY(starg_scan_integer(&numbers->scan, "a count", &count));
         if (count != 0)
             return tet_builder_refuse(builder, cells[i][1], starg_at_line(keyword.line));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status read_section(tet_builder *builder, tet_numbers *numbers, starg_word keyword) {
+static starg_status read_section(tet_builder *builder, number_scan *numbers, starg_word keyword) {
     if (starg_word_is(keyword, "Dimension"))
         return read_dimension(numbers);
     if (starg_word_is(keyword, "Vertices"))
@@ -119,16 +108,14 @@ static starg_status read_section(tet_builder *builder, tet_numbers *numbers, sta
 }
 
 starg_status tet_medit_read(tet_builder *builder) {
-    starg_status status = STARG_OK;
-    tet_numbers numbers = {.scan = starg_scan_make(builder->points.source)};
+    number_scan numbers = {.scan = starg_scan_make(builder->points.source)};
     starg_word word;
-    STARG_TRY(read_header(&numbers));
+    TRY(read_header(&numbers));
     while (starg_scan_word(&numbers.scan, &word) && !starg_word_is(word, "End")) {
         if (is_keyword(word))
-            STARG_TRY(read_section(builder, &numbers, word));
-        STARG_TRY(starg_builder_tick(&builder->points,
-                                     (size_t)(numbers.scan.at - numbers.scan.source->bytes)));
+            TRY(read_section(builder, &numbers, word));
+        TRY(starg_builder_tick(&builder->points,
+                               (size_t)(numbers.scan.at - numbers.scan.source->bytes)));
     }
-done:
-    return status;
+    return STARG_OK;
 }

@@ -22,9 +22,7 @@
  * edge of the square between them (the other long edge). Cost: linear in the lattice. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "geometry/predicates.h"
-#include "mesh/mesh.h"
 #include "tetra/generate.h"
 
 static const char STAGE[] = TETRA_STAGE;
@@ -51,14 +49,12 @@ typedef struct stuffer {
 /* ---- vertices ---- */
 
 static starg_status add_vertex(stuffer *s, const double p[3], uint32_t *vertex) {
-    starg_status status = STARG_OK;
     if (*vertex != UINT32_MAX)
         return STARG_OK;
     *vertex = (uint32_t)(s->vertices.count / 3);
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(s->context, STAGE, &s->vertices, p[k]);
-done:
-    return status;
+        PUSH(s->context, STAGE, &s->vertices, p[k]);
+    return STARG_OK;
 }
 
 static starg_status corner_vertex(stuffer *s, const corner *c, uint32_t *vertex) {
@@ -83,15 +79,13 @@ static starg_status cut_vertex(stuffer *s, const corner *a, const corner *b, uin
 /* ---- tetrahedra ---- */
 
 static starg_status emit(stuffer *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-    starg_status status = STARG_OK;
     const double *p = s->vertices.data;
     bool wrong =
         orient3d(p + 3 * (size_t)a, p + 3 * (size_t)b, p + 3 * (size_t)c, p + 3 * (size_t)d) > 0;
     const uint32_t v[4] = {a, b, wrong ? d : c, wrong ? c : d};
     for (int k = 0; k < 4; k++)
-        STARG_PUSH(s->context, STAGE, &s->tetrahedra, v[k]);
-done:
-    return status;
+        PUSH(s->context, STAGE, &s->tetrahedra, v[k]);
+    return STARG_OK;
 }
 
 static bool is_long(const corner *a, const corner *b) {
@@ -114,7 +108,6 @@ static bool diagonal_from(const corner *a, const corner *b, const corner *o) {
 static starg_status emit_prism(stuffer *s, const uint32_t low[3], const uint32_t high[3],
                                bool first_before_second, bool second_before_third,
                                bool first_before_third) {
-    starg_status status = STARG_OK;
     int rank[3] = {0, 0, 0}, at[3] = {0, 0, 0};
     rank[first_before_second ? 1 : 0]++;
     rank[second_before_third ? 2 : 1]++;
@@ -122,24 +115,19 @@ static starg_status emit_prism(stuffer *s, const uint32_t low[3], const uint32_t
     for (int i = 0; i < 3; i++)
         at[rank[i]] = i;
     int i = at[0], j = at[1], k = at[2];
-    STARG_TRY(emit(s, low[i], low[j], low[k], high[k]));
-    STARG_TRY(emit(s, low[i], low[j], high[j], high[k]));
-    STARG_TRY(emit(s, low[i], high[i], high[j], high[k]));
-done:
-    return status;
+    TRY(emit(s, low[i], low[j], low[k], high[k]));
+    TRY(emit(s, low[i], low[j], high[j], high[k]));
+    return emit(s, low[i], high[i], high[j], high[k]);
 }
 
 static starg_status stuff_three(stuffer *s, const corner *const in[3], const corner *out) {
-    starg_status status = STARG_OK;
     uint32_t low[3], high[3];
     for (int i = 0; i < 3; i++) {
-        STARG_TRY(corner_vertex(s, in[i], &low[i]));
-        STARG_TRY(cut_vertex(s, in[i], out, &high[i]));
+        TRY(corner_vertex(s, in[i], &low[i]));
+        TRY(cut_vertex(s, in[i], out, &high[i]));
     }
-    STARG_TRY(emit_prism(s, low, high, diagonal_from(in[0], in[1], out),
-                         diagonal_from(in[1], in[2], out), diagonal_from(in[0], in[2], out)));
-done:
-    return status;
+    return emit_prism(s, low, high, diagonal_from(in[0], in[1], out),
+                      diagonal_from(in[1], in[2], out), diagonal_from(in[0], in[2], out));
 }
 
 /* The rails are the edge a b and, for each outside corner, its cuts to a and to b. The third
@@ -147,51 +135,43 @@ done:
  * rail is before one and after the other; otherwise either will do. */
 static starg_status stuff_two(stuffer *s, const corner *a, const corner *b,
                               const corner *const out[2]) {
-    starg_status status = STARG_OK;
     uint32_t low[3], high[3];
-    STARG_TRY(corner_vertex(s, a, &low[0]));
-    STARG_TRY(corner_vertex(s, b, &high[0]));
+    TRY(corner_vertex(s, a, &low[0]));
+    TRY(corner_vertex(s, b, &high[0]));
     for (int i = 0; i < 2; i++) {
-        STARG_TRY(cut_vertex(s, a, out[i], &low[1 + i]));
-        STARG_TRY(cut_vertex(s, b, out[i], &high[1 + i]));
+        TRY(cut_vertex(s, a, out[i], &low[1 + i]));
+        TRY(cut_vertex(s, b, out[i], &high[1 + i]));
     }
     bool before_one = diagonal_from(a, b, out[0]), before_two = diagonal_from(a, b, out[1]);
     bool one_before_two = before_one == before_two ? out[0]->number < out[1]->number : before_two;
-    STARG_TRY(emit_prism(s, low, high, before_one, one_before_two, before_two));
-done:
-    return status;
+    return emit_prism(s, low, high, before_one, one_before_two, before_two);
 }
 
 static starg_status stuff_pyramid(stuffer *s, const corner *a, const corner *b, const corner *on,
                                   const corner *out) {
-    starg_status status = STARG_OK;
     uint32_t va, vb, apex, ca, cb;
-    STARG_TRY(corner_vertex(s, a, &va));
-    STARG_TRY(corner_vertex(s, b, &vb));
-    STARG_TRY(corner_vertex(s, on, &apex));
-    STARG_TRY(cut_vertex(s, a, out, &ca));
-    STARG_TRY(cut_vertex(s, b, out, &cb));
+    TRY(corner_vertex(s, a, &va));
+    TRY(corner_vertex(s, b, &vb));
+    TRY(corner_vertex(s, on, &apex));
+    TRY(cut_vertex(s, a, out, &ca));
+    TRY(cut_vertex(s, b, out, &cb));
     if (diagonal_from(a, b, out)) {
-        STARG_TRY(emit(s, va, vb, cb, apex));
-        STARG_TRY(emit(s, va, cb, ca, apex));
+        TRY(emit(s, va, vb, cb, apex));
+        TRY(emit(s, va, cb, ca, apex));
     } else {
-        STARG_TRY(emit(s, va, vb, ca, apex));
-        STARG_TRY(emit(s, vb, cb, ca, apex));
+        TRY(emit(s, va, vb, ca, apex));
+        TRY(emit(s, vb, cb, ca, apex));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* One inside corner, or none outside: the inside part is a tetrahedron. */
 static starg_status stuff_tetrahedron(stuffer *s, const corner c[4], const corner *inside) {
-    starg_status status = STARG_OK;
     uint32_t v[4];
     for (int k = 0; k < 4; k++)
-        STARG_TRY(c[k].side == LATTICE_OUTSIDE ? cut_vertex(s, inside, &c[k], &v[k])
-                                               : corner_vertex(s, &c[k], &v[k]));
-    STARG_TRY(emit(s, v[0], v[1], v[2], v[3]));
-done:
-    return status;
+        TRY(c[k].side == LATTICE_OUTSIDE ? cut_vertex(s, inside, &c[k], &v[k])
+                                         : corner_vertex(s, &c[k], &v[k]));
+    return emit(s, v[0], v[1], v[2], v[3]);
 }
 
 static starg_status stuff(stuffer *s, const corner c[4]) {
@@ -225,7 +205,6 @@ static corner load_corner(const lattice *l, const lattice_point *p) {
 /* The four tetrahedra between a centre and the next one along an axis. */
 static starg_status stuff_pair(stuffer *s, const lattice_point *center, int axis) {
     static const int turn[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    starg_status status = STARG_OK;
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     lattice_point next = *center;
     corner square[4];
@@ -240,27 +219,24 @@ static starg_status stuff_pair(stuffer *s, const lattice_point *center, int axis
     for (int i = 0; i < 4; i++) {
         const corner c[4] = {load_corner(&s->lattice, center), load_corner(&s->lattice, &next),
                              square[i], square[(i + 1) % 4]};
-        STARG_TRY(stuff(s, c));
+        TRY(stuff(s, c));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Pairs of centres; those at the lattice border contain nothing inside. */
 static starg_status stuff_all(stuffer *s) {
-    starg_status status = STARG_OK;
     const int64_t *cubes = s->lattice.cubes;
     lattice_point c;
     for (c.x[0] = 1; c.x[0] < 2 * cubes[0] - 1; c.x[0] += 2) {
         for (c.x[1] = 1; c.x[1] < 2 * cubes[1] - 1; c.x[1] += 2)
             for (c.x[2] = 1; c.x[2] < 2 * cubes[2] - 1; c.x[2] += 2)
                 for (int axis = 0; axis < 3; axis++)
-                    STARG_TRY(stuff_pair(s, &c, axis));
+                    TRY(stuff_pair(s, &c, axis));
         starg_progress_step(s->context, (size_t)c.x[0], (size_t)(2 * cubes[0]));
-        STARG_TRY(starg_check_cancel(s->context, STAGE));
+        TRY(starg_check_cancel(s->context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status fail_thin(stuffer *s) {
@@ -280,14 +256,13 @@ static bool is_below_lattice(const tetra_shape *shape, double spacing) {
 
 /* Halves the spacing until a point remains inside after the warp. */
 static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *spacing) {
-    starg_status status = STARG_OK;
     if (is_below_lattice(shape, *spacing))
         return fail_thin(s);
     for (int attempt = 0; attempt < FINEST; attempt++) {
         double taken = lattice_spacing(shape, *spacing);
-        STARG_TRY(lattice_create(s->context, shape, taken, &s->lattice));
+        TRY(lattice_create(s->context, shape, taken, &s->lattice));
         if (s->lattice.inside > 0) {
-            STARG_TRY(lattice_cut_edges(&s->lattice));
+            TRY(lattice_cut_edges(&s->lattice));
             lattice_warp(&s->lattice);
             for (size_t i = 0; i < s->lattice.points; i++)
                 if (s->lattice.side[i] == LATTICE_INSIDE) {
@@ -300,9 +275,7 @@ static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *s
             break;
         *spacing *= 0.5;
     }
-    status = fail_thin(s);
-done:
-    return status;
+    return fail_thin(s);
 }
 
 starg_status tetra_by_stuffing(starg_context *context, const tetra_shape *shape, double *spacing,
@@ -320,8 +293,6 @@ starg_status tetra_by_stuffing(starg_context *context, const tetra_shape *shape,
     s.tetrahedra.data = NULL;
 done:
     lattice_free(&s.lattice);
-    starg_release(context, s.vertex);
-    STARG_ARRAY_FREE(context, &s.vertices);
-    STARG_ARRAY_FREE(context, &s.tetrahedra);
+    RELEASE(s.vertex, s.vertices.data, s.tetrahedra.data);
     return status;
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The boundary of a tetrahedral mesh: the faces of a single tetrahedron. */
-#include "core/memory.h"
 #include "mesh/mesh.h"
 #include "tetra/tetmesh.h"
 
@@ -42,36 +41,30 @@ static size_t number_vertices(const starg_tetmesh *mesh, uint32_t *numbers, uint
 
 starg_status starg_tetmesh_surface(starg_context *context, const starg_tetmesh *mesh,
                                    starg_mesh **out, uint32_t **vertex_map) {
-    starg_status status = STARG_OK;
-    uint32_t *faces = NULL, *numbers = NULL, *map = NULL;
-    double *vertices = NULL;
+    SCOPED uint32_t *faces = NULL, *numbers = NULL, *map = NULL;
+    SCOPED double *vertices = NULL;
     *out = NULL;
     if (vertex_map != NULL)
         *vertex_map = NULL;
-    STARG_NEW(context, STAGE, faces, 3 * count_faces(mesh));
-    STARG_NEW(context, STAGE, numbers, mesh->vertex_count);
-    STARG_NEW(context, STAGE, map, mesh->vertex_count);
+    NEW(context, STAGE, faces, 3 * count_faces(mesh));
+    NEW(context, STAGE, numbers, mesh->vertex_count);
+    NEW(context, STAGE, map, mesh->vertex_count);
     memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
     size_t face_count = collect_faces(mesh, faces, numbers);
     size_t vertex_count = number_vertices(mesh, numbers, map);
-    STARG_NEW(context, STAGE, vertices, 3 * vertex_count);
+    NEW(context, STAGE, vertices, 3 * vertex_count);
     for (size_t v = 0; v < vertex_count; v++)
         memcpy(vertices + 3 * v, mesh->vertices + 3 * (size_t)map[v], 3 * sizeof *vertices);
     for (size_t i = 0; i < 3 * face_count; i++)
         faces[i] = numbers[faces[i]];
-    STARG_TRY(starg_mesh_adopt(context, vertices, vertex_count, faces, face_count, out));
+    TRY(starg_mesh_adopt(context, vertices, vertex_count, faces, face_count, out));
     faces = NULL;
     vertices = NULL;
     if (vertex_map != NULL) {
         *vertex_map = map;
         map = NULL;
     }
-done:
-    starg_release(context, faces);
-    starg_release(context, vertices);
-    starg_release(context, numbers);
-    starg_release(context, map);
-    return status;
+    return STARG_OK;
 }
 
 void starg_tetmesh_map_free(starg_context *context, uint32_t *vertex_map) {

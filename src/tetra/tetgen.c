@@ -9,14 +9,10 @@
  * TetGen prints 16 digits, one too few: input vertices keep their own coordinates. Nothing in its
  * output is trusted: orientation, neighbours and the boundary are checked exactly, and any
  * deviation is an error. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/mesh.h"
 #include "tetra/generate.h"
 #include "tetra/io.h"
 
@@ -37,37 +33,30 @@ typedef struct run {
 /* ---- input ---- */
 
 static starg_status number_vertices(run *r) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = r->solid->mesh;
-    STARG_NEW(r->context, STAGE, r->numbers, mesh->vertex_count);
+    NEW(r->context, STAGE, r->numbers, mesh->vertex_count);
     memset(r->numbers, 0xff, mesh->vertex_count * sizeof *r->numbers);
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         r->numbers[mesh->faces[i]] = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)
         if (r->numbers[v] == 0)
             r->numbers[v] = (uint32_t)r->used++;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status join_path(run *r, const char *name, char **out) {
-    starg_status status = STARG_OK;
     size_t folder = strlen(r->folder), tail = strlen(name);
-    STARG_NEW(r->context, STAGE, *out, folder + tail + 1);
+    NEW(r->context, STAGE, *out, folder + tail + 1);
     memcpy(*out, r->folder, folder);
     memcpy(*out + folder, name, tail + 1);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status make_paths(run *r) {
-    starg_status status = STARG_OK;
-    STARG_TRY(starg_scratch_create(r->context, STAGE, &r->folder));
-    STARG_TRY(join_path(r, "/solid.smesh", &r->surface));
-    STARG_TRY(join_path(r, "/solid.1.node", &r->points));
-    STARG_TRY(join_path(r, "/solid.1.ele", &r->elements));
-done:
-    return status;
+    TRY(starg_scratch_create(r->context, STAGE, &r->folder));
+    TRY(join_path(r, "/solid.smesh", &r->surface));
+    TRY(join_path(r, "/solid.1.node", &r->points));
+    return join_path(r, "/solid.1.ele", &r->elements);
 }
 
 static void write_surface(const run *r, FILE *stream) {
@@ -89,14 +78,10 @@ static void write_surface(const run *r, FILE *stream) {
 }
 
 static starg_status write_input(run *r) {
-    starg_status status = STARG_OK;
-    starg_output output = {0};
-    STARG_TRY(starg_output_open(r->context, STAGE, r->surface, &output));
+    SCOPED_BY(starg_output_discard) starg_output output = {0};
+    TRY(starg_output_open(r->context, STAGE, r->surface, &output));
     write_surface(r, output.stream);
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_output_discard(&output);
-    return status;
+    return starg_output_commit(&output);
 }
 
 /* p: from a surface, Y: keep its faces, q: no needles, a: largest volume, A: label regions, F: no
@@ -120,18 +105,15 @@ static starg_status refuse(run *r, const char *what) {
 }
 
 static starg_status read_output(run *r, starg_source *points, starg_source *elements) {
-    starg_status status = STARG_OK;
     char *bytes = NULL;
     *points = (starg_source){.context = r->context, .name = "solid.1.node"};
     *elements = (starg_source){.context = r->context, .name = "solid.1.ele"};
-    STARG_TRY(starg_file_read(r->context, STAGE, r->points, &bytes, &points->size));
+    TRY(starg_file_read(r->context, STAGE, r->points, &bytes, &points->size));
     points->bytes = bytes;
-    STARG_TRY(starg_file_read(r->context, STAGE, r->elements, &bytes, &elements->size));
+    TRY(starg_file_read(r->context, STAGE, r->elements, &bytes, &elements->size));
     elements->bytes = bytes;
     r->builder.points.source = points;
-    STARG_TRY(tet_tetgen_read(&r->builder, elements));
-done:
-    return status;
+    return tet_tetgen_read(&r->builder, elements);
 }
 
 /* Undoes the scaling; input vertices get their own coordinates again. */
@@ -171,21 +153,18 @@ static double corner_volume(const tet_builder *b, size_t t, double center[3]) {
 /* The largest tetrahedron of each region decides whether the region is in the solid. Regions are
  * numbered from 1; drops tetrahedra outside. */
 static starg_status drop_cavities(run *r) {
-    starg_status status = STARG_OK;
     tet_builder *b = &r->builder;
     size_t count = tet_builder_count(b), kept = 0;
-    double *largest = NULL;
-    bool *inside = NULL;
-    STARG_NEW_ZERO(r->context, STAGE, largest, count + 1);
-    STARG_NEW_ZERO(r->context, STAGE, inside, count + 1);
+    SCOPED double *largest = NULL;
+    SCOPED bool *inside = NULL;
+    NEW_ZERO(r->context, STAGE, largest, count + 1);
+    NEW_ZERO(r->context, STAGE, inside, count + 1);
     for (size_t t = 0; t < count; t++) {
         double center[3];
         int32_t region = b->regions.data[t];
         double volume = corner_volume(b, t, center);
-        if (region < 0 || (size_t)region > count) {
-            status = refuse(r, "unexpected region numbers");
-            goto done;
-        }
+        if (region < 0 || (size_t)region > count)
+            return refuse(r, "unexpected region numbers");
         if (volume > largest[region]) {
             largest[region] = volume;
             inside[region] = starg_solid_contains(r->solid, center);
@@ -197,11 +176,8 @@ static starg_status drop_cavities(run *r) {
                     4 * sizeof *b->tetrahedra.data);
     b->tetrahedra.count = 4 * kept;
     if (kept == 0)
-        status = refuse(r, "no tetrahedra in the solid");
-done:
-    starg_release(r->context, largest);
-    starg_release(r->context, inside);
-    return status;
+        return refuse(r, "no tetrahedra in the solid");
+    return STARG_OK;
 }
 
 /* ---- comparison of the boundary with the surface ---- */
@@ -226,14 +202,13 @@ static int compare_faces(const void *left, const void *right) {
 }
 
 static starg_status compare_surfaces(run *r, const starg_mesh *boundary, const uint32_t *map) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = r->solid->mesh;
-    turned_face *ours = NULL, *theirs = NULL;
+    SCOPED turned_face *ours = NULL, *theirs = NULL;
     size_t count = mesh->face_count;
     if (boundary->face_count != count)
         return refuse(r, "its boundary and the surface differ in the number of faces");
-    STARG_NEW(r->context, STAGE, ours, count);
-    STARG_NEW(r->context, STAGE, theirs, count);
+    NEW(r->context, STAGE, ours, count);
+    NEW(r->context, STAGE, theirs, count);
     for (size_t f = 0; f < count; f++) {
         const uint32_t *a = mesh->faces + 3 * f, *b = boundary->faces + 3 * f;
         ours[f] = turn_face(r->numbers[a[0]], r->numbers[a[1]], r->numbers[a[2]]);
@@ -242,11 +217,8 @@ static starg_status compare_surfaces(run *r, const starg_mesh *boundary, const u
     qsort(ours, count, sizeof *ours, compare_faces);
     qsort(theirs, count, sizeof *theirs, compare_faces);
     if (memcmp(ours, theirs, count * sizeof *ours) != 0)
-        status = refuse(r, "its boundary differs from the surface");
-done:
-    starg_release(r->context, ours);
-    starg_release(r->context, theirs);
-    return status;
+        return refuse(r, "its boundary differs from the surface");
+    return STARG_OK;
 }
 
 static starg_status check_boundary(run *r, const starg_tetmesh *mesh) {
@@ -264,15 +236,12 @@ done:
 /* Positive tetrahedra with an embedded boundary cannot overlap, so the overlap check is skipped;
  * adjacency is checked. */
 static starg_status adopt(run *r, starg_tetmesh **out) {
-    starg_status status = STARG_OK;
     tet_builder *b = &r->builder;
-    STARG_TRY(tetmesh_adopt(r->context, b->points.vertices.data, b->points.vertices.count / 3,
-                            b->tetrahedra.data, b->tetrahedra.count / 4, NULL, true, out));
+    TRY(tetmesh_adopt(r->context, b->points.vertices.data, b->points.vertices.count / 3,
+                      b->tetrahedra.data, b->tetrahedra.count / 4, NULL, true, out));
     b->points.vertices.data = NULL;
     b->tetrahedra.data = NULL;
-    STARG_TRY(check_boundary(r, *out));
-done:
-    return status;
+    return check_boundary(r, *out);
 }
 
 /* Everything but memory, time and cancellation counts as a failure of the program. */
@@ -293,12 +262,7 @@ static void clean_up(run *r, const starg_source *points, const starg_source *ele
     if (r->builder.points.source != NULL)
         tet_builder_free(&r->builder);
     starg_scratch_remove(r->context, r->folder);
-    starg_release(r->context, blocks[0].owned);
-    starg_release(r->context, blocks[1].owned);
-    starg_release(r->context, r->surface);
-    starg_release(r->context, r->points);
-    starg_release(r->context, r->elements);
-    starg_release(r->context, r->numbers);
+    RELEASE(blocks[0].owned, blocks[1].owned, r->surface, r->points, r->elements, r->numbers);
 }
 
 starg_status tetra_by_tetgen(starg_context *context, const starg_solid *solid, double volume,

@@ -3,9 +3,6 @@
  * and overlap. Every check names the elements that fail it. */
 #include "tetra/tetmesh.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
@@ -123,8 +120,7 @@ starg_status tetmesh_adopt(starg_context *context, double *vertices, size_t vert
     *out = mesh;
 done:
     if (status != STARG_OK && mesh != NULL) {
-        starg_release(context, mesh->neighbours);
-        starg_release(context, mesh);
+        RELEASE(mesh->neighbours, mesh);
     }
     return status;
 }
@@ -151,9 +147,7 @@ starg_status starg_tetmesh_create(starg_context *context, const double *vertices
                             false, out));
 done:
     if (status != STARG_OK) {
-        starg_release(context, own_vertices);
-        starg_release(context, own_tetrahedra);
-        starg_release(context, own_regions);
+        RELEASE(own_vertices, own_tetrahedra, own_regions);
     }
     return status;
 }
@@ -183,12 +177,7 @@ done:
 void starg_tetmesh_free(starg_tetmesh *mesh) {
     if (mesh == NULL)
         return;
-    starg_release(mesh->context, mesh->vertices);
-    starg_release(mesh->context, mesh->tetrahedra);
-    starg_release(mesh->context, mesh->neighbours);
-    starg_release(mesh->context, mesh->regions);
-    starg_release(mesh->context, mesh->corners);
-    starg_release(mesh->context, mesh);
+    RELEASE(mesh->vertices, mesh->tetrahedra, mesh->neighbours, mesh->regions, mesh->corners, mesh);
 }
 
 size_t starg_tetmesh_vertex_count(const starg_tetmesh *mesh) {

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Internals of a tetrahedral mesh. */
-#ifndef STARG_TETRA_TETMESH_H
-#define STARG_TETRA_TETMESH_H
+#pragma once
 
-#include "core/context.h"
-#include "core/private.h"
+#include "core/memory.h"
 #include "starguard/tetra.h"
 
 struct starg_tetmesh {
@@ -55,4 +53,4 @@ double tetmesh_flattest(const starg_tetmesh *mesh);
 /* Errors: MESH (two tetrahedra overlap), MEMORY, CANCELLED. */
 starg_status tetmesh_check_overlap(const starg_tetmesh *mesh);
 
-#endif
+STARG_DROP(starg_tetmesh, starg_tetmesh)

@@ -3,8 +3,6 @@
  * and points for each. The file gets its name once it is complete. */
 #include <ctype.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "mesh/formats/io.h"
 #include "tetra/tetmesh.h"
 
@@ -96,27 +94,22 @@ static starg_status check_name(starg_context *context, const char *name) {
 
 starg_status starg_tetmesh_write(starg_context *context, const starg_tetmesh *mesh,
                                  const char *path, const starg_tetmesh_write_options *options) {
-    starg_status status = STARG_OK;
     starg_tetmesh_write_options defaults;
     starg_tetmesh_write_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
     const int32_t *labels = options->labels != NULL ? options->labels : mesh->regions;
-    starg_output output = {0};
-    starg_c_locale locale = {0};
-    STARG_TRY(check_name(context, options->name));
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(starg_output_open(context, STARG_MESH_FILE, path, &output));
+    SCOPED_BY(starg_output_discard) starg_output output = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
+    TRY(check_name(context, options->name));
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(starg_output_open(context, STARG_MESH_FILE, path, &output));
     const writer w = {output.stream, options->binary};
     write_geometry(&w, mesh);
     if (labels != NULL)
         write_labels(&w, mesh, labels, options->name);
     if (labels != NULL && options->corners != NULL)
         write_corners(&w, mesh, options->corners);
-    STARG_TRY(starg_check_cancel(context, STARG_MESH_FILE));
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_output_discard(&output);
-    starg_c_locale_leave(&locale);
-    return status;
+    TRY(starg_check_cancel(context, STARG_MESH_FILE));
+    return starg_output_commit(&output);
 }

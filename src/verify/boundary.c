@@ -14,9 +14,7 @@
  * Cost: O(n log n). Signs do not depend on tolerances here; only "on" does. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* relative to the diagonal, and of areas */
@@ -181,8 +179,7 @@ starg_status verify_match_surfaces(const verify_surface *outer, const verify_sur
     }
     compare_shells(&all, model, match);
 done:
-    starg_release(context, all.parent);
-    starg_release(context, all.of);
+    RELEASE(all.parent, all.of);
     verify_tree_free(tree);
     return status;
 }

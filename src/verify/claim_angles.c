@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
@@ -147,10 +146,9 @@ static sorted_face sort_corners(const double *t[3]) {
 
 /* By tetrahedron: the smallest angle of a whole face of the model that it has; infinite without. */
 static starg_status find_given(const verify_context *own, double *given) {
-    starg_status status = STARG_OK;
     const verify_surface *model = own->model, *outer = own->pieces->outer;
-    sorted_face *faces = NULL;
-    STARG_NEW(own->context, STAGE, faces, model->face_count);
+    SCOPED sorted_face *faces = NULL;
+    NEW(own->context, STAGE, faces, model->face_count);
     for (size_t f = 0; f < model->face_count; f++) {
         const double *t[3];
         verify_corners(model, f, t);
@@ -165,9 +163,7 @@ static starg_status find_given(const verify_context *own, double *given) {
         if (bsearch(&key, faces, model->face_count, sizeof key, compare) != NULL)
             given[tetrahedron] = fmin(given[tetrahedron], smallest_corner(t));
     }
-done:
-    starg_release(own->context, faces);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- claims ---- */
@@ -175,12 +171,11 @@ done:
 /* Where an angle is hardly smaller than that of the face, it may be counted either way. */
 static starg_status claim_made(const verify_context *own, const double *least, const double *most,
                                double *given) {
-    starg_status status = STARG_OK;
     double claimed = own->report->smallest_angle_made;
     span found = {PI_DEGREES, PI_DEGREES};
     for (size_t t = 0; t < own->mesh->count; t++)
         given[t] = INFINITY;
-    STARG_TRY(find_given(own, given));
+    TRY(find_given(own, given));
     for (size_t t = 0; t < own->mesh->count; t++) {
         if (most[t] < given[t] * (1 - DOUBT))
             found.most = fmin(found.most, most[t]);
@@ -191,8 +186,7 @@ static starg_status claim_made(const verify_context *own, const double *least, c
                  "the smallest dihedral angle that faces of the model do not force is %.9g degrees "
                  "(found: %.9g)",
                  claimed, found.most);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -201,24 +195,23 @@ static int ascending(const void *a, const void *b) {
 }
 
 starg_status verify_claim_angles(const verify_context *own) {
-    starg_status status = STARG_OK;
     const starg_pieces_report *report = own->report;
-    double *least = NULL, *most = NULL, *given = NULL;
+    SCOPED double *least = NULL, *most = NULL, *given = NULL;
     size_t count = own->mesh->count;
     if (!(report->smallest_angle > 0)) {
         verify_leave(own->verdict, "dihedral angles: the report does not tell them");
         return STARG_OK;
     }
-    STARG_NEW(own->context, STAGE, least, count);
-    STARG_NEW(own->context, STAGE, most, count);
-    STARG_NEW(own->context, STAGE, given, count);
+    NEW(own->context, STAGE, least, count);
+    NEW(own->context, STAGE, most, count);
+    NEW(own->context, STAGE, given, count);
     for (size_t t = 0; t < count; t++) {
         double angle = smallest_dihedral(own, t), room = room_of(own, t);
         least[t] = fmax(angle - room, 0);
         most[t] = angle + room;
     }
     if (report->smallest_angle_made > 0)
-        STARG_TRY(claim_made(own, least, most, given));
+        TRY(claim_made(own, least, most, given));
     qsort(least, count, sizeof *least, ascending);
     qsort(most, count, sizeof *most, ascending);
     verify_claim(own->verdict,
@@ -228,9 +221,5 @@ starg_status verify_claim_angles(const verify_context *own) {
                  "tetrahedron %.9g (found: %.9g, %.9g)",
                  report->smallest_angle, report->median_angle, least[0] / 2 + most[0] / 2,
                  least[count / 2] / 2 + most[count / 2] / 2);
-done:
-    starg_release(own->context, least);
-    starg_release(own->context, most);
-    starg_release(own->context, given);
-    return status;
+    return STARG_OK;
 }

@@ -8,9 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
-#include "verify/signs.h"
 
 static const char STAGE[] = "verify";
 static const double ROUNDING = 1e-12; /* of distances from the origin */
@@ -124,15 +122,14 @@ static void claim_distortion(const verify_context *own) {
 /* ---- all of it ---- */
 
 starg_status verify_claim_balls(const verify_context *own) {
-    starg_status status = STARG_OK;
-    image *images = NULL;
+    SCOPED image *images = NULL;
     size_t count = 4 * own->mesh->count;
     if (own->report->balls != (own->mesh->corners != NULL))
         verify_claim(own->verdict, false,
                      "the report and the tetrahedra agree on whether there are maps to balls");
     if (own->mesh->corners == NULL || !own->pieces->labels.good)
         return STARG_OK;
-    STARG_NEW(own->context, STAGE, images, count);
+    NEW(own->context, STAGE, images, count);
     for (size_t i = 0; i < count; i++)
         images[i] = (image){own->mesh->labels[i / 4], own->mesh->tetrahedra[i], (uint32_t)i};
     qsort(images, count, sizeof *images, compare_images);
@@ -140,7 +137,5 @@ starg_status verify_claim_balls(const verify_context *own) {
     claim_positive(own);
     if (own->report->balls)
         claim_distortion(own);
-done:
-    starg_release(own->context, images);
-    return status;
+    return STARG_OK;
 }

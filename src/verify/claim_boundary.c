@@ -130,9 +130,7 @@ static starg_status claim_enclosed(const verify_context *own, double near) {
         verify_leave(own->verdict, "the volume: the model is not closed");
         return STARG_OK;
     }
-    starg_status status = verify_compare_enclosed(own->pieces, own->solid, near + skin, &found);
-    if (status != STARG_OK)
-        return status;
+    TRY(verify_compare_enclosed(own->pieces, own->solid, near + skin, &found));
     size_t wrong = found.missing + found.excess, most = near > skin ? found.inside / 100 : 0;
     if (wrong <= most)
         verify_claim(own->verdict, true,
@@ -152,9 +150,7 @@ static starg_status claim_enclosed(const verify_context *own, double near) {
 
 static starg_status claim_nearness(const verify_context *own) {
     verify_nearness nearness;
-    starg_status status = verify_measure_boundary(own->pieces, own->model, &nearness);
-    if (status != STARG_OK)
-        return status;
+    TRY(verify_measure_boundary(own->pieces, own->model, &nearness));
     claim_near(own, &nearness);
     claim_simple(own, &nearness);
     return claim_enclosed(own, fmin(own->report->distance, MUCH * nearness.to.farthest));
@@ -162,9 +158,7 @@ static starg_status claim_nearness(const verify_context *own) {
 
 static starg_status claim_match(const verify_context *own) {
     verify_match match;
-    starg_status status = verify_match_surfaces(own->pieces->outer, own->model, &match);
-    if (status != STARG_OK)
-        return status;
+    TRY(verify_match_surfaces(own->pieces->outer, own->model, &match));
     claim_on_model(own, &match);
     claim_covered(own, &match);
     claim_volume(own);

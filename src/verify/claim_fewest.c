@@ -39,9 +39,8 @@ static bool has_corners(const starg_certificate *c, const verify_surface *surfac
 /* Is the certificate of the model, and of a question that pieces answer? */
 static starg_status claim_question(const verify_context *own, const verify_facts *known,
                                    bool *good) {
-    starg_status status = STARG_OK;
     const starg_certificate *c = own->certificate;
-    verify_scene scene = {0};
+    SCOPED_BY(verify_scene_free) verify_scene scene = {0};
     const char *difference = NULL;
     bool bounds = true;
     if (own->report->approximated)
@@ -53,38 +52,32 @@ static starg_status claim_question(const verify_context *own, const verify_facts
     else if (!has_corners(c, own->model))
         difference = ": some of its witnesses are no corners of the faces that they name";
     else {
-        STARG_TRY(verify_scene_create(own->model, known->tree, true, &scene));
+        TRY(verify_scene_create(own->model, known->tree, true, &scene));
         if (!scene.embedded)
-            STARG_TRY(verify_find_bounding(&scene, &bounds));
+            TRY(verify_find_bounding(&scene, &bounds));
         if (!bounds)
             difference = ": the surface touches or intersects itself";
     }
     *good = difference == NULL;
     verify_claim(own->verdict, *good, "the certificate is about pieces of this model%s",
                  *good ? "" : difference);
-done:
-    verify_scene_free(&scene);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status check_certificate(const verify_context *own) {
-    starg_status status = STARG_OK;
-    verify_tree *tree = NULL;
+    SCOPED_BY(verify_tree_drop) verify_tree *tree = NULL;
     char claim[96];
     bool good;
     size_t bound = own->report->lower_bound;
-    STARG_TRY(verify_tree_create(own->model, &tree));
+    TRY(verify_tree_create(own->model, &tree));
     const verify_facts known = {
         .surface = own->model, .tree = tree, .scale = verify_scale(own->model)};
-    STARG_TRY(claim_question(own, &known, &good));
+    TRY(claim_question(own, &known, &good));
     if (!good)
-        goto done;
+        return STARG_OK;
     snprintf(claim, sizeof claim, "no fewer than %zu star-shaped pieces make up the model", bound);
-    STARG_TRY(verify_claim_cells(own->verdict, &known, own->certificate));
-    STARG_TRY(verify_claim_follows(own->verdict, own->certificate, claim, bound));
-done:
-    verify_tree_free(tree);
-    return status;
+    TRY(verify_claim_cells(own->verdict, &known, own->certificate));
+    return verify_claim_follows(own->verdict, own->certificate, claim, bound);
 }
 
 starg_status verify_claim_fewest(const verify_context *own) {

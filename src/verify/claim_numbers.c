@@ -3,7 +3,6 @@
  * of tetrahedra. Cost: O(n). */
 #include <math.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
@@ -51,14 +50,13 @@ static void claim_counts(const verify_context *own) {
 }
 
 static starg_status claim_volumes(const verify_context *own) {
-    starg_status status = STARG_OK;
     const starg_pieces_report *report = own->report;
-    verify_volume *volumes = NULL;
+    SCOPED verify_volume *volumes = NULL;
     int scale = own->pieces->scale;
     double lost =
         ldexp(0x1p-1022, 3 * scale); /* largest volume that underflows in the model's unit */
     size_t bad = 0, first = 0;
-    STARG_NEW_ZERO(own->context, STAGE, volumes, report->piece_count);
+    NEW_ZERO(own->context, STAGE, volumes, report->piece_count);
     for (size_t t = 0; t < own->mesh->count; t++)
         verify_add_tetrahedron(&volumes[own->mesh->labels[t]], own->mesh, t, scale);
     for (size_t p = report->piece_count; p-- > 0;)
@@ -74,15 +72,12 @@ static starg_status claim_volumes(const verify_context *own) {
                      "claimed %.9g, found %.9g",
                      bad, first, report->pieces[first].volume,
                      ldexp(verify_volume_value(&volumes[first]), -3 * scale));
-done:
-    starg_release(own->context, volumes);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status claim_contacts(const verify_context *own) {
-    starg_status status = STARG_OK;
     verify_contacts contacts;
-    STARG_TRY(verify_compare_contacts(own->pieces, own->report, &contacts));
+    TRY(verify_compare_contacts(own->pieces, own->report, &contacts));
     if (contacts.wrong == 0)
         verify_claim(own->verdict, true, "the %zu contacts of pieces and their areas are right",
                      own->report->contact_count);
@@ -92,8 +87,7 @@ static starg_status claim_contacts(const verify_context *own) {
                      "or missing, first %u-%u, claimed %.9g, found %.9g",
                      own->report->contact_count, contacts.wrong, contacts.first, contacts.second,
                      contacts.listed, contacts.found);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- radius ---- */
@@ -241,17 +235,15 @@ static void claim_flattest(const verify_context *own) {
 }
 
 starg_status verify_claim_numbers(const verify_context *own) {
-    starg_status status = STARG_OK;
     claim_model(own);
     claim_size(own);
     claim_flattest(own);
     if (!own->pieces->labels.good)
-        goto done;
+        return STARG_OK;
     claim_counts(own);
-    STARG_TRY(claim_volumes(own));
-    STARG_TRY(claim_contacts(own));
+    TRY(claim_volumes(own));
+    TRY(claim_contacts(own));
     claim_radius(own);
     claim_margins(own);
-done:
-    return status;
+    return STARG_OK;
 }

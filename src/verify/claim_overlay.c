@@ -12,9 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "verify/map.h"
-#include "verify/signs.h"
 
 static const char STAGE[] = "verify";
 static const double ORIGIN[3], SUM_ERROR = 1e-12;
@@ -50,10 +48,9 @@ static uint64_t edge_of(const uint32_t *triangles, size_t e) {
 
 /* Does each directed edge stand once, and its opposite as well? */
 static starg_status find_closed(const verify_map *own, bool *closed) {
-    starg_status status = STARG_OK;
     size_t count = 3 * own->file->overlay_faces;
-    uint64_t *edges = NULL;
-    STARG_NEW(own->context, STAGE, edges, count);
+    SCOPED uint64_t *edges = NULL;
+    NEW(own->context, STAGE, edges, count);
     for (size_t e = 0; e < count; e++)
         edges[e] = edge_of(own->file->triangles, e);
     qsort(edges, count, sizeof *edges, compare_edges);
@@ -63,9 +60,7 @@ static starg_status find_closed(const verify_map *own, bool *closed) {
         *closed = (e == 0 || edges[e] != edges[e - 1]) &&
                   bsearch(&back, edges, count, sizeof *edges, compare_edges) != NULL;
     }
-done:
-    starg_release(own->context, edges);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- triangles in faces ---- */
@@ -77,10 +72,8 @@ typedef struct sorted {
     uint32_t *order; /* triangles by face */
 } sorted;
 
-static void sorted_free(starg_context *context, sorted *own) {
-    starg_release(context, own->face);
-    starg_release(context, own->start);
-    starg_release(context, own->order);
+static void sorted_free(sorted *own) {
+    RELEASE(own->face, own->start, own->order);
 }
 
 /* Triangles are oriented as A is in its file, surfaces outward. */
@@ -107,18 +100,16 @@ typedef struct fans {
 } fans;
 
 static starg_status make_fans(const verify_map *own, int s, fans *out) {
-    starg_status status = STARG_OK;
     const verify_surface *surface = own->surface[s];
-    STARG_NEW_ZERO(own->context, STAGE, out->start, surface->vertex_count + 2);
-    STARG_NEW(own->context, STAGE, out->faces, 3 * surface->face_count);
+    NEW_ZERO(own->context, STAGE, out->start, surface->vertex_count + 2);
+    NEW(own->context, STAGE, out->faces, 3 * surface->face_count);
     for (size_t e = 0; e < 3 * surface->face_count; e++)
         out->start[surface->faces[e] + 2]++;
     for (size_t v = 2; v < surface->vertex_count + 2; v++)
         out->start[v] += out->start[v - 1];
     for (size_t e = 0; e < 3 * surface->face_count; e++)
         out->faces[out->start[surface->faces[e] + 1]++] = (uint32_t)(e / 3);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A vertex with a weight at the place of a triangle's first corner: all faces of the triangle are
@@ -169,8 +160,7 @@ static starg_status sort_triangles(const verify_map *own, int s, sorted *out, si
         if (out->face[t] != NOWHERE)
             out->order[out->start[out->face[t] + 1]++] = (uint32_t)t;
 done:
-    starg_release(own->context, at.start);
-    starg_release(own->context, at.faces);
+    RELEASE(at.start, at.faces);
     return status;
 }
 
@@ -210,19 +200,16 @@ static size_t count_uneven(const verify_map *own, int s, const sorted *by, size_
 }
 
 static starg_status claim_fills(const verify_map *own, int s) {
-    starg_status status = STARG_OK;
-    sorted by = {0};
+    SCOPED_BY(sorted_free) sorted by = {0};
     size_t bad, first = 0, uneven, first_uneven = 0;
-    STARG_TRY(sort_triangles(own, s, &by, &bad, &first));
+    TRY(sort_triangles(own, s, &by, &bad, &first));
     uneven = count_uneven(own, s, &by, &first_uneven);
     verify_claim_all(own->verdict, bad, first,
                      "each triangle of the overlay is in a face of %c, and positive there",
                      'A' + s);
     verify_claim_all(own->verdict, uneven, first_uneven, "they cover each face of %c once",
                      'A' + s);
-done:
-    sorted_free(own->context, &by);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- vertices ---- */
@@ -284,8 +271,7 @@ static bool is_in_range(const verify_map *own) {
 }
 
 starg_status verify_claim_overlay(const verify_map *own) {
-    starg_status status = STARG_OK;
-    uint32_t *at = NULL;
+    SCOPED uint32_t *at = NULL;
     bool closed;
     size_t most = starg_mesh_vertex_count(own->mesh[1]);
     if (!is_in_range(own)) {
@@ -295,15 +281,13 @@ starg_status verify_claim_overlay(const verify_map *own) {
         return STARG_OK;
     }
     most = most > own->file->point_count ? most : own->file->point_count;
-    STARG_NEW(own->context, STAGE, at, most);
-    STARG_TRY(find_closed(own, &closed));
+    NEW(own->context, STAGE, at, most);
+    TRY(find_closed(own, &closed));
     verify_claim(own->verdict, closed, "the overlay is closed: each edge has two triangles");
     for (int s = 0; s < 2; s++)
-        STARG_TRY(claim_fills(own, s));
-    STARG_TRY(claim_vertices(own, 1, at));
-    STARG_TRY(claim_vertices(own, 0, at));
+        TRY(claim_fills(own, s));
+    TRY(claim_vertices(own, 1, at));
+    TRY(claim_vertices(own, 0, at));
     claim_images(own, at);
-done:
-    starg_release(own->context, at);
-    return status;
+    return STARG_OK;
 }

@@ -11,9 +11,7 @@
  * 1e-6. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "verify/map.h"
-#include "verify/signs.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-6;
@@ -107,11 +105,10 @@ static double deviation_of(const verify_map *own, size_t v) {
 }
 
 static starg_status claim_points(const verify_map *own) {
-    starg_status status = STARG_OK;
     size_t elsewhere = 0, first = 0, far = 0, first_far = 0;
     for (size_t v = own->file->point_count; v-- > 0;) {
         if (v % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(own->context, STAGE));
+            TRY(starg_check_cancel(own->context, STAGE));
         if (!is_located(own, v)) {
             elsewhere++;
             first = v;
@@ -124,8 +121,7 @@ static starg_status claim_points(const verify_map *own) {
                      "vertices of A go to the faces of B that their directions are in");
     if (own->file->overlay_faces == 0)
         verify_claim_all(own->verdict, far, first_far, "and to their places there, within 1e-6");
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status verify_claim_sphere(const verify_map *own) {

@@ -3,9 +3,7 @@
  * fraction of its vertices that each guard sees (verify/seen.c). */
 #include <math.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
-#include "verify/signs.h"
 
 static const char STAGE[] = "verify";
 
@@ -106,9 +104,8 @@ static bool agrees(const verify_seen *seen, double claimed) {
 }
 
 static starg_status claim_seen(const verify_context *own, const verify_certificate *certificates) {
-    starg_status status = STARG_OK;
     verify_seen seen;
-    STARG_TRY(verify_find_seen(own->pieces, own->report, certificates, &seen));
+    TRY(verify_find_seen(own->pieces, own->report, certificates, &seen));
     double open = (double)(seen.pairs - seen.proven), share = 0;
     if (seen.looked > 0)
         share = (double)seen.seen / (double)seen.looked;
@@ -121,22 +118,17 @@ static starg_status claim_seen(const verify_context *own, const verify_certifica
     if (seen.looked < seen.pairs - seen.proven)
         verify_leave(own->verdict, "whether guards see the %zu vertices to which no line was drawn",
                      seen.pairs - seen.proven - seen.looked);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- public function ---- */
 
 starg_status verify_claim_stars(const verify_context *own) {
-    starg_status status = STARG_OK;
-    verify_certificate *certificates = NULL;
+    SCOPED verify_certificate *certificates = NULL;
     if (!own->pieces->labels.good)
         return STARG_OK;
-    STARG_NEW(own->context, STAGE, certificates, own->report->piece_count);
-    STARG_TRY(verify_certify(own->pieces, own->report, certificates));
+    NEW(own->context, STAGE, certificates, own->report->piece_count);
+    TRY(verify_certify(own->pieces, own->report, certificates));
     claim_star(own, certificates);
-    STARG_TRY(claim_seen(own, certificates));
-done:
-    starg_release(own->context, certificates);
-    return status;
+    return claim_seen(own, certificates);
 }

@@ -3,10 +3,7 @@
  * complete, pieces are connected. Signs are exact. Cost: O(n). */
 #include <stdio.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
-#include "verify/signs.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -30,13 +27,12 @@ verify_words verify_outer_words(const verify_context *own, size_t face) {
 /* ---- tetrahedra ---- */
 
 static starg_status claim_positive(const verify_context *own) {
-    starg_status status = STARG_OK;
     const starg_pieces_mesh *mesh = own->mesh;
     size_t bad = 0, first = 0;
     for (size_t t = 0; t < mesh->count; t++) {
         const uint32_t *v = mesh->tetrahedra + 4 * t;
         if (t % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(own->context, STAGE));
+            TRY(starg_check_cancel(own->context, STAGE));
         if (verify_side(verify_point(mesh, v[0]), verify_point(mesh, v[2]),
                         verify_point(mesh, v[1]), verify_point(mesh, v[3])) <= 0 &&
             bad++ == 0)
@@ -49,8 +45,7 @@ static starg_status claim_positive(const verify_context *own) {
                      "all %zu tetrahedra are positive: %zu are inverted or flat, first "
                      "tetrahedron %zu of piece %d",
                      mesh->count, bad, first, mesh->labels[first]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void claim_conforming(const verify_context *own) {
@@ -98,12 +93,12 @@ static void join_mates(const verify_context *own, uint32_t *parent) {
 }
 
 static starg_status claim_connected(const verify_context *own) {
-    starg_status status = STARG_OK;
     static const char claim[] = "each piece is connected through faces";
-    uint32_t *parent = NULL, *first = NULL, bad = VERIFY_NONE;
+    SCOPED uint32_t *parent = NULL, *first = NULL;
+    uint32_t bad = VERIFY_NONE;
     size_t parts = 0;
-    STARG_NEW(own->context, STAGE, parent, own->mesh->count);
-    STARG_NEW(own->context, STAGE, first, own->pieces->piece_count);
+    NEW(own->context, STAGE, parent, own->mesh->count);
+    NEW(own->context, STAGE, first, own->pieces->piece_count);
     for (size_t p = 0; p < own->pieces->piece_count; p++)
         first[p] = VERIFY_NONE;
     join_mates(own, parent);
@@ -123,21 +118,16 @@ static starg_status claim_connected(const verify_context *own) {
                      "%s: piece %d falls apart, tetrahedra %u and %u are not connected "
                      "(%zu parts too many in all)",
                      claim, own->mesh->labels[bad], first[own->mesh->labels[bad]], bad, parts);
-done:
-    starg_release(own->context, parent);
-    starg_release(own->context, first);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- public function ---- */
 
 starg_status verify_claim_tetrahedra(const verify_context *own) {
-    starg_status status = STARG_OK;
-    STARG_TRY(claim_positive(own));
+    TRY(claim_positive(own));
     claim_conforming(own);
     claim_labels(own);
     if (own->pieces->labels.good)
-        STARG_TRY(claim_connected(own));
-done:
-    return status;
+        TRY(claim_connected(own));
+    return STARG_OK;
 }

@@ -3,8 +3,6 @@
 
 #include <stdio.h>
 
-#include "core/memory.h"
-
 starg_status verify_verdict_create(starg_context *context, starg_verdict **out) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
@@ -67,9 +65,8 @@ void verify_leave_asked(starg_verdict *verdict, const char *format, ...) {
 }
 
 void starg_verdict_free(starg_context *context, starg_verdict *verdict) {
+    (void)context;
     if (verdict == NULL)
         return;
-    starg_release(context, verdict->claims);
-    starg_release(context, verdict->not_checked);
-    starg_release(context, verdict);
+    RELEASE(verdict->claims, verdict->not_checked, verdict);
 }

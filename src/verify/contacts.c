@@ -3,9 +3,7 @@
  * compared with the report's list for that piece, and reset. Cost: O(walls + contacts listed). */
 #include <math.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* relative */
@@ -33,12 +31,11 @@ static bool is_pair(const ledger *own, const starg_piece_contact *contact) {
 }
 
 static starg_status sort_listed(ledger *own) {
-    starg_status status = STARG_OK;
     starg_context *context = own->pieces->context;
     const starg_pieces_report *report = own->report;
     size_t count = own->pieces->piece_count;
-    STARG_NEW_ZERO(context, STAGE, own->start, count + 1);
-    STARG_NEW(context, STAGE, own->listed, report->contact_count);
+    NEW_ZERO(context, STAGE, own->start, count + 1);
+    NEW(context, STAGE, own->listed, report->contact_count);
     for (size_t i = 0; i < report->contact_count; i++) {
         const starg_piece_contact *contact = &report->contacts[i];
         if (is_pair(own, contact))
@@ -51,12 +48,10 @@ static starg_status sort_listed(ledger *own) {
     for (size_t i = report->contact_count; i-- > 0;)
         if (is_pair(own, &report->contacts[i]))
             own->listed[--own->start[report->contacts[i].first]] = (uint32_t)i;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_walls(ledger *own, uint32_t piece) {
-    starg_status status = STARG_OK;
     const verify_pieces *pieces = own->pieces;
     own->touched.count = 0;
     for (size_t w = pieces->wall_start[piece]; w < pieces->wall_start[piece + 1]; w++) {
@@ -64,12 +59,11 @@ static starg_status add_walls(ledger *own, uint32_t piece) {
         if (other == VERIFY_NONE || other < piece)
             continue;
         if (!own->open[other])
-            STARG_PUSH(pieces->context, STAGE, &own->touched, other);
+            PUSH(pieces->context, STAGE, &own->touched, other);
         own->open[other] = 1;
         own->area[other] += verify_area(pieces->walls, w, pieces->scale);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void compare_listed(ledger *own, uint32_t piece) {
@@ -110,10 +104,6 @@ starg_status verify_compare_contacts(const verify_pieces *pieces, const starg_pi
         clear(&own, p);
     }
 done:
-    starg_release(context, own.start);
-    starg_release(context, own.listed);
-    starg_release(context, own.area);
-    starg_release(context, own.open);
-    STARG_ARRAY_FREE(context, &own.touched);
+    RELEASE(own.start, own.listed, own.area, own.open, own.touched.data);
     return status;
 }

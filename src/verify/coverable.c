@@ -13,17 +13,14 @@
  * corners are within the range from h, and nearer from below; near the same from 0.6 h and above;
  * clearance  the middle of the interval keeps it with half the interval to spare; cone, field of
  * view and incidence  looking at the centroid, they hold the corners from 0.6 h, and from above.
- * Faces that are so thin that rounding moves the centroid across them are left out. What sees a
- * face whole sees its vertices, so this holds for both rules, and for vertices as the target.
+ * Faces that are so thin that rounding moves the centroid across them are left out. Of a face that
+ * is seen in parts, this is asked of each of those that no guard sees. What sees a face whole sees
+ * its vertices, so this holds for both rules, and for vertices as the target.
  *
  * Cost: at most MOST_TESTS visits of the tree, mostly of tiny boxes. Signs are exact. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "verify/facts.h"
-#include "verify/sight.h"
-#include "verify/signs.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -39,8 +36,10 @@ typedef struct prover {
     double diagonal, least;
     size_t tests; /* remaining */
 
-    uint32_t face; /* the current face */
-    const double *corner[3];
+    /* the current patch, its face, and the corners of both */
+    size_t face;
+    const double *plane[3], *corner[3];
+    verify_spot spots[3];
     double centroid[3], normal[3]; /* of unit length, inward */
 } prover;
 
@@ -49,13 +48,16 @@ static void along(const prover *own, double height, double p[3]) {
         p[k] = own->centroid[k] + height * own->normal[k];
 }
 
-/* False for faces that are too thin. */
-static bool begin_face(prover *own, uint32_t face) {
+/* False for patches that are too thin. */
+static bool begin_patch(prover *own, size_t patch) {
     const verify_surface *surface = own->known->surface;
     double n[3], length = 0, longest = 0;
-    own->face = face;
-    verify_corners(surface, face, own->corner);
-    verify_normal(surface, face, own->known->scale, n);
+    own->face = verify_patch_face(surface, patch);
+    verify_corners(surface, own->face, own->plane);
+    verify_patch_spots(surface, patch, own->spots);
+    for (int i = 0; i < 3; i++)
+        own->corner[i] = own->spots[i].at;
+    verify_normal(surface, own->face, own->known->scale, n);
     for (int k = 0; k < 3; k++)
         length = hypot(length, n[k]);
     for (int i = 0; i < 3; i++) {
@@ -66,7 +68,8 @@ static bool begin_face(prover *own, uint32_t face) {
         own->normal[k] = -n[k] / length;
         own->centroid[k] = own->corner[0][k] / 3 + own->corner[1][k] / 3 + own->corner[2][k] / 3;
     }
-    double width = ldexp(length, -2 * own->known->scale) / longest;
+    double width =
+        ldexp(length, -2 * own->known->scale) * verify_patch_share(surface, patch) / longest;
     return width > LEAST_WIDTH * own->diagonal && width > 0x1p20 * verify_rounding(surface);
 }
 
@@ -83,10 +86,11 @@ static bool passes(void *data, uint32_t other) {
     verify_corners(o->own->known->surface, other, t);
     if (verify_on_triangle(o->p, t))
         return false;
+    int side = verify_side(t[0], t[1], t[2], o->p);
     for (int i = 0; i < 3; i++)
-        if (verify_blocks(o->p, o->own->corner[i], t))
+        if (verify_blocks_from(side, o->p, &o->own->spots[i], t))
             return false;
-    return !verify_enters(o->p, o->own->corner, t);
+    return !verify_enters(o->p, o->own->plane, o->own->spots, t);
 }
 
 static bool sees_whole(const prover *own, const double p[3]) {
@@ -95,8 +99,8 @@ static bool sees_whole(const prover *own, const double p[3]) {
     for (int k = 0; k < 3; k++) {
         lower[k] = upper[k] = p[k];
         for (int i = 0; i < 3; i++) {
-            lower[k] = fmin(lower[k], own->corner[i][k]);
-            upper[k] = fmax(upper[k], own->corner[i][k]);
+            lower[k] = fmin(lower[k], own->corner[i][k] - own->spots[i].blur);
+            upper[k] = fmax(upper[k], own->corner[i][k] + own->spots[i].blur);
         }
     }
     return verify_tree_visit(own->known->tree, lower, upper, passes, &data);
@@ -128,6 +132,15 @@ static bool keeps_clearance(const prover *own, double height) {
            clearance * (1 + MARGIN) + 0.16 * height;
 }
 
+/* Is the whole height within the depth at which the face has its density? */
+static bool is_near_enough(const prover *own, double height) {
+    const starg_guards *guards = own->known->guards;
+    const starg_face_need *need = verify_need_of(guards, own->face);
+    double depth =
+        starg_density_depth(&guards->options.visibility, need != NULL ? need->density : 0);
+    return height * (1 + MARGIN) <= depth;
+}
+
 /* Does a view from 0.6 of the height, straight down, hold the corners, at the incidence allowed?
  * From above it does as well. A rectangular view holds the cone of its smaller angle. */
 static bool in_view(const prover *own, double height) {
@@ -137,12 +150,15 @@ static bool in_view(const prover *own, double height) {
     along(own, 0.6 * height, low);
     for (int k = 0; k < 3; k++)
         direction[k] = -own->normal[k];
+    if (verify_is_aimed(own->known) &&
+        (!starg_tilt_holds(o, direction) || !is_near_enough(own, height)))
+        return false;
     for (int i = 0; i < 3; i++)
         if (cone < 360 && !verify_in_cone(low, direction, starg_cone_cosine(cone), own->corner[i]))
             return false;
     return own->view.steepest == 0 ||
-           (verify_side(own->corner[0], own->corner[1], own->corner[2], low) > 0 &&
-            verify_faces(&own->view, low, own->corner));
+           (verify_side(own->plane[0], own->plane[1], own->plane[2], low) > 0 &&
+            verify_faces(&own->view, low, own->plane, own->corner));
 }
 
 static bool is_inside(const prover *own, const double p[3]) {
@@ -151,14 +167,14 @@ static bool is_inside(const prover *own, const double p[3]) {
     return !on_surface && winding + own->known->surface->ambient >= 1;
 }
 
-/* Could a guard somewhere above the face see it? */
-static bool prove_face(prover *own, uint32_t face, double p[3]) {
-    if (!begin_face(own, face))
+/* Could a guard somewhere above the patch see it? */
+static bool prove_patch(prover *own, size_t patch, double p[3]) {
+    if (!begin_patch(own, patch))
         return false;
     for (double height = own->least; height < own->diagonal && own->tests > 0; height *= 2) {
         own->tests--;
         along(own, height, p);
-        if (verify_side(own->corner[0], own->corner[1], own->corner[2], p) <= 0)
+        if (verify_side(own->plane[0], own->plane[1], own->plane[2], p) <= 0)
             continue; /* because of rounding */
         if (!sees_whole(own, p) || !in_range(own, p))
             return false;
@@ -166,6 +182,17 @@ static bool prove_face(prover *own, uint32_t face, double p[3]) {
             return is_inside(own, p);
     }
     return false;
+}
+
+/* Could guards above them see the patches of the face that no guard sees? *p: the last such place.
+ */
+static bool prove_face(prover *own, size_t face, double p[3]) {
+    const verify_facts *known = own->known;
+    for (size_t j = verify_first_patch(known->surface, face);
+         j < verify_first_patch(known->surface, face + 1); j++)
+        if ((verify_targets_vertices(known) || !known->patch[j]) && !prove_patch(own, j, p))
+            return false;
+    return true;
 }
 
 static void begin(prover *own) {
@@ -205,22 +232,19 @@ static void note(const verify_facts *known, uint8_t *proven, size_t face, const 
 
 starg_status verify_find_coverable(const verify_facts *known, size_t enough,
                                    verify_coverable *found) {
-    starg_status status = STARG_OK;
     const verify_surface *surface = known->surface;
     prover own = {.known = known, .view = verify_view_around(known->guards), .tests = MOST_TESTS};
-    uint8_t *proven = NULL;
+    SCOPED uint8_t *proven = NULL;
     *found = (verify_coverable){0};
-    STARG_NEW_ZERO(surface->context, STAGE, proven,
-                   verify_targets_vertices(known) ? surface->vertex_count : surface->face_count);
+    NEW_ZERO(surface->context, STAGE, proven,
+             verify_targets_vertices(known) ? surface->vertex_count : surface->face_count);
     begin(&own);
     for (size_t f = 0; f < surface->face_count && found->proven <= enough && own.tests > 0; f++) {
         double p[3];
-        if (is_open(known, proven, f) && prove_face(&own, (uint32_t)f, p))
+        if (is_open(known, proven, f) && prove_face(&own, f, p))
             note(known, proven, f, p, found);
         if (f % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(surface->context, STAGE));
+            TRY(starg_check_cancel(surface->context, STAGE));
     }
-done:
-    starg_release(surface->context, proven);
-    return status;
+    return STARG_OK;
 }

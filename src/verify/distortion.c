@@ -6,9 +6,6 @@
 #include "verify/pieces.h"
 
 #include <math.h>
-#include <stdbool.h>
-
-#include "verify/signs.h"
 
 static const double TOLERANCE = 1e-6;
 static const double ROUNDING = 4e-15; /* of a determinant, over the product of its rows' lengths */

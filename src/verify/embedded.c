@@ -17,10 +17,8 @@
  * found for each by such a segment. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "verify/everywhere.h"
-#include "verify/signs.h"
 
 static const char STAGE[] = "verify";
 
@@ -221,29 +219,24 @@ static void drop_inner(const verify_scene *scene, uint8_t *seen, uint32_t *part,
 }
 
 starg_status verify_find_sound(const verify_scene *scene, uint8_t *sound, bool *embedded) {
-    starg_status status = STARG_OK;
     const verify_surface *surface = scene->surface;
     starg_context *context = surface->context;
     search own = {scene, false, sound};
-    uint32_t *count = NULL, *part = NULL;
-    uint8_t *seen = NULL;
+    SCOPED uint32_t *count = NULL, *part = NULL;
+    SCOPED uint8_t *seen = NULL;
     size_t faces = surface->face_count;
-    STARG_NEW_ZERO(context, STAGE, count, surface->vertex_count);
-    STARG_NEW(context, STAGE, part, faces);
-    STARG_NEW_ZERO(context, STAGE, seen, faces);
+    NEW_ZERO(context, STAGE, count, surface->vertex_count);
+    NEW(context, STAGE, part, faces);
+    NEW_ZERO(context, STAGE, seen, faces);
     const starg_parallel_loop loop = {
         .stage = STAGE, .count = faces, .shared = &own, .item = examine_face, .silent = true};
-    STARG_TRY(starg_parallel_for(context, &loop));
+    TRY(starg_parallel_for(context, &loop));
     drop_fans(scene, count, sound);
     *embedded = true;
     for (size_t f = 0; f < faces; f++)
         *embedded = *embedded && sound[f];
     drop_inner(scene, seen, part, sound);
-done:
-    starg_release(context, count);
-    starg_release(context, part);
-    starg_release(context, seen);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- surfaces that touch themselves ---- */

@@ -7,11 +7,9 @@
  * Signs are exact; which points are drawn decides only what is noticed: a missing part that has a
  * face of the model, or some thousandths of the volume. Cost: O(log n) for each point, typically.
  */
-#include <math.h>
 
 #include "core/rng.h"
 #include "verify/pieces.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -72,24 +70,20 @@ static void look_beside(const survey *own, size_t face) {
 
 starg_status verify_compare_enclosed(const verify_pieces *pieces, const verify_surface *model,
                                      double near, verify_enclosed *found) {
-    starg_status status = STARG_OK;
-    verify_tree *solid = NULL, *boundary = NULL;
+    SCOPED_BY(verify_tree_drop) verify_tree *solid = NULL, *boundary = NULL;
     bool all = model->face_count <= MOST;
     *found = (verify_enclosed){0};
-    STARG_TRY(verify_tree_create(model, &solid));
-    STARG_TRY(verify_tree_create(pieces->outer, &boundary));
+    TRY(verify_tree_create(model, &solid));
+    TRY(verify_tree_create(pieces->outer, &boundary));
     const survey own = {model, solid, boundary, pieces->scale, near, found};
     for (size_t i = 0; i < MOST; i++) {
         if (i % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+            TRY(starg_check_cancel(pieces->context, STAGE));
         look_in_box(&own, i);
         starg_rng rng = starg_rng_make(1, RNG_STAGE, i);
         size_t face = all ? i : (size_t)starg_rng_below(&rng, model->face_count);
         if (face < model->face_count)
             look_beside(&own, face);
     }
-done:
-    verify_tree_free(solid);
-    verify_tree_free(boundary);
-    return status;
+    return STARG_OK;
 }

@@ -11,10 +11,65 @@
 
 #include "core/checksum.h"
 #include "core/parallel.h"
-#include "verify/facts.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
+
+/* ---- witnesses that are points ---- */
+
+/* The vertex that a point is, or UINT32_MAX: it is between vertices. */
+static uint32_t vertex_of(const starg_certificate *c, const verify_surface *surface,
+                          size_t witness) {
+    for (size_t k = 0; k < 3; k++)
+        if (c->weights[witness][k] == (uint32_t)VERIFY_UNIT)
+            return surface->faces[3 * (size_t)c->witnesses[witness] + k];
+    return UINT32_MAX;
+}
+
+/* A guard and a point that it looks at. */
+typedef struct sight_line {
+    const verify_surface *surface;
+    const double *p;
+    const verify_spot *q;
+} sight_line;
+
+static bool leaves_free(void *data, uint32_t face) {
+    const sight_line *own = data;
+    const double *t[3];
+    verify_corners(own->surface, face, t);
+    return !verify_blocks_from(verify_side(t[0], t[1], t[2], own->p), own->p, own->q, t);
+}
+
+/* Does guard g see the point, strictly on the inner side of its face? The segment to its doubles
+ * soon meets what hides it; what leaves it free is asked about all faces near the true one. */
+static bool sees_point(const verify_facts *known, size_t g, uint32_t face, const verify_spot *q) {
+    const double *p = known->guards->positions + 3 * g, *t[3];
+    const verify_view view = verify_view_of(known->guards, g);
+    sight_line line = {known->surface, p, q};
+    double lower[3], upper[3];
+    verify_corners(known->surface, face, t);
+    if (!known->inside[g] || verify_side(t[0], t[1], t[2], p) <= 0 ||
+        !verify_in_view(&view, p, q->at) ||
+        !verify_faces(&view, p, t, (const double *const[]){q->at, q->at, q->at}) ||
+        !verify_tree_follow(known->tree, p, q->at, leaves_free, &line))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        lower[k] = fmin(p[k], q->at[k] - 2 * q->blur);
+        upper[k] = fmax(p[k], q->at[k] + 2 * q->blur);
+    }
+    return verify_tree_visit(known->tree, lower, upper, leaves_free, &line);
+}
+
+/* How many guards see a point, if they are no more than `enough`? */
+static size_t count_at_point(const verify_facts *known, const starg_certificate *c, size_t witness,
+                             double blur, size_t enough) {
+    uint32_t face = c->witnesses[witness];
+    const verify_mix mix = verify_mix_of(known->surface, face, c->weights[witness]);
+    const verify_spot point = verify_mix_spot(known->surface, &mix, blur);
+    size_t seen = 0;
+    for (size_t g = 0; g < known->guards->count && seen < enough; g++)
+        seen += sees_point(known, g, face, &point);
+    return seen;
+}
 
 /* ---- cells ---- */
 
@@ -22,6 +77,7 @@ typedef struct checking {
     verify_scene scene; /* the first member, for verify_watch_make */
     const starg_certificate *certificate;
     const verify_facts *known;
+    double blur;     /* of points between vertices */
     uint32_t *parts; /* by face: the part of the model that it bounds; NULL: no reason asks */
     size_t *wrong;   /* by cell: the first reason that does not hold, SIZE_MAX: the cell itself; or
                         the number of all reasons */
@@ -59,17 +115,31 @@ static bool is_apart(const checking *own, const everywhere_cell *cell, uint32_t 
     return own->parts[face] < cell->parts[0] || own->parts[face] >= cell->parts[1];
 }
 
+static bool is_point_hidden(const checking *own, verify_watch *watch, const verify_reason *reason) {
+    const starg_certificate *c = own->certificate;
+    const verify_surface *surface = own->known->surface;
+    uint32_t face = c->witnesses[reason->witness];
+    const verify_mix mix = verify_mix_of(surface, face, c->weights[reason->witness]);
+    const verify_spot point = verify_mix_spot(surface, &mix, own->blur);
+    return verify_box_hides_point(watch, face, &point, c->range, reason);
+}
+
 /* A corner is seen from the inner side of its face, past what hides its vertex: as a face is, but
- * for the other two vertices. */
+ * for the other two vertices. A point that is a vertex is such a corner. */
 static bool is_hidden(const checking *own, const everywhere_cell *cell, verify_watch *watch,
                       const verify_reason *reason) {
     const starg_certificate *c = own->certificate;
     starg_target target = c->target;
     if (reason->kind == 'd')
         return is_apart(own, cell, reason->witness);
-    if (target == STARG_TARGET_CORNERS) {
+    if (verify_is_between(c, reason->witness))
+        return is_point_hidden(own, watch, reason);
+    if (target == STARG_TARGET_CORNERS || target == STARG_TARGET_POINTS) {
+        uint32_t vertex = target == STARG_TARGET_CORNERS
+                              ? c->corners[reason->witness]
+                              : vertex_of(c, own->known->surface, reason->witness);
         target = STARG_TARGET_FACES;
-        if (reason->kind != 'n' && reason->vertex != c->corners[reason->witness])
+        if (reason->kind != 'n' && reason->vertex != vertex)
             return false;
     }
     return verify_box_hides(watch, target, c->witnesses[reason->witness], c->range, reason);
@@ -104,7 +174,8 @@ starg_status verify_check_cells(const starg_certificate *certificate, const veri
                                 size_t *cell, size_t *reason) {
     starg_status status = STARG_OK;
     starg_context *context = known->surface->context;
-    checking own = {.certificate = certificate, .known = known};
+    checking own = {
+        .certificate = certificate, .known = known, .blur = verify_blur(known->surface)};
     *cell = certificate->cell_count;
     /* some reasons hold only where the surface is embedded */
     STARG_TRY(verify_scene_create(known->surface, known->tree, has_reason(certificate, "sfe"),
@@ -126,8 +197,7 @@ starg_status verify_check_cells(const starg_certificate *certificate, const veri
         }
 done:
     verify_scene_free(&own.scene);
-    starg_release(context, own.parts);
-    starg_release(context, own.wrong);
+    RELEASE(own.parts, own.wrong);
     return status;
 }
 
@@ -167,20 +237,26 @@ static bool is_of_this(const starg_certificate *c, const verify_facts *known,
 
 /* By as many guards as each face is to be seen by; one is needed as soon as there is anything to
  * see. */
-static bool is_seen(const verify_facts *known, const starg_certificate *c, uint32_t witness) {
+static bool is_seen(const verify_facts *known, const starg_certificate *c, size_t witness,
+                    double blur) {
     const starg_bits *rows = verify_rows(known);
-    size_t seen = 0;
+    size_t seen = 0, enough = c->bound > 1 ? c->redundancy : 1;
+    if (c->weights != NULL)
+        return count_at_point(known, c, witness, blur, enough) >= enough;
     for (size_t g = 0; g < rows->rows; g++)
-        seen += starg_bits_test(rows, g, witness);
-    return seen >= (c->bound > 1 ? c->redundancy : 1);
+        seen += starg_bits_test(rows, g, c->witnesses[witness]);
+    return seen >= enough;
 }
 
 static void claim_witnesses(starg_verdict *verdict, const verify_facts *known,
                             const starg_certificate *c) {
-    const char *name = c->target == STARG_TARGET_VERTICES ? "vertices" : "faces";
+    const char *name = c->target == STARG_TARGET_VERTICES ? "vertices"
+                       : c->weights != NULL               ? "points"
+                                                          : "faces";
+    const double blur = verify_blur(known->surface);
     size_t unseen = 0, first = 0;
     for (size_t i = c->witness_count; i-- > 0;)
-        if (!is_seen(known, c, c->witnesses[i])) {
+        if (!is_seen(known, c, i, blur)) {
             unseen++;
             first = c->witnesses[i];
         }
@@ -227,9 +303,7 @@ starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *know
         verify_claim(verdict, false, "the cells of the certificate hold all of the model");
         return STARG_OK;
     }
-    starg_status status = verify_check_cells(c, known, &cell, &reason);
-    if (status != STARG_OK)
-        return status;
+    TRY(verify_check_cells(c, known, &cell, &reason));
     if (cell == c->cell_count) {
         verify_claim(verdict, true,
                      "%zu cells hold all of the model, and %zu reasons why they do not see "
@@ -250,6 +324,7 @@ starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *know
                      c->cell_line + cell,
                      c->target == STARG_TARGET_VERTICES  ? "vertex"
                      : c->target == STARG_TARGET_CORNERS ? "a corner of face"
+                     : c->target == STARG_TARGET_POINTS  ? "a point of face"
                                                          : "face",
                      c->witnesses[r->witness], reason - c->cells[cell].first + 1, word_of(r->kind));
     }
@@ -258,10 +333,9 @@ starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *know
 
 starg_status verify_claim_follows(starg_verdict *verdict, const starg_certificate *c,
                                   const char *claim, size_t claimed) {
-    starg_status status = STARG_OK;
     bool follows;
     everywhere_words why = {""};
-    STARG_TRY(verify_check_bound(c, &follows, &why));
+    TRY(verify_check_bound(c, &follows, &why));
     if (follows && claimed <= c->bound)
         verify_claim(verdict, true, "%s: the certificate's bound of %zu follows", claim, c->bound);
     else if (follows)
@@ -269,25 +343,22 @@ starg_status verify_claim_follows(starg_verdict *verdict, const starg_certificat
     else
         verify_claim(verdict, false, "%s: the certificate's bound of %zu does not follow (%s)",
                      claim, c->bound, why.text);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status verify_claim_everywhere(starg_verdict *verdict, const verify_facts *known,
                                      const starg_certificate *c) {
-    starg_status status = STARG_OK;
     size_t claimed = known->guards->lower_bound_everywhere;
     const char *difference;
-    char claim[96];
+    char claim[128];
     bool same = is_of_this(c, known, &difference);
     verify_claim(verdict, same, "the certificate is of this model and question%s",
                  same ? "" : difference);
     if (!same)
         return STARG_OK;
     claim_witnesses(verdict, known, c);
-    STARG_TRY(verify_claim_cells(verdict, known, c));
-    snprintf(claim, sizeof claim, "at least %zu guards are needed, wherever they stand", claimed);
-    STARG_TRY(verify_claim_follows(verdict, c, claim, claimed));
-done:
-    return status;
+    TRY(verify_claim_cells(verdict, known, c));
+    snprintf(claim, sizeof claim, "at least %zu guards are needed%s, wherever they stand", claimed,
+             verify_targets_points(known) ? " to see every point of the boundary" : "");
+    return verify_claim_follows(verdict, c, claim, claimed);
 }

@@ -1,16 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The certificate of a bound for guards anywhere (docs/formats.md), as read, and the check of
  * reasons why something is hidden from a box. */
-#ifndef STARG_VERIFY_EVERYWHERE_H
-#define STARG_VERIFY_EVERYWHERE_H
+#pragma once
 
-#include "core/bits.h"
 #include "core/int128.h"
-#include "core/memory.h"
-#include "starguard/verify.h"
-#include "starguard/visibility.h"
 #include "verify/facts.h"
-#include "verify/surface.h"
 
 /* Checks that a vertex or a face is hidden from all points of a box, for a stated reason. */
 
@@ -67,6 +61,10 @@ bool verify_box_outside(verify_watch *watch);
 bool verify_box_hides(verify_watch *watch, starg_target kind, uint32_t target, double range,
                       const verify_reason *reason);
 
+/* The same of a point between the vertices of a face, from the inner side of this. */
+bool verify_box_hides_point(verify_watch *watch, uint32_t face, const verify_spot *point,
+                            double range, const verify_reason *reason);
+
 /* Do two faces have more in common than corners and edges at the same places (verify/embedded.c)?
  * Have they such a corner? Exact. */
 bool verify_faces_touch(const verify_surface *surface, uint32_t f, uint32_t g);
@@ -122,8 +120,10 @@ struct starg_certificate {
     starg_target target;
     double range, clearance;
     size_t redundancy, bound;
-    uint32_t *witnesses; /* faces or vertices; of corners the faces */
-    uint32_t *corners;   /* by witness: the vertex of a corner; NULL where none are the target */
+    uint32_t *witnesses;    /* faces or vertices; of corners and points the faces */
+    uint32_t *corners;      /* by witness: the vertex of a corner; NULL where none are the target */
+    uint32_t (*weights)[3]; /* by witness: of a point, by the vertices of its face, VERIFY_UNIT in
+                               sum; NULL where none are the target */
     size_t witness_count, words; /* words of a row of bits over the witnesses */
     uint64_t *rows;
     size_t row_count;
@@ -135,6 +135,9 @@ struct starg_certificate {
     STARG_ARRAY(uint64_t) numbers;
     size_t cell_line; /* of the file: where the first cell stands */
 };
+
+/* Is a witness a point between vertices? */
+bool verify_is_between(const starg_certificate *certificate, size_t witness);
 
 /* Finds the first reason that does not hold, in the order of the file; *cell is the number of its
  * cell (or cell_count: all hold), *reason that of the reason (or SIZE_MAX: the cell is not
@@ -185,5 +188,3 @@ starg_status verify_claim_follows(starg_verdict *verdict, const starg_certificat
 /* Adds the claims about lower_bound_everywhere to the verdict. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_everywhere(starg_verdict *verdict, const verify_facts *known,
                                      const starg_certificate *certificate);
-
-#endif

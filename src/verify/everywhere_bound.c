@@ -227,7 +227,6 @@ done:
 /* Do `most` rows that are left not hold all that is wanted? The node that comes now says why, if
  * any row may be taken at all. */
 static starg_status prove(proving *p, const uint64_t *wanted, size_t most, bool *follows) {
-    starg_status status = STARG_OK;
     const starg_certificate *own = p->own;
     *follows = starg_bit_count(wanted, own->words) > 0;
     if (!*follows)
@@ -239,7 +238,7 @@ static starg_status prove(proving *p, const uint64_t *wanted, size_t most, bool 
         say(p, "nodes are missing, or go too deep: behind node", p->next);
         return STARG_OK;
     }
-    STARG_TRY(starg_check_cancel(own->context, STAGE));
+    TRY(starg_check_cancel(own->context, STAGE));
     const everywhere_node *node = &own->nodes[p->next];
     if (node->witness == UINT32_MAX)
         *follows = prices_prove(p, node, wanted, most);
@@ -248,15 +247,13 @@ static starg_status prove(proving *p, const uint64_t *wanted, size_t most, bool 
     p->next += *follows;
     if (*follows && node->witness != UINT32_MAX) {
         p->depth++;
-        STARG_TRY(prove_branches(p, node, wanted, most, follows));
+        TRY(prove_branches(p, node, wanted, most, follows));
         p->depth--;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status prove_by_rows(proving *p, size_t most, bool *follows) {
-    starg_status status = STARG_OK;
     const starg_certificate *own = p->own;
     uint64_t all[EVERYWHERE_WORDS] = {0};
     *follows = own->redundancy == 1;
@@ -266,15 +263,14 @@ static starg_status prove_by_rows(proving *p, size_t most, bool *follows) {
     }
     for (size_t j = 0; j < own->witness_count; j++)
         starg_bit_set(all, j);
-    STARG_TRY(verify_visit_leaves(own, is_in_row, p, follows));
+    TRY(verify_visit_leaves(own, is_in_row, p, follows));
     if (*follows)
-        STARG_TRY(prove(p, all, most, follows));
+        TRY(prove(p, all, most, follows));
     if (*follows && p->next != own->node_count) {
         *follows = false;
         say(p, "nodes that nothing asks for begin with node", p->next);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A bound of 1 is for whoever has something to see. */

@@ -4,7 +4,6 @@
  * memory is asked for. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "verify/everywhere.h"
 
@@ -79,50 +78,42 @@ static starg_status certificate_take_number(certificate_reader *r, uint64_t most
 /* A number of things of at least `size` bytes each, which are still to come. */
 static starg_status certificate_take_count(certificate_reader *r, const char *word, size_t size,
                                            size_t *count) {
-    starg_status status = STARG_OK;
     uint64_t value;
-    STARG_TRY(certificate_take_text(r, word));
-    STARG_TRY(certificate_take_number(r, (uint64_t)(r->end - r->at) / size, &value));
+    TRY(certificate_take_text(r, word));
+    TRY(certificate_take_number(r, (uint64_t)(r->end - r->at) / size, &value));
     *count = (size_t)value;
-    STARG_TRY(certificate_end_line(r));
-done:
-    return status;
+    return certificate_end_line(r);
 }
 
 /* M:K is M times 2 to the power of K. */
 static starg_status certificate_take_double(certificate_reader *r, double *value) {
-    starg_status status = STARG_OK;
     uint64_t whole, power;
     bool negative = certificate_take(r, '-');
-    STARG_TRY(certificate_take_number(r, UINT64_C(1) << 53, &whole));
-    STARG_TRY(certificate_take_text(r, ":"));
+    TRY(certificate_take_number(r, UINT64_C(1) << 53, &whole));
+    TRY(certificate_take_text(r, ":"));
     bool small = certificate_take(r, '-');
-    STARG_TRY(certificate_take_number(r, 1074, &power));
+    TRY(certificate_take_number(r, 1074, &power));
     double size = ldexp((double)whole, small ? -(int)power : (int)power);
     if (!(size < 1e100))
         return certificate_reject(r, "numbers are below 1e100 in magnitude");
     *value = negative ? -size : size;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Three of them, with a blank before each. */
 static starg_status certificate_take_point(certificate_reader *r, double out[3]) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++) {
-        STARG_TRY(certificate_take_text(r, " "));
-        STARG_TRY(certificate_take_double(r, &out[k]));
+        TRY(certificate_take_text(r, " "));
+        TRY(certificate_take_double(r, &out[k]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the head ---- */
 
 static starg_status read_checksum(certificate_reader *r) {
     static const char digits[] = "0123456789abcdef";
-    starg_status status = STARG_OK;
-    STARG_TRY(certificate_take_text(r, "checksum "));
+    TRY(certificate_take_text(r, "checksum "));
     for (int i = 0; i < 16; i++) {
         const char *digit = r->at < r->end && *r->at != '\0' ? strchr(digits, *r->at) : NULL;
         if (digit == NULL)
@@ -130,105 +121,120 @@ static starg_status read_checksum(certificate_reader *r) {
         r->own->checksum = r->own->checksum << 4 | (uint64_t)(digit - digits);
         r->at++;
     }
-    STARG_TRY(certificate_end_line(r));
-done:
-    return status;
+    return certificate_end_line(r);
 }
 
 static starg_status read_size(certificate_reader *r, const char *word, size_t *size) {
-    starg_status status = STARG_OK;
     uint64_t value;
-    STARG_TRY(certificate_take_text(r, word));
-    STARG_TRY(certificate_take_number(r, UINT32_MAX / 4, &value));
+    TRY(certificate_take_text(r, word));
+    TRY(certificate_take_number(r, UINT32_MAX / 4, &value));
     *size = (size_t)value;
-    STARG_TRY(certificate_end_line(r));
-done:
-    return status;
+    return certificate_end_line(r);
 }
 
 static starg_status read_question(certificate_reader *r) {
-    starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(certificate_take_text(r, "target "));
+    TRY(certificate_take_text(r, "target "));
     char first = r->at < r->end ? *r->at : 'f';
-    own->target = first == 'v'   ? STARG_TARGET_VERTICES
-                  : first == 'c' ? STARG_TARGET_CORNERS
-                                 : STARG_TARGET_FACES;
-    STARG_TRY(certificate_take_text(r, first == 'v'   ? "vertices"
-                                       : first == 'c' ? "corners"
-                                                      : "faces"));
-    STARG_TRY(certificate_end_line(r));
-    STARG_TRY(certificate_take_text(r, "range "));
+    if (own->target == STARG_TARGET_POINTS)
+        TRY(certificate_take_text(r, "points"));
+    else {
+        own->target = first == 'v'   ? STARG_TARGET_VERTICES
+                      : first == 'c' ? STARG_TARGET_CORNERS
+                                     : STARG_TARGET_FACES;
+        TRY(certificate_take_text(r, first == 'v'   ? "vertices"
+                                     : first == 'c' ? "corners"
+                                                    : "faces"));
+    }
+    TRY(certificate_end_line(r));
+    TRY(certificate_take_text(r, "range "));
     own->range = INFINITY;
     if (r->at < r->end && *r->at == 'n')
-        STARG_TRY(certificate_take_text(r, "none"));
+        TRY(certificate_take_text(r, "none"));
     else
-        STARG_TRY(certificate_take_double(r, &own->range));
-    STARG_TRY(certificate_end_line(r));
-    STARG_TRY(certificate_take_text(r, "clearance "));
-    STARG_TRY(certificate_take_double(r, &own->clearance));
-    STARG_TRY(certificate_end_line(r));
-    STARG_TRY(read_size(r, "redundancy ", &own->redundancy));
-    STARG_TRY(read_size(r, "bound ", &own->bound));
-done:
-    return status;
+        TRY(certificate_take_double(r, &own->range));
+    TRY(certificate_end_line(r));
+    TRY(certificate_take_text(r, "clearance "));
+    TRY(certificate_take_double(r, &own->clearance));
+    TRY(certificate_end_line(r));
+    TRY(read_size(r, "redundancy ", &own->redundancy));
+    return read_size(r, "bound ", &own->bound);
 }
 
 static starg_status read_head(certificate_reader *r) {
-    starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(certificate_take_text(r, "starguard-certificate "));
+    TRY(certificate_take_text(r, "starguard-certificate "));
     /* the first version has no cuts at given places and no odd sets, the second no parts; the third
-       was of another kind of proof */
-    if (!certificate_take(r, '1') && !certificate_take(r, '2'))
-        STARG_TRY(certificate_take_text(r, "4"));
-    STARG_TRY(certificate_end_line(r));
-    STARG_TRY(read_size(r, "vertices ", &own->vertex_count));
-    STARG_TRY(read_size(r, "faces ", &own->face_count));
-    STARG_TRY(read_checksum(r));
-    STARG_TRY(read_question(r));
-done:
-    return status;
+       was of another kind of proof; the fifth is of points, and of nothing else */
+    if (certificate_take(r, '5'))
+        own->target = STARG_TARGET_POINTS;
+    else if (!certificate_take(r, '1') && !certificate_take(r, '2'))
+        TRY(certificate_take_text(r, "4"));
+    TRY(certificate_end_line(r));
+    TRY(read_size(r, "vertices ", &own->vertex_count));
+    TRY(read_size(r, "faces ", &own->face_count));
+    TRY(read_checksum(r));
+    return read_question(r);
 }
 
 static starg_status read_root(certificate_reader *r, verify_box *root) {
-    starg_status status = STARG_OK;
-    STARG_TRY(certificate_take_text(r, "root"));
-    STARG_TRY(certificate_take_point(r, root->lower));
-    STARG_TRY(certificate_take_point(r, root->upper));
+    TRY(certificate_take_text(r, "root"));
+    TRY(certificate_take_point(r, root->lower));
+    TRY(certificate_take_point(r, root->upper));
     for (int k = 0; k < 3; k++)
         if (!(root->lower[k] <= root->upper[k]))
             return certificate_reject(r, "the lower corner of the box is not below its upper one");
-    STARG_TRY(certificate_end_line(r));
-done:
-    return status;
+    return certificate_end_line(r);
+}
+
+/* The weights of a point behind the number of its face, and their binary logarithm. */
+static starg_status read_weights(certificate_reader *r, uint32_t weight[3]) {
+    uint64_t value[3], depth;
+    for (int k = 0; k < 3; k++) {
+        TRY(certificate_take_text(r, " "));
+        TRY(certificate_take_number(r, (uint64_t)VERIFY_UNIT, &value[k]));
+    }
+    TRY(certificate_take_text(r, " "));
+    TRY(certificate_take_number(r, VERIFY_UNIT_BITS, &depth));
+    if (value[0] + value[1] + value[2] != UINT64_C(1) << depth)
+        return certificate_reject(r, "the weights of a point do not sum to 2 to the last number");
+    for (int k = 0; k < 3; k++)
+        weight[k] = (uint32_t)(value[k] << (VERIFY_UNIT_BITS - (int)depth));
+    return STARG_OK;
+}
+
+static starg_status read_corner(certificate_reader *r, uint32_t *corner) {
+    uint64_t value;
+    TRY(certificate_take_text(r, " "));
+    TRY(certificate_take_number(r, r->own->vertex_count > 0 ? r->own->vertex_count - 1 : 0,
+                                &value));
+    *corner = (uint32_t)value;
+    return STARG_OK;
 }
 
 static starg_status read_witnesses(certificate_reader *r) {
-    starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     size_t most = own->target == STARG_TARGET_VERTICES ? own->vertex_count : own->face_count;
-    STARG_TRY(certificate_take_count(r, "witnesses ", 2, &own->witness_count));
+    TRY(certificate_take_count(r, "witnesses ", 2, &own->witness_count));
     if (own->witness_count > EVERYWHERE_WITNESSES || (most == 0 && own->witness_count > 0))
         return certificate_reject(r, "there are too many witnesses");
     own->words = starg_bit_words(own->witness_count);
-    STARG_NEW(r->context, STAGE, own->witnesses, own->witness_count);
+    NEW(r->context, STAGE, own->witnesses, own->witness_count);
     if (own->target == STARG_TARGET_CORNERS)
-        STARG_NEW(r->context, STAGE, own->corners, own->witness_count);
+        NEW(r->context, STAGE, own->corners, own->witness_count);
+    if (own->target == STARG_TARGET_POINTS)
+        NEW(r->context, STAGE, own->weights, own->witness_count);
     for (size_t i = 0; i < own->witness_count; i++) {
         uint64_t value;
-        STARG_TRY(certificate_take_number(r, most - 1, &value));
+        TRY(certificate_take_number(r, most - 1, &value));
         own->witnesses[i] = (uint32_t)value;
-        if (own->corners != NULL) {
-            STARG_TRY(certificate_take_text(r, " "));
-            STARG_TRY(certificate_take_number(r, own->vertex_count > 0 ? own->vertex_count - 1 : 0,
-                                              &value));
-            own->corners[i] = (uint32_t)value;
-        }
-        STARG_TRY(certificate_end_line(r));
+        if (own->corners != NULL)
+            TRY(read_corner(r, &own->corners[i]));
+        if (own->weights != NULL)
+            TRY(read_weights(r, own->weights[i]));
+        TRY(certificate_end_line(r));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_witness(certificate_reader *r, uint64_t *witness) {
@@ -238,29 +244,33 @@ static starg_status take_witness(certificate_reader *r, uint64_t *witness) {
 }
 
 static starg_status read_rows(certificate_reader *r) {
-    starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(certificate_take_count(r, "rows ", 2, &own->row_count));
-    STARG_NEW_ZERO(r->context, STAGE, own->rows, own->row_count * own->words);
+    TRY(certificate_take_count(r, "rows ", 2, &own->row_count));
+    NEW_ZERO(r->context, STAGE, own->rows, own->row_count * own->words);
     for (size_t i = 0; i < own->row_count; i++) {
         do {
             uint64_t witness;
-            STARG_TRY(take_witness(r, &witness));
+            TRY(take_witness(r, &witness));
             starg_bit_set(own->rows + i * own->words, witness);
         } while (certificate_take(r, ' '));
-        STARG_TRY(certificate_end_line(r));
+        TRY(certificate_end_line(r));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- cells ---- */
 
+bool verify_is_between(const starg_certificate *own, size_t witness) {
+    bool between = own->weights != NULL;
+    for (int k = 0; k < 3 && between; k++)
+        between = own->weights[witness][k] != (uint32_t)VERIFY_UNIT;
+    return between;
+}
+
 static starg_status read_reason(certificate_reader *r) {
-    starg_status status = STARG_OK;
     verify_reason reason = {.vertex = UINT32_MAX, .seed = UINT32_MAX};
     uint64_t value;
-    STARG_TRY(take_witness(r, &value));
+    TRY(take_witness(r, &value));
     reason.witness = (uint32_t)value;
     char letter = r->at < r->end ? *r->at : '\0';
     reason.clipped = letter >= 'A' && letter <= 'Z';
@@ -270,25 +280,26 @@ static starg_status read_reason(certificate_reader *r) {
         return certificate_reject(r,
                                   "the letter of a reason is expected here: n, r, s, p, f, e or d");
     r->at++;
-    if (reason.kind != 'n' && reason.kind != 'd') {
+    bool between = verify_is_between(r->own, reason.witness);
+    if (between && (reason.kind == 's' || reason.kind == 'f'))
+        return certificate_reject(r, "s and f are reasons of vertices: the witness is none");
+    if (reason.kind != 'n' && reason.kind != 'd' && !between) {
         if (r->own->vertex_count == 0)
             return certificate_reject(r, "the model has no vertices");
-        STARG_TRY(certificate_take_number(r, r->own->vertex_count - 1, &value));
+        TRY(certificate_take_number(r, r->own->vertex_count - 1, &value));
         reason.vertex = (uint32_t)value;
     }
     if ((reason.kind == 'p' || reason.kind == 'f') && certificate_take(r, ':')) {
         if (r->own->face_count == 0)
             return certificate_reject(r, "the model has no faces");
-        STARG_TRY(certificate_take_number(r, r->own->face_count - 1, &value));
+        TRY(certificate_take_number(r, r->own->face_count - 1, &value));
         reason.seed = (uint32_t)value;
     }
-    STARG_PUSH(r->context, STAGE, &r->own->reasons, reason);
-done:
-    return status;
+    PUSH(r->context, STAGE, &r->own->reasons, reason);
+    return STARG_OK;
 }
 
 static starg_status read_kind(certificate_reader *r, everywhere_cell *cell) {
-    starg_status status = STARG_OK;
     uint64_t row;
     cell->row = UINT32_MAX;
     cell->kind = EVERYWHERE_LEAF;
@@ -305,14 +316,13 @@ static starg_status read_kind(certificate_reader *r, everywhere_cell *cell) {
     else if (certificate_take(r, '=')) {
         if (r->own->row_count == 0)
             return certificate_reject(r, "there are no rows");
-        STARG_TRY(certificate_take_number(r, r->own->row_count - 1, &row));
+        TRY(certificate_take_number(r, r->own->row_count - 1, &row));
         cell->row = (uint32_t)row;
     } else if (certificate_take(r, 'm'))
         cell->kind = EVERYWHERE_PARTED;
     else if (!certificate_take(r, '.'))
         return certificate_reject(r, "a cell is expected here: x, y, z, m, a dot, =, c or o");
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_cut(const everywhere_cell *cell) {
@@ -321,52 +331,45 @@ static bool is_cut(const everywhere_cell *cell) {
 
 /* The first part of the second half. */
 static starg_status read_part(certificate_reader *r, const everywhere_cell *cell, uint32_t *part) {
-    starg_status status = STARG_OK;
     uint64_t value;
-    STARG_TRY(certificate_take_number(r, UINT32_MAX - 1, &value));
+    TRY(certificate_take_number(r, UINT32_MAX - 1, &value));
     *part = (uint32_t)value;
     if (*part <= cell->parts[0] || *part >= cell->parts[1])
-        status = certificate_reject(r, "the cell is cut at a part that is not within");
-done:
-    return status;
+        return certificate_reject(r, "the cell is cut at a part that is not within");
+    return STARG_OK;
 }
 
 /* Where a cell is cut: in the middle of the axis, unless a place is given. */
 static starg_status read_cut(certificate_reader *r, const everywhere_cell *cell, double *at) {
-    starg_status status = STARG_OK;
     int k = cell->kind;
     double lower = cell->box.lower[k], upper = cell->box.upper[k];
     *at = fmin(fmax(0.5 * lower + 0.5 * upper, lower), upper);
     if (!certificate_take(r, '@'))
         return STARG_OK;
-    STARG_TRY(certificate_take_double(r, at));
+    TRY(certificate_take_double(r, at));
     if (!(*at >= lower && *at <= upper))
-        status = certificate_reject(r, "the cell is cut outside of itself");
-done:
-    return status;
+        return certificate_reject(r, "the cell is cut outside of itself");
+    return STARG_OK;
 }
 
 /* With its halves, if it is cut. */
 static starg_status read_cell(certificate_reader *r, everywhere_cell *cell,
                               everywhere_cell halves[2]) {
-    starg_status status = STARG_OK;
     double at;
-    STARG_TRY(read_kind(r, cell));
+    TRY(read_kind(r, cell));
     halves[0] = halves[1] = *cell;
     if (cell->kind == EVERYWHERE_PARTED) {
-        STARG_TRY(read_part(r, cell, &halves[1].parts[0]));
+        TRY(read_part(r, cell, &halves[1].parts[0]));
         halves[0].parts[1] = halves[1].parts[0];
     } else if (is_cut(cell)) {
-        STARG_TRY(read_cut(r, cell, &at));
+        TRY(read_cut(r, cell, &at));
         halves[0].box.upper[cell->kind] = halves[1].box.lower[cell->kind] = at;
     }
     cell->first = r->own->reasons.count;
     while ((is_cut(cell) || cell->kind == EVERYWHERE_LEAF) && certificate_take(r, ' '))
-        STARG_TRY(read_reason(r));
+        TRY(read_reason(r));
     cell->count = r->own->reasons.count - cell->first;
-    STARG_TRY(certificate_end_line(r));
-done:
-    return status;
+    return certificate_end_line(r);
 }
 
 /* A cell is followed by all of its lower half, then the upper one. Cells that are still to come
@@ -418,89 +421,79 @@ done:
 
 /* One witness, or an odd number of them in ascending order. */
 static starg_status read_priced(certificate_reader *r) {
-    starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     uint64_t witness, before = 0;
     size_t first = own->numbers.count, count = 0;
-    STARG_PUSH(r->context, STAGE, &own->numbers, 0);
+    PUSH(r->context, STAGE, &own->numbers, 0);
     do {
-        STARG_TRY(take_witness(r, &witness));
+        TRY(take_witness(r, &witness));
         if (count++ > 0 && witness <= before)
             return certificate_reject(r, "the witnesses of a set are not in ascending order");
         before = witness;
-        STARG_PUSH(r->context, STAGE, &own->numbers, witness);
+        PUSH(r->context, STAGE, &own->numbers, witness);
     } while (certificate_take(r, '+'));
     own->numbers.data[first] = count;
     if (count % 2 == 0)
-        status = certificate_reject(r, "a set has an odd number of witnesses");
-done:
-    return status;
+        return certificate_reject(r, "a set has an odd number of witnesses");
+    return STARG_OK;
 }
 
 static starg_status read_prices(certificate_reader *r) {
-    starg_status status = STARG_OK;
     uint64_t price;
     while (certificate_take(r, ' ')) {
-        STARG_TRY(read_priced(r));
-        STARG_TRY(certificate_take_text(r, ":"));
-        STARG_TRY(certificate_take_number(r, EVERYWHERE_PRICE, &price));
-        STARG_PUSH(r->context, STAGE, &r->own->numbers, price);
+        TRY(read_priced(r));
+        TRY(certificate_take_text(r, ":"));
+        TRY(certificate_take_number(r, EVERYWHERE_PRICE, &price));
+        PUSH(r->context, STAGE, &r->own->numbers, price);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_branch_rows(certificate_reader *r) {
-    starg_status status = STARG_OK;
     uint64_t row;
     while (certificate_take(r, ' ')) {
         if (r->own->row_count == 0)
             return certificate_reject(r, "there are no rows");
-        STARG_TRY(certificate_take_number(r, r->own->row_count - 1, &row));
-        STARG_PUSH(r->context, STAGE, &r->own->numbers, row);
+        TRY(certificate_take_number(r, r->own->row_count - 1, &row));
+        PUSH(r->context, STAGE, &r->own->numbers, row);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_nodes(certificate_reader *r) {
-    starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    STARG_TRY(certificate_take_count(r, "nodes ", 7, &own->node_count));
-    STARG_NEW(r->context, STAGE, own->nodes, own->node_count);
+    TRY(certificate_take_count(r, "nodes ", 7, &own->node_count));
+    NEW(r->context, STAGE, own->nodes, own->node_count);
     for (size_t i = 0; i < own->node_count; i++) {
         everywhere_node *node = &own->nodes[i];
         uint64_t witness = UINT32_MAX;
         node->first = own->numbers.count;
         if (r->at < r->end && *r->at == 'w') {
-            STARG_TRY(certificate_take_text(r, "witness "));
-            STARG_TRY(take_witness(r, &witness));
-            STARG_TRY(read_branch_rows(r));
+            TRY(certificate_take_text(r, "witness "));
+            TRY(take_witness(r, &witness));
+            TRY(read_branch_rows(r));
         } else {
-            STARG_TRY(certificate_take_text(r, "prices"));
-            STARG_TRY(read_prices(r));
+            TRY(certificate_take_text(r, "prices"));
+            TRY(read_prices(r));
         }
         node->witness = (uint32_t)witness;
         node->count = own->numbers.count - node->first;
-        STARG_TRY(certificate_end_line(r));
+        TRY(certificate_end_line(r));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_all(certificate_reader *r) {
-    starg_status status = STARG_OK;
     verify_box root;
-    STARG_TRY(read_head(r));
-    STARG_TRY(read_root(r, &root));
-    STARG_TRY(read_witnesses(r));
-    STARG_TRY(read_rows(r));
-    STARG_TRY(read_cells(r, &root));
-    STARG_TRY(read_nodes(r));
+    TRY(read_head(r));
+    TRY(read_root(r, &root));
+    TRY(read_witnesses(r));
+    TRY(read_rows(r));
+    TRY(read_cells(r, &root));
+    TRY(read_nodes(r));
     if (r->at < r->end)
-        status = certificate_reject(r, "the file goes on where its end is expected");
-done:
-    return status;
+        return certificate_reject(r, "the file goes on where its end is expected");
+    return STARG_OK;
 }
 
 starg_status starg_certificate_read_memory(starg_context *context, const void *bytes, size_t size,
@@ -523,15 +516,8 @@ done:
 void starg_certificate_free(starg_certificate *own) {
     if (own == NULL)
         return;
-    starg_context *context = own->context;
-    starg_release(context, own->witnesses);
-    starg_release(context, own->corners);
-    starg_release(context, own->rows);
-    starg_release(context, own->cells);
-    STARG_ARRAY_FREE(context, &own->reasons);
-    starg_release(context, own->nodes);
-    STARG_ARRAY_FREE(context, &own->numbers);
-    starg_release(context, own);
+    RELEASE(own->witnesses, own->corners, own->weights, own->rows, own->cells, own->reasons.data,
+            own->nodes, own->numbers.data, own);
 }
 
 /* The outline of a certificate: its witnesses, and the cells from which a guard may see its share
@@ -579,7 +565,8 @@ starg_status starg_certificate_outline_create(starg_context *context,
     STARG_NEW_ZERO(context, STAGE, s.out, 1);
     s.out->vertex_count = own->vertex_count;
     s.out->face_count = own->face_count;
-    s.out->target = own->target == STARG_TARGET_CORNERS ? STARG_TARGET_FACES : own->target;
+    s.out->target =
+        own->target == STARG_TARGET_VERTICES ? STARG_TARGET_VERTICES : STARG_TARGET_FACES;
     s.out->bound = own->bound;
     s.out->witness_count = own->witness_count;
     STARG_NEW(context, STAGE, s.out->witnesses, own->witness_count);
@@ -596,9 +583,8 @@ done:
 }
 
 void starg_certificate_outline_free(starg_context *context, starg_certificate_outline *outline) {
+    (void)context;
     if (outline == NULL)
         return;
-    starg_release(context, outline->witnesses);
-    starg_release(context, outline->cells);
-    starg_release(context, outline);
+    RELEASE(outline->witnesses, outline->cells, outline);
 }

@@ -2,7 +2,6 @@
 #include "verify/signs.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 #include "core/int128.h"

@@ -8,7 +8,6 @@
  * boundary is zero), whatever the tetrahedra are. Cost: O(n). */
 #include "verify/pieces.h"
 
-#include "core/memory.h"
 #include "core/rng.h"
 
 static const char STAGE[] = "verify";
@@ -100,24 +99,21 @@ done:
 void verify_facets_free(verify_facets *facets) {
     if (facets == NULL)
         return;
-    starg_release(facets->context, facets->mate);
-    starg_release(facets->context, facets);
+    RELEASE(facets->mate, facets);
 }
 
 starg_status verify_facets_outer(const verify_facets *facets, uint32_t **outer, uint32_t **faces,
                                  size_t *count) {
-    starg_status status = STARG_OK;
     size_t n = 0;
     *count = 0;
     for (size_t f = 0; f < 4 * facets->count; f++)
         n += facets->mate[f] == VERIFY_NONE;
-    STARG_NEW(facets->context, STAGE, *outer, n);
-    STARG_NEW(facets->context, STAGE, *faces, 3 * n);
+    NEW(facets->context, STAGE, *outer, n);
+    NEW(facets->context, STAGE, *faces, 3 * n);
     for (size_t f = 0; f < 4 * facets->count; f++)
         if (facets->mate[f] == VERIFY_NONE) {
             verify_facet_corners(facets->tetrahedra, (uint32_t)f, *faces + 3 * *count);
             (*outer)[(*count)++] = (uint32_t)f;
         }
-done:
-    return status;
+    return STARG_OK;
 }

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The verdict on guards: claims, and the facts that they are held against. */
-#ifndef STARG_VERIFY_FACTS_H
-#define STARG_VERIFY_FACTS_H
+#pragma once
 
 #include "core/bits.h"
-#include "core/context.h"
-#include "starguard/verify.h"
 #include "verify/sight.h"
-#include "verify/surface.h"
 
 /* A verdict under construction: a list of claims. */
 
@@ -33,36 +29,74 @@ void verify_leave_asked(starg_verdict *verdict, const char *format, ...)
 
 /* What the guards of a result see, recomputed, and conclusions from it. */
 
+/* The zones of a result (verify/zones.c); NULL: there are none. `meshes` has one for each zone that
+ * is one. Errors: MESH (also: other meshes than those of the result), MEMORY, CANCELLED. */
+typedef struct verify_zones verify_zones;
+starg_status verify_zones_create(starg_context *context, const starg_guards *guards,
+                                 const starg_mesh *const *meshes, verify_zones **out);
+void verify_zones_free(verify_zones *zones);
+STARG_DROP(verify_zones, verify_zones)
+bool verify_zones_admit(const verify_zones *zones, const double p[3]);
+
 typedef struct verify_facts {
     const verify_surface *surface;
     const starg_guards *guards;
+    const verify_zones *zones;
     int scale;
     bool *inside;         /* per guard */
     double *distance;     /* per guard its distance to the surface; only with a clearance */
     double *standoff;     /* per guard its distance to the model; if needed */
-    starg_bits *faces;    /* per guard a row: the faces that it sees */
+    size_t *seen_faces;   /* per guard */
+    starg_bits *patches;  /* per guard a row: the patches of targets that it sees */
     starg_bits *vertices; /* likewise; only if vertices are the target */
     uint8_t *vertex;      /* 1: some guard sees the vertex; likewise */
-    uint8_t *face;        /* 1: some guard sees the face */
-    uint8_t *wanted;      /* 1: the face is a target; others have area 0 and count as seen */
+    uint8_t *patch;       /* 1: some guard sees the patch, or it is no target */
+    uint8_t *face;        /* 1: of all its patches */
+    uint8_t *wanted;      /* 1: the patch is a target; others have area 0 */
     uint8_t *used;        /* vertices of target faces */
-    double *area;         /* per face, in scaled units */
+    double *area;         /* per patch, in scaled units */
     verify_tree *tree;    /* of the surface */
 
     size_t wanted_faces, covered_faces, used_vertices, covered_vertices;
     double covered_area, total_area;
 } verify_facts;
 
+/* Was a guard given to stay? Then it may stand and look where others may not. */
+static inline bool verify_is_kept(const starg_guards *guards, size_t guard) {
+    return guards->kept != NULL && guards->kept[guard];
+}
+
+/* The number of guards that were given to stay. */
+static inline size_t verify_count_kept(const starg_guards *guards) {
+    size_t count = 0;
+    for (size_t g = 0; g < guards->count; g++)
+        count += verify_is_kept(guards, g);
+    return count;
+}
+
+/* How many guards must see a column: a patch, or a vertex. */
+uint32_t verify_times(const verify_facts *known, size_t column);
+
 static inline bool verify_targets_vertices(const verify_facts *known) {
     return known->guards->options.visibility.target == STARG_TARGET_VERTICES;
 }
 
+static inline bool verify_targets_points(const verify_facts *known) {
+    return known->guards->options.visibility.target == STARG_TARGET_POINTS;
+}
+
+/* Halves faces until what guards see of them whole is known: these are its patches, and counts
+ * the faces that each guard sees (verify/points.c). Errors: ARGUMENT (too many parts), MEMORY,
+ * CANCELLED. */
+starg_status verify_divide_by_points(verify_facts *known, verify_surface *surface);
+
 /* Relative; for lengths, areas and fractions. */
 #define VERIFY_TOLERANCE 1e-9
 
-/* `known` has guards and surface, the rest is 0. Errors: MEMORY, CANCELLED, TIME. */
-starg_status verify_facts_find(starg_context *context, verify_facts *known);
-void verify_facts_free(starg_context *context, verify_facts *known);
+/* `known` has guards, the rest is 0; the surface, which must outlive it, gets patches. Errors:
+ * ARGUMENT (too many parts), MEMORY, CANCELLED, TIME. */
+starg_status verify_facts_find(verify_surface *surface, verify_facts *known);
+void verify_facts_free(verify_facts *known);
 
 static inline double verify_fraction(double part, double all) {
     return all > 0 ? part / all : 0;
@@ -84,13 +118,16 @@ bool verify_space_is_narrow(const starg_space_options *space);
 starg_status verify_find_unreached(const verify_facts *known, bool *known_cubes, size_t *count,
                                    size_t *first);
 
-/* Rows of the target elements: faces, or vertices. */
+/* Rows of the target elements: patches, or vertices. */
 static inline const starg_bits *verify_rows(const verify_facts *known) {
-    return verify_targets_vertices(known) ? known->vertices : known->faces;
+    return verify_targets_vertices(known) ? known->vertices : known->patches;
 }
 
+/* How many target faces have all their patches in a row? */
+size_t verify_count_faces(const verify_facts *known, const uint64_t *row);
+
 /* Number of rows that contain each column; the caller releases `held`. Errors: MEMORY. */
-starg_status verify_count_held(const verify_facts *known, uint32_t **held);
+starg_status verify_count_held(const verify_facts *known, const starg_bits *rows, uint32_t **held);
 
 /* The view of a guard that looks all around, and that of one of the result. */
 verify_view verify_view_around(const starg_guards *guards);
@@ -118,7 +155,8 @@ starg_status verify_find_coverable(const verify_facts *known, size_t enough,
 /* Number of guards of the result, chosen among them, that are as good as all (verify/needed.c). */
 starg_status verify_find_needed(const verify_facts *known, size_t *needed);
 
-/* How many faces do two guards see that are the baseline apart (verify/facts.c)? */
+/* Of how many faces is each patch seen by two guards that are the baseline apart (verify/facts.c)?
+ */
 size_t verify_count_paired(const verify_facts *known);
 
 /* Columns seen by fewer guards than redundancy requires (verify/redundancy.c). */
@@ -129,6 +167,10 @@ typedef struct verify_lack {
     double place[3]; /* where it could have stood */
 } verify_lack;
 starg_status verify_find_lack(const verify_facts *known, verify_lack *found);
+
+/* Of how many faces with needs of their own is each patch seen as often as they need? Errors:
+ * MEMORY. */
+starg_status verify_count_met(const verify_facts *known, size_t *met);
 
 /* The numbers of faces that at least 1, 2, ... and `most` guards see. Errors: MEMORY. */
 starg_status verify_count_often(const verify_facts *known, size_t most, size_t *often);
@@ -144,6 +186,5 @@ verify_levels verify_check_levels(const verify_facts *known);
 
 /* The claims of a result, in their order (verify/guards_*.c). Errors: MEMORY, CANCELLED, TIME. */
 starg_status verify_claim_places(starg_verdict *verdict, const verify_facts *known);
+void verify_claim_tour(starg_verdict *verdict, const verify_facts *known);
 starg_status verify_claim_coverage(starg_verdict *verdict, const verify_facts *known);
-
-#endif

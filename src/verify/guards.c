@@ -2,10 +2,7 @@
 /* Verification of a guards result: computes anew what each guard sees (verify/facts.h), then
  * compares the claims of the result with it, one by one. What can neither be shown nor refuted is
  * listed as not checked. */
-#include "core/memory.h"
 #include "verify/everywhere.h"
-#include "verify/facts.h"
-#include "verify/sight.h"
 
 /* Claims about the number of guards, and bounds for it. A bound for candidates, which the result
  * does not have, can only be refuted: by guards of the result that suffice (verify/needed.c). */
@@ -16,21 +13,22 @@
 static starg_status claim_bound(starg_verdict *verdict, const verify_facts *known,
                                 const starg_certificate *certificate) {
     const starg_guards *guards = known->guards;
-    size_t needed = guards->count;
+    size_t stay = verify_count_kept(guards), count = guards->count - stay, needed = guards->count;
     bool pairs = guards->options.candidates == STARG_CANDIDATES_GIVEN &&
                  guards->options.candidate_count == guards->count;
-    starg_status status = pairs ? STARG_OK : verify_find_needed(known, &needed);
-    if (status != STARG_OK)
-        return status;
-    if (needed < guards->lower_bound && guards->lower_bound <= guards->count)
+    /* guards that miss points may all see what the bound is about */
+    bool open = verify_targets_points(known) && known->covered_faces < known->wanted_faces;
+    TRY(pairs || open ? STARG_OK : verify_find_needed(known, &needed));
+    needed -= stay;
+    if (needed < guards->lower_bound && guards->lower_bound <= count)
         verify_claim(verdict, false,
                      "the lower bound %zu is at most the number of guards that would do: %zu of "
                      "the %zu guards do what was asked for",
-                     guards->lower_bound, needed, guards->count);
+                     guards->lower_bound, needed, count);
     else
-        verify_claim(verdict, guards->lower_bound <= guards->count,
+        verify_claim(verdict, guards->lower_bound <= count,
                      "the lower bound %zu is at most the number of guards %zu", guards->lower_bound,
-                     guards->count);
+                     count);
     bool follows = certificate != NULL && guards->lower_bound <= certificate->bound;
     if (guards->lower_bound > 0 && !follows)
         verify_leave(
@@ -43,7 +41,6 @@ static starg_status claim_bound(starg_verdict *verdict, const verify_facts *know
 
 static starg_status verify_claim_count(starg_verdict *verdict, const verify_facts *known,
                                        const starg_certificate *certificate) {
-    starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
     verify_target goal = verify_target_of(known);
     /* with fewer guards than required per face, none may suffice */
@@ -51,30 +48,30 @@ static starg_status verify_claim_count(starg_verdict *verdict, const verify_fact
         guards->options.max_guards != 0 && guards->options.max_guards < guards->options.redundancy;
     verify_claim(verdict, guards->count > 0 || goal.coverable == 0 || too_few,
                  "there are guards (%zu), unless nothing can be seen", guards->count);
-    verify_claim(verdict, guards->count <= guards->candidate_count,
-                 "%zu guards are among %zu candidates", guards->count, guards->candidate_count);
+    size_t count = guards->count - verify_count_kept(guards); /* those that were sought */
+    verify_claim(verdict, count <= guards->candidate_count, "%zu guards are among %zu candidates",
+                 count, guards->candidate_count);
     if (guards->options.max_guards != 0)
-        verify_claim(verdict, guards->count <= guards->options.max_guards,
-                     "%zu guards are at most %zu", guards->count, guards->options.max_guards);
+        verify_claim(verdict, count <= guards->options.max_guards, "%zu guards are at most %zu",
+                     count, guards->options.max_guards);
     verify_leave(verdict, "that there were %zu candidates: they are not in the file",
                  guards->candidate_count);
-    STARG_TRY(claim_bound(verdict, known, certificate));
-    bool equal = guards->lower_bound == guards->count;
+    TRY(claim_bound(verdict, known, certificate));
+    bool equal = guards->lower_bound == count;
     verify_claim(verdict, guards->optimal == equal,
                  "the result is called %s, with %zu guards and a lower bound of %zu",
-                 guards->optimal ? "optimal" : "not proven optimal", guards->count,
-                 guards->lower_bound);
+                 guards->optimal ? "optimal" : "not proven optimal", count, guards->lower_bound);
     if (guards->lower_bound_everywhere > 0)
         verify_claim(
             verdict,
             guards->lower_bound_everywhere <= guards->lower_bound &&
-                guards->optimal_everywhere == (guards->lower_bound_everywhere == guards->count),
+                guards->optimal_everywhere == (guards->lower_bound_everywhere == count),
             "the lower bound for guards anywhere, %zu, is at most that for candidates, and "
             "the result is called %s",
             guards->lower_bound_everywhere,
             guards->optimal_everywhere ? "the fewest possible" : "not proven such");
     if (certificate != NULL)
-        STARG_TRY(verify_claim_everywhere(verdict, known, certificate));
+        TRY(verify_claim_everywhere(verdict, known, certificate));
     else if (guards->lower_bound_everywhere > 0)
         verify_leave_asked(
             verdict,
@@ -97,8 +94,7 @@ static starg_status verify_claim_count(starg_verdict *verdict, const verify_fact
             "they stand",
             guards->area_bound_everywhere);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Checks levels of detail for consistency with one another, the model and the guards. Their meshes
@@ -164,8 +160,9 @@ verify_levels verify_check_levels(const verify_facts *known) {
                    last->face_count == guards->face_count;
     }
     for (size_t g = 0; g < guards->count && guards->levels != NULL; g++)
-        all.named =
-            all.named && (guards->level_count > 0 ? is_named(guards, g) : guards->levels[g] == 0);
+        all.named = all.named && (guards->level_count > 0 && !verify_is_kept(guards, g)
+                                      ? is_named(guards, g)
+                                      : guards->levels[g] == 0);
     return all;
 }
 
@@ -213,8 +210,9 @@ static void claim_options(starg_verdict *verdict, const starg_guards *guards) {
 /* ---- all claims ---- */
 
 static bool is_plain(const starg_guards *guards) {
-    return guards->obstacle_count == 0 && guards->target_count == 0 && !guards->space.outside &&
-           !guards->space.soup && guards->space.orientation == STARG_ORIENTATION_NESTED;
+    return guards->obstacle_count == 0 && guards->target_count == 0 &&
+           guards->space.clear_count == 0 && !guards->space.outside && !guards->space.soup &&
+           guards->space.orientation == STARG_ORIENTATION_NESTED;
 }
 
 starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
@@ -228,6 +226,7 @@ starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     starg_verdict *verdict = NULL;
+    verify_zones *zones = NULL;
     verify_facts known = {.guards = guards};
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
@@ -235,13 +234,15 @@ starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *
                   ? verify_surface_create(context, mesh, &surface)
                   : verify_space_create(context, mesh, evidence->obstacles,
                                         evidence->obstacle_count, guards, &surface));
-    known.surface = surface;
-    STARG_TRY(verify_facts_find(context, &known));
+    STARG_TRY(verify_zones_create(context, guards, evidence->zones, &zones));
+    known.zones = zones;
+    STARG_TRY(verify_facts_find(surface, &known));
 
     STARG_TRY(verify_verdict_create(context, &verdict));
     claim_model(verdict, &known);
     claim_options(verdict, guards);
     STARG_TRY(verify_claim_places(verdict, &known));
+    verify_claim_tour(verdict, &known);
     STARG_TRY(verify_claim_coverage(verdict, &known));
     STARG_TRY(verify_claim_count(verdict, &known, evidence->certificate));
     *out = verdict;
@@ -249,7 +250,8 @@ starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *
 done:
     starg_time_end(context, former);
     starg_verdict_free(context, verdict);
-    verify_facts_free(context, &known);
+    verify_facts_free(&known);
+    verify_zones_free(zones);
     verify_surface_free(surface);
     return status;
 }

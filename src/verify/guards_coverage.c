@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "core/memory.h"
 #include "verify/facts.h"
 
 static const char STAGE[] = "verify";
@@ -68,6 +67,54 @@ static void claim_fraction(starg_verdict *verdict, const char *name, double clai
                  claimed, found);
 }
 
+/* Of a face, the share of the area that guards see. */
+static double seen_share(const verify_facts *known, size_t face) {
+    const verify_surface *surface = known->surface;
+    double share = 0;
+    for (size_t j = verify_first_patch(surface, face); j < verify_first_patch(surface, face + 1);
+         j++)
+        share += known->patch[j] ? verify_patch_share(surface, j) : 0;
+    return share;
+}
+
+/* Faces that are seen in part are listed with the share. */
+static void claim_partial(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    size_t next = 0, wrong = 0, first = 0;
+    if (known->surface->patches == NULL)
+        return;
+    for (size_t f = 0; f < known->surface->model_faces; f++) {
+        bool listed = next < guards->partial_count && guards->partial[next] == f;
+        double share = known->face[f] ? 0 : seen_share(known, f);
+        bool right =
+            listed ? about_equal(guards->partial_share[next], share) && share > 0 : share == 0;
+        next += listed;
+        if (!right && wrong++ == 0)
+            first = f;
+    }
+    verify_claim_all(verdict, wrong, first,
+                     "%zu faces are seen in part, and as much of each as told",
+                     guards->partial_count);
+    verify_claim(verdict, next == guards->partial_count,
+                 "faces that are seen in part are listed once, ascending");
+}
+
+/* What is proven of every point. What is not proven to be seen is open. */
+static void claim_points(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    bool complete = known->covered_faces == known->wanted_faces;
+    double seen = complete ? 1 : verify_fraction(known->covered_area, known->total_area);
+    if (!verify_targets_points(known))
+        return;
+    verify_claim(verdict,
+                 fabs(guards->points_seen - seen) <= VERIFY_TOLERANCE &&
+                     fabs(guards->points_open - (1 - seen)) <= VERIFY_TOLERANCE,
+                 "every point of %.9g of the area is seen, and %.9g is open (found: %.9g and %.9g)",
+                 guards->points_seen, guards->points_open, seen, 1 - seen);
+    verify_claim(verdict, guards->points_complete == complete, "points are seen %s",
+                 guards->points_complete ? "completely" : "in part");
+}
+
 static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const verify_surface *surface = known->surface;
@@ -75,6 +122,8 @@ static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
         "faces", guards->uncovered, guards->uncovered_count, surface->model_faces, known->face,
         NULL};
     claim_unseen(verdict, &faces);
+    claim_partial(verdict, known);
+    claim_points(verdict, known);
     claim_fraction(verdict, "faces", guards->coverage_faces,
                    verify_fraction((double)known->covered_faces, (double)known->wanted_faces));
     claim_fraction(verdict, "area", guards->coverage_area,
@@ -95,34 +144,31 @@ static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
 /* The curve is what the first 1, 2, ... guards see; older files have none. */
 static starg_status claim_curve(starg_verdict *verdict, const verify_facts *known) {
     starg_context *context = known->surface->context;
-    starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
-    uint64_t *joined = NULL;
-    size_t sum = 0, wrong = 0;
+    SCOPED uint64_t *joined = NULL;
+    size_t wrong = 0;
     double area = 0;
     if (guards->curve_faces == NULL || guards->curve_area == NULL) {
         verify_leave(verdict, "the curve of the first 1, 2, ... guards: the file has none");
         return STARG_OK;
     }
-    STARG_NEW_ZERO(context, STAGE, joined, known->faces->words);
+    NEW_ZERO(context, STAGE, joined, known->patches->words);
     for (size_t g = 0; g < guards->count; g++) {
-        for (size_t w = 0; w < known->faces->words; w++) {
-            uint64_t fresh = starg_bits_row(known->faces, g)[w] & ~joined[w];
+        for (size_t w = 0; w < known->patches->words; w++) {
+            uint64_t fresh = starg_bits_row(known->patches, g)[w] & ~joined[w];
             joined[w] |= fresh;
             STARG_FOR_BITS (bit, fresh) {
-                sum++;
                 area += known->area[64 * w + bit];
             }
         }
+        size_t faces = verify_count_faces(known, joined);
         wrong += !about_equal(guards->curve_faces[g],
-                              verify_fraction((double)sum, (double)known->wanted_faces)) ||
+                              verify_fraction((double)faces, (double)known->wanted_faces)) ||
                  !about_equal(guards->curve_area[g], verify_fraction(area, known->total_area));
     }
     verify_claim(verdict, wrong == 0, "the curve tells what the first guards see (wrong for %zu)",
                  wrong);
-done:
-    starg_release(context, joined);
-    return status;
+    return STARG_OK;
 }
 
 static void claim_levels(starg_verdict *verdict, const verify_facts *known) {
@@ -150,7 +196,7 @@ static const char *reason_unchecked(const verify_facts *known) {
     const starg_guard_options *o = &known->guards->options;
     if (o->candidates == STARG_CANDIDATES_GIVEN)
         return "the candidates were given, and are not in the file";
-    if (verify_space_is_narrow(&known->guards->space))
+    if (verify_space_is_narrow(&known->guards->space) || known->zones != NULL)
         return "guards may stand in a part of the free space only";
     if (known->guards->time_limited)
         return "a time limit cut the search for candidates short";
@@ -185,9 +231,7 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
     }
     verify_coverable found;
     size_t rest = goal.coverable - goal.covered;
-    starg_status status = verify_find_coverable(known, rest, &found);
-    if (status != STARG_OK)
-        return status;
+    TRY(verify_find_coverable(known, rest, &found));
     if (found.proven > rest)
         verify_claim(verdict, false,
                      "%zu of %zu %s can be seen: more can, %zu of those that no guard sees, first "
@@ -204,17 +248,17 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
 
 /* How many faces at least 1, 2, ... guards see; files before 0.2 do not tell. */
 static starg_status claim_often(starg_verdict *verdict, const verify_facts *known) {
-    starg_status status = STARG_OK;
     starg_context *context = known->surface->context;
     const starg_guards *guards = known->guards;
     bool told = guards->redundant_count > 0;
     bool same = !told || guards->redundant_count == guards->options.redundancy;
-    size_t *often = NULL, most = guards->count + 1;
+    SCOPED size_t *often = NULL;
+    size_t most = guards->count + 1;
     if (told || guards->options.redundancy < most)
         most = told ? guards->redundant_count : guards->options.redundancy;
     char list[96] = "";
-    STARG_NEW(context, STAGE, often, most);
-    STARG_TRY(verify_count_often(known, most, often));
+    NEW(context, STAGE, often, most);
+    TRY(verify_count_often(known, most, often));
     for (size_t k = 0, length = 0; k < most; k++) {
         same = same && (!told || guards->redundant_faces[k] == often[k]);
         if (length < sizeof list)
@@ -223,9 +267,7 @@ static starg_status claim_often(starg_verdict *verdict, const verify_facts *know
     }
     verify_claim(verdict, same, "at least 1, 2, ... %zu guards see as many faces as told: %s%s",
                  most, list, told ? "" : " (the file does not tell)");
-done:
-    starg_release(context, often);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts *known) {
@@ -236,7 +278,8 @@ static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts 
         status = verify_find_lack(known, &found);
     if (status != STARG_OK || found.lacking == 0)
         return status;
-    const char *name = verify_target_of(known).name;
+    const char *name =
+        known->surface->patches != NULL ? "parts of faces" : verify_target_of(known).name;
     if (found.shown != VERIFY_NO_COLUMN)
         verify_claim(verdict, false,
                      "what fewer than %u guards see, %zu %s, no other place would see: number %zu "
@@ -248,6 +291,18 @@ static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts 
                            "that no other candidate sees the %zu %s that fewer than %u guards see",
                            found.lacking, name, guards->options.redundancy);
     return STARG_OK;
+}
+
+static starg_status claim_needs(starg_verdict *verdict, const verify_facts *known) {
+    size_t met;
+    if (known->guards->need_count == 0)
+        return STARG_OK;
+    starg_status status = verify_count_met(known, &met);
+    if (status == STARG_OK)
+        verify_claim(verdict, known->guards->met_needs == met,
+                     "%zu of %zu faces are seen as they need (found: %zu)",
+                     known->guards->met_needs, known->guards->need_count, met);
+    return status;
 }
 
 static void claim_baseline(starg_verdict *verdict, const verify_facts *known) {
@@ -264,12 +319,12 @@ static void claim_baseline(starg_verdict *verdict, const verify_facts *known) {
 }
 
 /* The least area that a number of faces that no guard sees can have: that number times the area of
- * the smallest of them. */
+ * the smallest of their patches. */
 static double least_unseen_area(const verify_facts *known, size_t count) {
     double smallest = INFINITY;
-    for (size_t f = 0; f < known->surface->face_count; f++)
-        if (!known->face[f])
-            smallest = fmin(smallest, known->area[f]);
+    for (size_t j = 0; j < verify_patch_count(known->surface); j++)
+        if (!known->patch[j])
+            smallest = fmin(smallest, known->area[j]);
     return count != 0 && smallest < INFINITY ? (double)count * smallest : 0;
 }
 
@@ -278,7 +333,8 @@ static double least_unseen_area(const verify_facts *known, size_t count) {
 static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
     const starg_guard_options *options = &known->guards->options;
     verify_target goal = verify_target_of(known);
-    if (options->max_guards != 0 || goal.coverable < goal.covered)
+    bool open = verify_targets_points(known) && !known->guards->points_complete;
+    if (options->max_guards != 0 || goal.coverable < goal.covered || open)
         return;
     double reached, wanted;
     size_t rest = goal.coverable - goal.covered;
@@ -295,14 +351,13 @@ static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
 }
 
 starg_status verify_claim_coverage(starg_verdict *verdict, const verify_facts *known) {
-    starg_status status = STARG_OK;
     claim_coverage(verdict, known);
-    STARG_TRY(claim_curve(verdict, known));
+    TRY(claim_curve(verdict, known));
     claim_levels(verdict, known);
-    STARG_TRY(claim_coverable(verdict, known));
+    TRY(claim_coverable(verdict, known));
     claim_goal(verdict, known);
-    STARG_TRY(claim_redundancy(verdict, known));
+    TRY(claim_redundancy(verdict, known));
+    TRY(claim_needs(verdict, known));
     claim_baseline(verdict, known);
-done:
-    return status;
+    return STARG_OK;
 }

@@ -3,9 +3,6 @@
 #include <math.h>
 
 #include "verify/facts.h"
-#include "verify/sight.h"
-#include "verify/signs.h"
-#include "verify/surface.h"
 
 /* The guards that a claim does not hold for. */
 typedef struct exceptions {
@@ -39,8 +36,21 @@ static void claim_inside(starg_verdict *verdict, const verify_facts *known) {
                  guards->count, bad.count, bad.first, p[0], p[1], p[2]);
 }
 
+/* Guards that were given to stay come first, and are as many as told. */
+static void claim_kept(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    size_t told = guards->options.keep_count, count = verify_count_kept(guards), first = 0;
+    while (first < guards->count && verify_is_kept(guards, first))
+        first++;
+    if (told > 0 || count > 0)
+        verify_claim(verdict, count == told && first == count,
+                     "%zu guards stay, and come first (found: %zu, of which the first %zu)", told,
+                     count, first);
+}
+
 static bool keeps_clearance(const verify_facts *known, size_t g) {
-    return known->distance[g] >= known->guards->options.clearance * (1 - VERIFY_TOLERANCE);
+    return verify_is_kept(known->guards, g) ||
+           known->distance[g] >= known->guards->options.clearance * (1 - VERIFY_TOLERANCE);
 }
 
 static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
@@ -57,6 +67,29 @@ static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
                      wanted, bad.count, bad.first, known->distance[bad.first]);
 }
 
+/* The angle of a direction above the horizon, by tangents. */
+static bool is_tilted(const verify_facts *known, size_t g) {
+    const starg_visibility_options *o = &known->guards->options.visibility;
+    const double *d = known->guards->directions + 3 * g;
+    bool plain = o->up[0] == 0 && o->up[1] == 0 && o->up[2] == 0;
+    const double up[3] = {o->up[0], plain ? 1 : o->up[1], o->up[2]};
+    double rise = d[0] * up[0] + d[1] * up[1] + d[2] * up[2];
+    double run = hypot(hypot(d[1] * up[2] - d[2] * up[1], d[2] * up[0] - d[0] * up[2]),
+                       d[0] * up[1] - d[1] * up[0]);
+    double angle = atan2(rise, run) * (180 / 3.14159265358979323846);
+    return verify_is_kept(known->guards, g) ||
+           (angle >= o->tilt[0] - 2e-6 && angle <= o->tilt[1] + 2e-6);
+}
+
+static void claim_tilt(starg_verdict *verdict, const verify_facts *known) {
+    const starg_visibility_options *o = &known->guards->options.visibility;
+    if (o->tilt[0] == STARG_TILT_ANY || known->guards->directions == NULL)
+        return;
+    const exceptions bad = find_exceptions(known, is_tilted);
+    verify_claim_all(verdict, bad.count, bad.first,
+                     "guards look %g to %g degrees above the horizon", o->tilt[0], o->tilt[1]);
+}
+
 static bool is_within(const verify_facts *known, const double p[3], double distance) {
     const starg_space_options *o = &known->guards->space;
     bool in = distance >= o->standoff_least * (1 - VERIFY_TOLERANCE) &&
@@ -70,7 +103,8 @@ static bool is_within(const verify_facts *known, const double p[3], double dista
 }
 
 static bool stands_within(const verify_facts *known, size_t g) {
-    return is_within(known, known->guards->positions + 3 * g, known->standoff[g]);
+    return verify_is_kept(known->guards, g) ||
+           is_within(known, known->guards->positions + 3 * g, known->standoff[g]);
 }
 
 static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
@@ -109,7 +143,7 @@ static bool is_by_faces(const verify_facts *known, const double p[3]) {
 }
 
 static bool stands_by_faces(const verify_facts *known, size_t g) {
-    return is_by_faces(known, known->guards->positions + 3 * g);
+    return verify_is_kept(known->guards, g) || is_by_faces(known, known->guards->positions + 3 * g);
 }
 
 bool verify_admits(const verify_facts *known, const double p[3]) {
@@ -118,6 +152,8 @@ bool verify_admits(const verify_facts *known, const double p[3]) {
     int winding = verify_tree_winding(known->tree, p, &on_surface);
     if (on_surface || winding + surface->ambient < 1 ||
         verify_tree_distance(known->tree, p, known->scale) < known->guards->options.clearance)
+        return false;
+    if (!verify_zones_admit(known->zones, p))
         return false;
     return !verify_space_is_narrow(&known->guards->space) ||
            (is_within(known, p, verify_distance(surface, p, surface->model_faces, known->scale)) &&
@@ -130,9 +166,7 @@ static starg_status claim_reached(starg_verdict *verdict, const verify_facts *kn
     size_t bad, first;
     if (!(known->guards->space.cell > 0))
         return STARG_OK;
-    starg_status status = verify_find_unreached(known, &known_cubes, &bad, &first);
-    if (status != STARG_OK)
-        return status;
+    TRY(verify_find_unreached(known, &known_cubes, &bad, &first));
     if (!known_cubes)
         verify_leave(verdict,
                      "that guards can be reached from (%.9g, %.9g, %.9g): the cubes are "
@@ -146,6 +180,19 @@ static starg_status claim_reached(starg_verdict *verdict, const verify_facts *kn
                      "guards can be reached from (%.9g, %.9g, %.9g): %zu cannot, first guard %zu",
                      from[0], from[1], from[2], bad, first);
     return STARG_OK;
+}
+
+static bool stands_in_zones(const verify_facts *known, size_t g) {
+    return verify_is_kept(known->guards, g) ||
+           verify_zones_admit(known->zones, known->guards->positions + 3 * g);
+}
+
+static void claim_zones(starg_verdict *verdict, const verify_facts *known) {
+    if (known->zones == NULL)
+        return;
+    const exceptions bad = find_exceptions(known, stands_in_zones);
+    verify_claim_all(verdict, bad.count, bad.first,
+                     "guards stand in zones where they may, and in none where they may not");
 }
 
 static void claim_faces_near(starg_verdict *verdict, const verify_facts *known) {
@@ -164,7 +211,7 @@ static void claim_faces_near(starg_verdict *verdict, const verify_facts *known) 
 }
 
 static bool sees_as_claimed(const verify_facts *known, size_t g) {
-    return known->guards->seen_faces[g] == starg_bits_count(known->faces, g);
+    return known->guards->seen_faces[g] == known->seen_faces[g];
 }
 
 static void claim_seen(starg_verdict *verdict, const verify_facts *known) {
@@ -176,17 +223,18 @@ static void claim_seen(starg_verdict *verdict, const verify_facts *known) {
                      "each guard sees as many faces as claimed: %zu do not, first guard %zu, "
                      "claimed %zu, found %zu",
                      bad.count, bad.first, known->guards->seen_faces[bad.first],
-                     starg_bits_count(known->faces, bad.first));
+                     known->seen_faces[bad.first]);
 }
 
 starg_status verify_claim_places(starg_verdict *verdict, const verify_facts *known) {
-    starg_status status = STARG_OK;
     claim_inside(verdict, known);
+    claim_kept(verdict, known);
+    claim_tilt(verdict, known);
     claim_clearance(verdict, known);
     claim_standoff(verdict, known);
+    claim_zones(verdict, known);
     claim_faces_near(verdict, known);
-    STARG_TRY(claim_reached(verdict, known));
+    TRY(claim_reached(verdict, known));
     claim_seen(verdict, known);
-done:
-    return status;
+    return STARG_OK;
 }

@@ -8,7 +8,10 @@
  * The shaft of a vertex v and a box is the union of the segments between them. An edge misses it if
  * a plane separates them: across an axis; through v and parallel to an axis, along the silhouette
  * of the box as seen from v in that projection; or through v and the edge, with all of the box
- * strictly on one side.
+ * strictly on one side. All of these signs are exact also where v is a point between the vertices
+ * of a face (verify/signs.h), so that the proofs hold for it as they stand: they use of v only that
+ * it is strictly beside the faces of a patch. But s and f, which look at the faces around v, are of
+ * vertices alone. The range is that to the doubles next to v, as docs/visibility.md defines it.
  *
  * Cost of a reason: the faces of a patch within the shaft, some 100 ns each. */
 #include "verify/everywhere.h"
@@ -28,8 +31,8 @@ typedef struct outline {
 } outline;
 
 typedef struct shaft {
-    uint32_t vertex;
-    const double *v;
+    uint32_t vertex; /* UINT32_MAX: v is between vertices */
+    verify_spot v;
     const verify_box *box;
     double corner[24]; /* of the box */
     outline lines[LINES];
@@ -54,11 +57,14 @@ static void box_corner(const verify_box *box, int i, double p[3]) {
         p[k] = i >> k & 1 ? box->upper[k] : box->lower[k];
 }
 
-static bool holds(const verify_box *box, const double p[3]) {
-    for (int k = 0; k < 3; k++)
-        if (p[k] < box->lower[k] || p[k] > box->upper[k])
-            return false;
-    return true;
+/* Of coordinate k, is the spot within the box? */
+static bool holds_along(const verify_box *box, const verify_spot *p, int k) {
+    return verify_spot_compare(p, k, box->lower[k]) >= 0 &&
+           verify_spot_compare(p, k, box->upper[k]) <= 0;
+}
+
+static bool holds(const verify_box *box, const verify_spot *p) {
+    return holds_along(box, p, 0) && holds_along(box, p, 1) && holds_along(box, p, 2);
 }
 
 static bool bounds_apart(const double *const t[3], const verify_box *box) {
@@ -69,14 +75,15 @@ static bool bounds_apart(const double *const t[3], const verify_box *box) {
     return false;
 }
 
-/* The side of a b c that strictly contains all corners, or 0. */
-static int side_of_box(const double a[3], const double b[3], const double c[3],
-                       const double corner[24]) {
-    int side = verify_side(a, b, c, corner);
+/* Are all corners strictly on one side of a b c? Exchanging two points turns the side of the other
+ * two: the spot may stand in the last place. */
+static bool box_is_beside(const double a[3], const double b[3], const verify_spot *c,
+                          const double corner[24]) {
+    int side = verify_spot_side(a, b, corner, c);
     for (int i = 1; i < 8 && side != 0; i++)
-        if (verify_side(a, b, c, corner + 3 * i) != side)
-            return 0;
-    return side;
+        if (verify_spot_side(a, b, corner + 3 * i, c) != side)
+            return false;
+    return side != 0;
 }
 
 /* Corners of a box that form its outline along an axis. */
@@ -105,7 +112,8 @@ static bool face_meets_box(const double *const t[3], const verify_box *box) {
         return false;
     for (int i = 0; i < 8; i++)
         box_corner(box, i, corner + 3 * i);
-    if (side_of_box(t[0], t[1], t[2], corner) != 0)
+    const verify_spot last = verify_plain(t[2]);
+    if (box_is_beside(t[0], t[1], &last, corner))
         return false;
     for (int axis = 0; axis < 3; axis++)
         if (edge_keeps_apart(t, corner, axis))
@@ -207,16 +215,15 @@ static void clip(const double *const t[3], const verify_box *box, verify_box *ou
  * it. */
 static void add_lines(shaft *s, int axis) {
     int u = (axis + 1) % 3, w = (axis + 2) % 3;
-    if (s->v[u] >= s->box->lower[u] && s->v[u] <= s->box->upper[u] && s->v[w] >= s->box->lower[w] &&
-        s->v[w] <= s->box->upper[w])
+    if (holds_along(s->box, &s->v, u) && holds_along(s->box, &s->v, w))
         return;
     bool done[2] = {false, false};
     for (int i = 0; i < 4; i++) {
         int plus = 0, minus = 0;
         const double *through = s->corner + 3 * RECTANGLE[axis][i];
         for (int j = 0; j < 4; j++) {
-            int turn =
-                i == j ? 0 : verify_turn(s->v, through, s->corner + 3 * RECTANGLE[axis][j], axis);
+            const double *other = s->corner + 3 * RECTANGLE[axis][j];
+            int turn = i == j ? 0 : verify_spot_turn(through, other, &s->v, axis);
             plus += turn > 0;
             minus += turn < 0;
         }
@@ -228,9 +235,9 @@ static void add_lines(shaft *s, int axis) {
     }
 }
 
-static void make_shaft(const double v[3], uint32_t vertex, const verify_box *box, shaft *s) {
+static void make_shaft(const verify_spot *v, uint32_t vertex, const verify_box *box, shaft *s) {
     s->vertex = vertex;
-    s->v = v;
+    s->v = *v;
     s->box = box;
     s->line_count = 0;
     for (int i = 0; i < 8; i++)
@@ -242,8 +249,8 @@ static void make_shaft(const double v[3], uint32_t vertex, const verify_box *box
 static bool line_keeps_apart(const shaft *s, const double a[3], const double b[3]) {
     for (int i = 0; i < s->line_count; i++) {
         const outline *line = &s->lines[i];
-        if (verify_turn(s->v, line->through, a, line->axis) == line->outer &&
-            verify_turn(s->v, line->through, b, line->axis) == line->outer)
+        if (verify_spot_turn(line->through, a, &s->v, line->axis) == line->outer &&
+            verify_spot_turn(line->through, b, &s->v, line->axis) == line->outer)
             return true;
     }
     return false;
@@ -252,20 +259,22 @@ static bool line_keeps_apart(const shaft *s, const double a[3], const double b[3
 /* Does the segment from a to b, which does not contain v, miss the shaft? */
 static bool misses(const shaft *s, const double a[3], const double b[3]) {
     for (int k = 0; k < 3; k++) {
-        double lower = fmin(s->v[k], s->box->lower[k]), upper = fmax(s->v[k], s->box->upper[k]);
-        if ((a[k] < lower && b[k] < lower) || (a[k] > upper && b[k] > upper))
+        double least = fmin(a[k], b[k]), most = fmax(a[k], b[k]);
+        if ((most < s->box->lower[k] && verify_spot_compare(&s->v, k, most) > 0) ||
+            (least > s->box->upper[k] && verify_spot_compare(&s->v, k, least) < 0))
             return true;
     }
-    return line_keeps_apart(s, a, b) || side_of_box(s->v, a, b, s->corner) != 0;
+    return line_keeps_apart(s, a, b) || box_is_beside(a, b, &s->v, s->corner);
 }
 
-/* Do the directions from v to the points of segment a b miss those to the box? */
+/* Do the directions from v, a vertex, to the points of segment a b miss those to the box? */
 static bool directions_miss(const shaft *s, const double a[3], const double b[3]) {
+    const double *v = s->v.at;
     for (int k = 0; k < 3; k++)
-        if ((s->box->lower[k] > s->v[k] && a[k] <= s->v[k] && b[k] <= s->v[k]) ||
-            (s->box->upper[k] < s->v[k] && a[k] >= s->v[k] && b[k] >= s->v[k]))
+        if ((s->box->lower[k] > v[k] && a[k] <= v[k] && b[k] <= v[k]) ||
+            (s->box->upper[k] < v[k] && a[k] >= v[k] && b[k] >= v[k]))
             return true;
-    return line_keeps_apart(s, a, b) || side_of_box(s->v, a, b, s->corner) != 0;
+    return line_keeps_apart(s, a, b) || box_is_beside(a, b, &s->v, s->corner);
 }
 
 /* ---- patches ---- */
@@ -283,7 +292,8 @@ static bool admits(const verify_watch *w, const shaft *s, uint32_t face, int sid
     const verify_surface *surface = w->scene->surface;
     const double *t[3];
     verify_corners(surface, face, t);
-    return !has_corner(surface, face, s->vertex) && verify_side(t[0], t[1], t[2], s->v) == side &&
+    return !has_corner(surface, face, s->vertex) &&
+           verify_spot_side(t[0], t[1], t[2], &s->v) == side &&
            (kind == ENTRY || !face_meets_box(t, s->box));
 }
 
@@ -329,8 +339,9 @@ static bool patch_hides(verify_watch *w, const shaft *s, uint32_t seed, flood_ki
         return false;
     verify_corners(w->scene->surface, seed, t);
     centre_of(s->box, centre);
-    int side = verify_side(t[0], t[1], t[2], s->v);
-    return side != 0 && !verify_on_triangle(centre, t) && verify_blocks(centre, s->v, t) &&
+    int side = verify_spot_side(t[0], t[1], t[2], &s->v);
+    return side != 0 && !verify_on_triangle(centre, t) &&
+           verify_blocks_from(verify_side(t[0], t[1], t[2], centre), centre, &s->v, t) &&
            closes(w, s, seed, side, kind);
 }
 
@@ -374,13 +385,13 @@ static bool leads_in(const verify_scene *scene, const shaft *s, const double d[3
     do {
         const double *end[2];
         beyond_vertex(scene, edge, end);
-        int a = verify_side(d, e, end[0], s->v), b = verify_side(d, e, end[1], s->v);
-        int at_d = verify_side(end[0], end[1], d, s->v),
-            at_e = verify_side(end[0], end[1], e, s->v);
+        int a = verify_side(d, e, end[0], s->v.at), b = verify_side(d, e, end[1], s->v.at);
+        int at_d = verify_side(end[0], end[1], d, s->v.at),
+            at_e = verify_side(end[0], end[1], e, s->v.at);
         if (a == 0 || b == 0 || at_e == 0)
             return false;
         if (a != b && at_d == -at_e && a == at_e) {
-            if (verify_side(s->v, end[0], end[1], d) >= 0)
+            if (verify_side(s->v.at, end[0], end[1], d) >= 0)
                 return false;
             any = true;
         }
@@ -417,7 +428,7 @@ static bool starts_outside(const verify_scene *scene, const shaft *s) {
     do {
         const double *end[2];
         beyond_vertex(scene, edge, end);
-        inner = inner || verify_side(s->v, end[0], end[1], d) > 0;
+        inner = inner || verify_side(s->v.at, end[0], end[1], d) > 0;
         edge = turn_about(scene, edge);
     } while (edge != first);
     if (!inner)
@@ -425,8 +436,8 @@ static bool starts_outside(const verify_scene *scene, const shaft *s) {
     do {
         const double *end[2];
         beyond_vertex(scene, edge, end);
-        if (verify_side(s->v, end[0], end[1], d) < 0) {
-            overshoot(s->v, d, end, e);
+        if (verify_side(s->v.at, end[0], end[1], d) < 0) {
+            overshoot(s->v.at, d, end, e);
             if (is_near(e) && leads_in(scene, s, d, e))
                 return true;
         }
@@ -459,7 +470,7 @@ static bool goes_on(verify_watch *w, const shaft *s, uint32_t edge) {
     verify_corners(scene->surface, across / 3, n);
     if (face_meets_box(t, s->box) || verify_side(t[0], t[1], t[2], n[(across + 2) % 3]) <= 0)
         return false;
-    int side = verify_side(n[0], n[1], n[2], s->v);
+    int side = verify_side(n[0], n[1], n[2], s->v.at);
     return side != 0 && closes(w, s, across / 3, side, FOLD);
 }
 
@@ -485,17 +496,17 @@ static bool is_far(const verify_box *box, const double v[3], double range) {
     return !verify_within(nearest, v, range);
 }
 
-static bool hides_vertex(verify_watch *w, const verify_box *box, double range,
-                         const verify_reason *reason) {
+/* From a box, by the point itself: a vertex, or one between vertices. */
+static bool hides_spot(verify_watch *w, const verify_spot *v, uint32_t vertex,
+                       const verify_box *box, double range, const verify_reason *reason) {
     const verify_scene *scene = w->scene;
-    const double *v = scene->surface->vertices + 3 * (size_t)reason->vertex;
     shaft s;
     if (reason->kind == 'r')
-        return is_far(box, v, range);
-    if (holds(box, v) ||
-        (strchr("sf", reason->kind) != NULL && !scene->sound_about[reason->vertex]))
+        return is_far(box, v->at, range);
+    if (holds(box, v) || (strchr("sf", reason->kind) != NULL &&
+                          (vertex == UINT32_MAX || !scene->sound_about[vertex])))
         return false;
-    make_shaft(w->scene->surface->vertices + 3 * (size_t)reason->vertex, reason->vertex, box, &s);
+    make_shaft(v, vertex, box, &s);
     switch (reason->kind) {
     case 's':
         return start_hides(scene, &s);
@@ -510,27 +521,42 @@ static bool hides_vertex(verify_watch *w, const verify_box *box, double range,
     }
 }
 
+/* From where a point of a face is seen at all: from the inner side of that. */
+static bool hides_of_face(verify_watch *w, uint32_t face, const verify_spot *v, uint32_t vertex,
+                          double range, const verify_reason *reason) {
+    const double *t[3];
+    verify_box left = w->box;
+    verify_corners(w->scene->surface, face, t);
+    if (reason->kind == 'n')
+        return no_corner_is_inner(t, &w->box);
+    if (reason->clipped)
+        clip(t, &w->box, &left);
+    return hides_spot(w, v, vertex, &left, range, reason);
+}
+
 bool verify_box_hides(verify_watch *w, starg_target kind, uint32_t target, double range,
                       const verify_reason *reason) {
     const verify_surface *surface = w->scene->surface;
-    const double *t[3];
-    verify_box left;
+    verify_spot v = {0};
     if (w->empty)
         return true;
-    if (reason->kind != 'n' && (reason->vertex >= surface->vertex_count ||
-                                w->scene->outgoing[reason->vertex] == UINT32_MAX))
-        return false;
+    if (reason->kind != 'n') {
+        if (reason->vertex >= surface->vertex_count ||
+            w->scene->outgoing[reason->vertex] == UINT32_MAX)
+            return false;
+        v = verify_plain(surface->vertices + 3 * (size_t)reason->vertex);
+    }
     if (kind == STARG_TARGET_VERTICES)
         return reason->kind != 'n' && !reason->clipped && reason->vertex == target &&
-               hides_vertex(w, &w->box, range, reason);
-    verify_corners(surface, target, t);
-    if (reason->kind == 'n')
-        return no_corner_is_inner(t, &w->box);
-    if (!has_corner(surface, target, reason->vertex))
-        return false;
-    if (reason->clipped)
-        clip(t, &w->box, &left);
-    return hides_vertex(w, reason->clipped ? &left : &w->box, range, reason);
+               hides_spot(w, &v, target, &w->box, range, reason);
+    return (reason->kind == 'n' || has_corner(surface, target, reason->vertex)) &&
+           hides_of_face(w, target, &v, reason->vertex, range, reason);
+}
+
+bool verify_box_hides_point(verify_watch *w, uint32_t face, const verify_spot *point, double range,
+                            const verify_reason *reason) {
+    return w->empty || (reason->vertex == UINT32_MAX &&
+                        hides_of_face(w, face, point, UINT32_MAX, range, reason));
 }
 
 bool verify_box_outside(verify_watch *w) {

@@ -5,10 +5,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include "core/memory.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-6, WORST = 1000;
@@ -139,10 +135,9 @@ static image image_of(const verify_map *own, uint32_t v) {
 }
 
 static starg_status claim_distinct(const verify_map *own) {
-    starg_status status = STARG_OK;
     size_t count = own->file->point_count, shared = 0, first = 0, second = 0;
-    image *images = NULL;
-    STARG_NEW(own->context, STAGE, images, count);
+    SCOPED image *images = NULL;
+    NEW(own->context, STAGE, images, count);
     for (uint32_t v = 0; v < count; v++)
         images[v] = image_of(own, v);
     qsort(images, count, sizeof *images, compare_images);
@@ -160,9 +155,7 @@ static starg_status claim_distinct(const verify_map *own) {
     verify_leave_asked(own->verdict,
                        "where the map takes what lies between vertices, and so that it is "
                        "a bijection: the file has no directions and no overlay");
-done:
-    starg_release(own->context, images);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- distortion ---- */
@@ -265,7 +258,6 @@ static bool claim_directions(const verify_map *own) {
 }
 
 static starg_status verify_bijection(verify_map *own) {
-    starg_status status = STARG_OK;
     const starg_map_file *file = own->file;
     bool directed = file->directions[0] != NULL || file->directions[1] != NULL;
     bool overlaid = file->overlay_points > 0 || file->overlay_faces > 0;
@@ -273,15 +265,14 @@ static starg_status verify_bijection(verify_map *own) {
         claim_same(own);
     if (directed || overlaid)
         for (int s = 0; s < 2; s++)
-            STARG_TRY(verify_surface_create(own->context, own->mesh[s], &own->surface[s]));
+            TRY(verify_surface_create(own->context, own->mesh[s], &own->surface[s]));
     if (directed && claim_directions(own))
-        STARG_TRY(verify_claim_sphere(own));
+        TRY(verify_claim_sphere(own));
     if (overlaid)
-        STARG_TRY(verify_claim_overlay(own));
+        TRY(verify_claim_overlay(own));
     if (!directed && !overlaid && !(file->same && has_same_faces(own)))
-        STARG_TRY(claim_distinct(own));
-done:
-    return status;
+        TRY(claim_distinct(own));
+    return STARG_OK;
 }
 
 starg_status starg_verify_map(starg_context *context, const starg_mesh *a, const starg_mesh *b,

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* MAP.json and reports of morphs as read for the verifier, and their claims. */
-#ifndef STARG_VERIFY_MAP_H
-#define STARG_VERIFY_MAP_H
+#pragma once
 
-#include "starguard/verify.h"
 #include "verify/facts.h"
-#include "verify/surface.h"
 
 /* MAP.json as read for the verifier, and its claims. */
 
@@ -63,5 +60,3 @@ struct starg_morph_report {
     size_t frame_count;
     verify_frame *frames;
 };
-
-#endif

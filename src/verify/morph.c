@@ -8,13 +8,8 @@
 #include "verify/map.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
-#include "verify/facts.h"
 #include "verify/pieces.h"
-#include "verify/signs.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9;
@@ -68,36 +63,31 @@ static bool claim_frames(const verify_morph *own) {
 /* Does a frame lie on a model, and cover it once? */
 static starg_status claim_refined(const verify_morph *own, const starg_mesh *frame,
                                   const starg_mesh *model, const char *words) {
-    starg_status status = STARG_OK;
-    verify_surface *outer = NULL, *inner = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *outer = NULL, *inner = NULL;
     verify_match match;
-    STARG_TRY(verify_surface_create(own->context, frame, &outer));
-    STARG_TRY(verify_surface_create(own->context, model, &inner));
-    STARG_TRY(verify_match_surfaces(outer, inner, &match));
+    TRY(verify_surface_create(own->context, frame, &outer));
+    TRY(verify_surface_create(own->context, model, &inner));
+    TRY(verify_match_surfaces(outer, inner, &match));
     verify_claim_all(own->verdict, match.off, match.first_off,
                      "%s, subdivided: all faces are on it", words);
     verify_claim_all(own->verdict, match.turned, match.first_turned, "and face the same way");
     verify_claim_all(own->verdict, match.uneven, match.shell, "and cover each shell once");
-done:
-    verify_surface_free(outer);
-    verify_surface_free(inner);
-    return status;
+    return STARG_OK;
 }
 
 /* Are the vertices of the last frame on B? */
 static starg_status claim_on(const verify_morph *own, const starg_mesh *frame,
                              const starg_mesh *model) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
-    verify_tree *tree = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
+    SCOPED_BY(verify_tree_drop) verify_tree *tree = NULL;
     size_t off = 0, first = 0;
-    STARG_TRY(verify_surface_welded(own->context, model, &surface));
-    STARG_TRY(verify_tree_create(surface, &tree));
+    TRY(verify_surface_welded(own->context, model, &surface));
+    TRY(verify_tree_create(surface, &tree));
     double most = TOLERANCE * verify_diagonal(surface) + verify_rounding(surface);
     int scale = verify_scale(surface);
     for (size_t v = starg_mesh_vertex_count(frame); v-- > 0;) {
         if (v % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(own->context, STAGE));
+            TRY(starg_check_cancel(own->context, STAGE));
         if (!(verify_tree_distance(tree, starg_mesh_vertices(frame) + 3 * v, scale) <= most)) {
             off++;
             first = v;
@@ -105,14 +95,10 @@ static starg_status claim_on(const verify_morph *own, const starg_mesh *frame,
     }
     verify_claim_all(own->verdict, off, first,
                      "the last frame is B with the faces of A: its vertices are on B");
-done:
-    verify_tree_free(tree);
-    verify_surface_free(surface);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status claim_ends(const verify_morph *own, const starg_mesh *a, const starg_mesh *b) {
-    starg_status status = STARG_OK;
     const starg_mesh *first = own->frames[0], *last = own->frames[own->frame_count - 1];
     bool plain = is_equal(first, a);
     if (plain)
@@ -120,15 +106,14 @@ static starg_status claim_ends(const verify_morph *own, const starg_mesh *a, con
     else if (has_faces_of(first, a))
         verify_claim(own->verdict, false, "the first frame is A: vertices are elsewhere");
     else
-        STARG_TRY(claim_refined(own, first, a, "the first frame is A"));
+        TRY(claim_refined(own, first, a, "the first frame is A"));
     if (is_equal(last, b))
         verify_claim(own->verdict, true, "the last frame is B");
     else if (plain)
-        STARG_TRY(claim_on(own, last, b));
+        TRY(claim_on(own, last, b));
     else
-        STARG_TRY(claim_refined(own, last, b, "the last frame is B"));
-done:
-    return status;
+        TRY(claim_refined(own, last, b, "the last frame is B"));
+    return STARG_OK;
 }
 
 /* ---- every frame ---- */
@@ -151,15 +136,14 @@ static bool cross_face(void *data, uint32_t other) {
 }
 
 static starg_status count_crossings(const verify_surface *surface, size_t *count) {
-    starg_status status = STARG_OK;
-    verify_tree *tree = NULL;
+    SCOPED_BY(verify_tree_drop) verify_tree *tree = NULL;
     crossing own = {.surface = surface};
-    STARG_TRY(verify_tree_create(surface, &tree));
+    TRY(verify_tree_create(surface, &tree));
     for (own.face = 0; own.face < surface->face_count; own.face++) {
         const double *t[3];
         double lower[3], upper[3];
         if (own.face % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(surface->context, STAGE));
+            TRY(starg_check_cancel(surface->context, STAGE));
         verify_corners(surface, own.face, t);
         for (int k = 0; k < 3; k++) {
             lower[k] = fmin(fmin(t[0][k], t[1][k]), t[2][k]);
@@ -168,9 +152,7 @@ static starg_status count_crossings(const verify_surface *surface, size_t *count
         verify_tree_visit(tree, lower, upper, cross_face, &own);
     }
     *count = own.count;
-done:
-    verify_tree_free(tree);
-    return status;
+    return STARG_OK;
 }
 
 /* What was found of a frame, and where it differs from the report. */
@@ -202,12 +184,11 @@ static bool compare_sizes(const starg_mesh *mesh, const verify_surface *surface,
 }
 
 static starg_status examine(const verify_morph *own, size_t i, found *f, double sizes[2]) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     const verify_frame *told = &own->report->frames[i];
     size_t count;
-    STARG_TRY(verify_surface_welded(own->context, own->frames[i], &surface));
-    STARG_TRY(count_crossings(surface, &count));
+    TRY(verify_surface_welded(own->context, own->frames[i], &surface));
+    TRY(count_crossings(surface, &count));
     bool even = compare_sizes(own->frames[i], surface, told, sizes);
     if (count != told->intersections && f->wrong++ == 0) {
         f->first = i;
@@ -216,9 +197,7 @@ static starg_status examine(const verify_morph *own, size_t i, found *f, double 
     }
     if (!even && f->uneven++ == 0)
         f->first_uneven = i;
-done:
-    verify_surface_free(surface);
-    return status;
+    return STARG_OK;
 }
 
 /* Deviation from what is linear in t. */
@@ -242,12 +221,11 @@ static void compare_drifts(const verify_morph *own, const double *sizes, found *
 }
 
 static starg_status claim_measures(const verify_morph *own) {
-    starg_status status = STARG_OK;
     found f = {0};
-    double *sizes = NULL;
-    STARG_NEW(own->context, STAGE, sizes, 2 * own->frame_count);
+    SCOPED double *sizes = NULL;
+    NEW(own->context, STAGE, sizes, 2 * own->frame_count);
     for (size_t i = 0; i < own->frame_count; i++)
-        STARG_TRY(examine(own, i, &f, sizes + 2 * i));
+        TRY(examine(own, i, &f, sizes + 2 * i));
     compare_drifts(own, sizes, &f);
     if (f.wrong == 0)
         verify_claim(own->verdict, true, "each frame has as many crossings as reported");
@@ -259,9 +237,7 @@ static starg_status claim_measures(const verify_morph *own) {
     verify_claim_all(own->verdict, f.uneven, f.first_uneven, "its volume and area are as reported");
     verify_claim_all(own->verdict, f.drifting, f.first_drifting, "and so are their drifts");
     verify_leave(own->verdict, "numbers of flipped and collapsed faces");
-done:
-    starg_release(own->context, sizes);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_verify_morph(starg_context *context, const starg_mesh *a, const starg_mesh *b,

@@ -10,13 +10,9 @@
  * another, are not detected.
  *
  * Cost: typically O(n log n). */
-#include <math.h>
 
-#include "core/memory.h"
 #include "core/rng.h"
 #include "verify/pieces.h"
-#include "verify/signs.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -42,7 +38,6 @@ static void sample_face(const double *const t[3], starg_rng *rng, double points[
 /* How far are points of `surface` from the tree's surface? */
 static starg_status measure_reach(const verify_surface *surface, const verify_tree *tree, int scale,
                                   verify_reach *reach) {
-    starg_status status = STARG_OK;
     bool all = surface->face_count <= MOST_FACES;
     size_t count = all ? surface->face_count : MOST_FACES;
     for (size_t i = 0; i < count; i++) {
@@ -60,10 +55,9 @@ static starg_status measure_reach(const verify_surface *surface, const verify_tr
             }
         }
         if (i % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(surface->context, STAGE));
+            TRY(starg_check_cancel(surface->context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- crossings ---- */
@@ -90,7 +84,6 @@ static bool cross_face(void *data, uint32_t other) {
 
 static starg_status find_crossings(const verify_pieces *pieces, const verify_tree *tree,
                                    verify_nearness *nearness) {
-    starg_status status = STARG_OK;
     const verify_surface *outer = pieces->outer;
     for (size_t f = 0; f < outer->face_count; f++) {
         crossing own = {outer, f, nearness};
@@ -103,10 +96,9 @@ static starg_status find_crossings(const verify_pieces *pieces, const verify_tre
         }
         verify_tree_visit(tree, lower, upper, cross_face, &own);
         if (f % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+            TRY(starg_check_cancel(pieces->context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- winding ---- */
@@ -131,12 +123,11 @@ static bool center_of(const starg_pieces_mesh *mesh, uint32_t tetrahedron, doubl
 
 static starg_status wind_shells(const verify_pieces *pieces, const verify_tree *tree,
                                 verify_nearness *nearness) {
-    starg_status status = STARG_OK;
     const verify_surface *outer = pieces->outer;
-    uint32_t *parent = NULL;
-    uint8_t *done_with = NULL;
-    STARG_TRY(verify_find_shells(outer, &parent));
-    STARG_NEW_ZERO(pieces->context, STAGE, done_with, outer->face_count);
+    SCOPED uint32_t *parent = NULL;
+    SCOPED uint8_t *done_with = NULL;
+    TRY(verify_find_shells(outer, &parent));
+    NEW_ZERO(pieces->context, STAGE, done_with, outer->face_count);
     for (size_t f = 0; f < outer->face_count; f++) {
         uint32_t shell = verify_root(parent, (uint32_t)f);
         double center[3];
@@ -148,27 +139,19 @@ static starg_status wind_shells(const verify_pieces *pieces, const verify_tree *
         int winding = verify_tree_winding(tree, center, &on_surface);
         if ((on_surface || winding != 1) && nearness->multiple++ == 0)
             nearness->shell = f;
-        STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+        TRY(starg_check_cancel(pieces->context, STAGE));
     }
-done:
-    starg_release(pieces->context, parent);
-    starg_release(pieces->context, done_with);
-    return status;
+    return STARG_OK;
 }
 
 starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
                                      verify_nearness *nearness) {
-    starg_status status = STARG_OK;
-    verify_tree *tree = NULL, *model_tree = NULL;
+    SCOPED_BY(verify_tree_drop) verify_tree *tree = NULL, *model_tree = NULL;
     *nearness = (verify_nearness){0};
-    STARG_TRY(verify_tree_create(pieces->outer, &tree));
-    STARG_TRY(verify_tree_create(model, &model_tree));
-    STARG_TRY(measure_reach(pieces->outer, model_tree, pieces->scale, &nearness->to));
-    STARG_TRY(measure_reach(model, tree, pieces->scale, &nearness->from));
-    STARG_TRY(find_crossings(pieces, tree, nearness));
-    STARG_TRY(wind_shells(pieces, tree, nearness));
-done:
-    verify_tree_free(tree);
-    verify_tree_free(model_tree);
-    return status;
+    TRY(verify_tree_create(pieces->outer, &tree));
+    TRY(verify_tree_create(model, &model_tree));
+    TRY(measure_reach(pieces->outer, model_tree, pieces->scale, &nearness->to));
+    TRY(measure_reach(model, tree, pieces->scale, &nearness->from));
+    TRY(find_crossings(pieces, tree, nearness));
+    return wind_shells(pieces, tree, nearness);
 }

@@ -12,7 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/memory.h"
 #include "verify/facts.h"
 
 static const char STAGE[] = "verify";
@@ -23,7 +22,7 @@ typedef struct removal {
     const uint32_t *held; /* rows of each column, for all guards */
     uint32_t *count;      /* the same for the remaining ones */
     uint32_t *order;
-    uint32_t redundancy;
+    uint32_t *redundancy; /* by column */
     double goal, reached; /* weight; infinite goal: none */
 } removal;
 
@@ -32,7 +31,8 @@ static double weight_of(const removal *own, size_t column) {
 }
 
 static uint32_t needed_at(const removal *own, size_t column) {
-    return own->held[column] < own->redundancy ? own->held[column] : own->redundancy;
+    return own->held[column] < own->redundancy[column] ? own->held[column]
+                                                       : own->redundancy[column];
 }
 
 /* Would the others be as good? */
@@ -44,7 +44,7 @@ static bool can_go(const removal *own, uint32_t guard) {
         STARG_FOR_BITS (bit, row[w]) {
             size_t column = 64 * w + bit;
             same = same && own->count[column] > needed_at(own, column);
-            lost += own->count[column] == own->redundancy ? weight_of(own, column) : 0;
+            lost += own->count[column] == own->redundancy[column] ? weight_of(own, column) : 0;
         }
     return same || own->reached - lost >= own->goal;
 }
@@ -54,7 +54,7 @@ static void remove_guard(removal *own, uint32_t guard) {
     for (size_t w = 0; w < own->rows->words; w++)
         STARG_FOR_BITS (bit, row[w]) {
             size_t column = 64 * w + bit;
-            if (own->count[column]-- == own->redundancy)
+            if (own->count[column]-- == own->redundancy[column])
                 own->reached -= weight_of(own, column);
         }
 }
@@ -64,10 +64,10 @@ static size_t remove_guards(removal *own) {
     own->reached = 0;
     for (size_t j = 0; j < own->rows->columns; j++) {
         own->count[j] = own->held[j];
-        own->reached += own->held[j] >= own->redundancy ? weight_of(own, j) : 0;
+        own->reached += own->held[j] >= own->redundancy[j] ? weight_of(own, j) : 0;
     }
     for (size_t i = 0; i < own->known->guards->count; i++)
-        if (can_go(own, own->order[i])) {
+        if (!verify_is_kept(own->known->guards, own->order[i]) && can_go(own, own->order[i])) {
             remove_guard(own, own->order[i]);
             left--;
         }
@@ -83,7 +83,7 @@ static double find_goal(const verify_facts *known) {
     if (verify_targets_vertices(known))
         return ceil(options->coverage * (double)known->surface->vertex_count);
     return known->total_area *
-           (options->coverage * (1 + 1e-9) + 0x1p-39 * (double)known->surface->face_count);
+           (options->coverage * (1 + 1e-9) + 0x1p-39 * (double)verify_patch_count(known->surface));
 }
 
 static void order_guards(removal *own, bool by_sight) {
@@ -103,15 +103,14 @@ starg_status verify_find_needed(const verify_facts *known, size_t *needed) {
     starg_status status = STARG_OK;
     starg_context *context = known->surface->context;
     uint32_t *held = NULL;
-    removal own = {.known = known,
-                   .rows = verify_rows(known),
-                   .redundancy = known->guards->options.redundancy,
-                   .goal = find_goal(known)};
-    own.redundancy = own.redundancy > 0 ? own.redundancy : 1;
+    removal own = {.known = known, .rows = verify_rows(known), .goal = find_goal(known)};
     *needed = known->guards->count;
-    STARG_TRY(verify_count_held(known, &held));
+    STARG_TRY(verify_count_held(known, own.rows, &held));
     own.held = held;
     STARG_NEW(context, STAGE, own.count, own.rows->columns);
+    STARG_NEW(context, STAGE, own.redundancy, own.rows->columns);
+    for (size_t j = 0; j < own.rows->columns; j++)
+        own.redundancy[j] = verify_times(known, j);
     STARG_NEW(context, STAGE, own.order, known->guards->count);
     for (int by_sight = 0; by_sight < 2; by_sight++) {
         order_guards(&own, by_sight == 1);
@@ -119,8 +118,6 @@ starg_status verify_find_needed(const verify_facts *known, size_t *needed) {
         *needed = left < *needed ? left : *needed;
     }
 done:
-    starg_release(context, held);
-    starg_release(context, own.count);
-    starg_release(context, own.order);
+    RELEASE(held, own.count, own.redundancy, own.order);
     return status;
 }

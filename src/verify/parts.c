@@ -14,9 +14,6 @@
  * each other, if they have vertices in common. */
 #include <stdlib.h>
 
-#include "verify/surface.h"
-
-#include "core/memory.h"
 #include "verify/everywhere.h"
 
 static const char STAGE[] = "verify";
@@ -66,12 +63,11 @@ static void find_bounds(const verify_surface *surface, size_t face, double bound
 }
 
 static starg_status list_shells(part_search *own) {
-    starg_status status = STARG_OK;
     const verify_surface *surface = own->surface;
     starg_context *context = surface->context;
-    uint32_t *number = NULL;
+    SCOPED uint32_t *number = NULL;
     size_t faces = surface->face_count;
-    STARG_NEW(context, STAGE, number, faces);
+    NEW(context, STAGE, number, faces);
     for (uint32_t f = 0; f < faces; f++) {
         own->shell[f] = verify_root(own->shell, f);
         own->part[f] = own->shell[f];
@@ -80,9 +76,9 @@ static starg_status list_shells(part_search *own) {
             own->roots[own->count++] = f;
         }
     }
-    STARG_NEW_ZERO(context, STAGE, own->first, own->count + 2);
-    STARG_NEW(context, STAGE, own->bounds, own->count);
-    STARG_NEW_ZERO(context, STAGE, own->depth, own->count);
+    NEW_ZERO(context, STAGE, own->first, own->count + 2);
+    NEW(context, STAGE, own->bounds, own->count);
+    NEW_ZERO(context, STAGE, own->depth, own->count);
     for (size_t s = 0; s < own->count; s++)
         for (int k = 0; k < 6; k++)
             own->bounds[s][k] =
@@ -96,9 +92,7 @@ static starg_status list_shells(part_search *own) {
         own->first[s] += own->first[s - 1];
     for (size_t f = 0; f < faces; f++)
         own->list[own->first[number[own->shell[f]] + 1]++] = (uint32_t)f;
-done:
-    starg_release(context, number);
-    return status;
+    return STARG_OK;
 }
 
 /* Does the box of a shell meet that of another? */
@@ -265,17 +259,7 @@ starg_status verify_find_parts(const verify_surface *surface, const verify_tree 
     *part = own.part;
     own.part = NULL;
 done:
-    starg_release(context, own.shell);
-    starg_release(context, own.part);
-    starg_release(context, own.roots);
-    starg_release(context, own.list);
-    starg_release(context, own.first);
-    starg_release(context, own.bounds);
-    starg_release(context, own.depth);
-    starg_release(context, own.sharing);
-    starg_release(context, own.edges);
-    starg_release(context, own.group);
-    starg_release(context, own.placed);
-    starg_release(context, own.shares);
+    RELEASE(own.shell, own.part, own.roots, own.list, own.first, own.bounds, own.depth, own.sharing,
+            own.edges, own.group, own.placed, own.shares);
     return status;
 }

@@ -18,7 +18,6 @@
  * Cost: O(n) for all that concerns tetrahedra, O(n log n) for the boundary. */
 #include <math.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
@@ -52,14 +51,12 @@ static starg_status check_point(starg_context *context, starg_element element, s
 
 starg_status verify_check_arrays(starg_context *context, const starg_pieces_mesh *mesh,
                                  const starg_pieces_report *report) {
-    starg_status status = STARG_OK;
-    STARG_TRY(check_tetrahedra(context, mesh));
+    TRY(check_tetrahedra(context, mesh));
     for (size_t v = 0; v < mesh->vertex_count; v++)
-        STARG_TRY(check_point(context, STARG_ELEMENT_VERTEX, v, mesh->vertices + 3 * v));
+        TRY(check_point(context, STARG_ELEMENT_VERTEX, v, mesh->vertices + 3 * v));
     for (size_t p = 0; report != NULL && p < report->piece_count; p++)
-        STARG_TRY(check_point(context, STARG_ELEMENT_GUARD, p, report->pieces[p].guard));
-done:
-    return status;
+        TRY(check_point(context, STARG_ELEMENT_GUARD, p, report->pieces[p].guard));
+    return STARG_OK;
 }
 
 /* ---- all of it ---- */
@@ -95,17 +92,14 @@ done:
 /* The model as it is: where the boundary is only near it, it need not be closed. */
 static starg_status wrap_model(starg_context *context, const starg_mesh *mesh,
                                verify_surface **out) {
-    starg_status status = STARG_OK;
     uint32_t *faces = NULL;
     size_t count = starg_mesh_face_count(mesh);
     if (count == 0)
         return starg_fail(context, STARG_ERROR_MESH, STAGE, "the model has no faces");
-    STARG_NEW(context, STAGE, faces, 3 * count);
+    NEW(context, STAGE, faces, 3 * count);
     memcpy(faces, starg_mesh_faces(mesh), 3 * count * sizeof *faces);
-    STARG_TRY(verify_surface_wrap(context, starg_mesh_vertices(mesh), starg_mesh_vertex_count(mesh),
-                                  faces, count, out));
-done:
-    return status;
+    return verify_surface_wrap(context, starg_mesh_vertices(mesh), starg_mesh_vertex_count(mesh),
+                               faces, count, out);
 }
 
 starg_status starg_verify_pieces_with(starg_context *context, const starg_mesh *model,
@@ -154,8 +148,7 @@ static starg_status wrap_boundary(starg_context *context, const starg_tetmesh *m
                                  starg_tetmesh_vertex_count(model), faces, count, out);
     faces = NULL;
 done:
-    starg_release(context, outer);
-    starg_release(context, faces);
+    RELEASE(outer, faces);
     verify_facets_free(facets);
     return status;
 }
@@ -164,19 +157,14 @@ starg_status starg_verify_pieces_of_tetmesh(starg_context *context, const starg_
                                             const starg_pieces_mesh *pieces,
                                             const starg_pieces_report *report,
                                             starg_verdict **out) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     verify_context own = {.context = context,
                           .mesh = pieces,
                           .report = report,
                           .model_tetrahedra = starg_tetmesh_count(model)};
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(wrap_boundary(context, model, &surface));
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(wrap_boundary(context, model, &surface));
     own.model = own.solid = surface;
-    STARG_TRY(verify_against(&own, out));
-done:
-    starg_time_end(context, former);
-    verify_surface_free(surface);
-    return status;
+    return verify_against(&own, out);
 }

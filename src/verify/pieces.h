@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pieces as they are checked: labelled tetrahedra, their facets, and the claims about them. */
-#ifndef STARG_VERIFY_PIECES_H
-#define STARG_VERIFY_PIECES_H
+#pragma once
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "core/context.h"
-#include "starguard/verify.h"
 #include "verify/facts.h"
-#include "verify/surface.h"
 
 /* Triangles of tetrahedra: those shared by two tetrahedra, and those of a single one. */
 
@@ -265,5 +258,3 @@ typedef struct verify_words {
 
 verify_words verify_facet_words(const verify_context *own, uint32_t facet);
 verify_words verify_outer_words(const verify_context *own, size_t face);
-
-#endif

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Takes a decomposition apart: facets, the outer boundary, labels, and the walls of each piece by
  * counting. Cost: O(n). */
-#include <string.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -21,14 +18,13 @@ static void find_piece_count(verify_pieces *pieces, const starg_pieces_report *r
 /* Counts the tetrahedra of each label. More pieces than tetrahedra leave some empty: counts stand
  * for the first ones only. */
 static starg_status count_labels(verify_pieces *pieces) {
-    starg_status status = STARG_OK;
     const starg_pieces_mesh *mesh = pieces->mesh;
     verify_labels *labels = &pieces->labels;
     size_t counted = pieces->piece_count < mesh->count ? pieces->piece_count : mesh->count;
     labels->tetrahedron = VERIFY_NONE;
     labels->empty = pieces->piece_count - counted;
     labels->first = counted;
-    STARG_NEW_ZERO(pieces->context, STAGE, pieces->sizes, counted);
+    NEW_ZERO(pieces->context, STAGE, pieces->sizes, counted);
     for (size_t t = mesh->count; t-- > 0;) {
         int32_t label = mesh->labels[t];
         if (label < 0 || (size_t)label >= pieces->piece_count)
@@ -42,8 +38,7 @@ static starg_status count_labels(verify_pieces *pieces) {
             labels->first = p;
         }
     labels->good = labels->tetrahedron == VERIFY_NONE && labels->empty == 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_wall(const verify_pieces *pieces, size_t facet) {
@@ -55,29 +50,26 @@ static bool is_wall(const verify_pieces *pieces, size_t facet) {
 /* Groups the walls by piece; within a piece they ascend. */
 static starg_status gather_walls(verify_pieces *pieces) {
     starg_context *context = pieces->context;
-    starg_status status = STARG_OK;
     const starg_pieces_mesh *mesh = pieces->mesh;
     size_t *start, count;
     uint32_t *faces = NULL;
-    STARG_NEW_ZERO(context, STAGE, pieces->wall_start, pieces->piece_count + 1);
+    NEW_ZERO(context, STAGE, pieces->wall_start, pieces->piece_count + 1);
     start = pieces->wall_start;
     for (size_t f = 0; f < 4 * mesh->count; f++)
         start[mesh->labels[f / 4]] += is_wall(pieces, f);
     for (size_t p = 1; p <= pieces->piece_count; p++)
         start[p] += start[p - 1];
     count = start[pieces->piece_count];
-    STARG_NEW(context, STAGE, pieces->wall_facets, count);
-    STARG_NEW(context, STAGE, faces, 3 * count);
+    NEW(context, STAGE, pieces->wall_facets, count);
+    NEW(context, STAGE, faces, 3 * count);
     for (size_t f = 4 * mesh->count; f-- > 0;)
         if (is_wall(pieces, f)) {
             size_t wall = --start[mesh->labels[f / 4]];
             pieces->wall_facets[wall] = (uint32_t)f;
             verify_facet_corners(mesh->tetrahedra, (uint32_t)f, faces + 3 * wall);
         }
-    STARG_TRY(verify_surface_wrap(context, mesh->vertices, mesh->vertex_count, faces, count,
-                                  &pieces->walls));
-done:
-    return status;
+    return verify_surface_wrap(context, mesh->vertices, mesh->vertex_count, faces, count,
+                               &pieces->walls);
 }
 
 starg_status verify_pieces_create(starg_context *context, const starg_pieces_mesh *mesh,
@@ -111,13 +103,8 @@ done:
 void verify_pieces_free(verify_pieces *pieces) {
     if (pieces == NULL)
         return;
-    starg_context *context = pieces->context;
     verify_facets_free(pieces->facets);
     verify_surface_free(pieces->outer);
     verify_surface_free(pieces->walls);
-    starg_release(context, pieces->outer_facets);
-    starg_release(context, pieces->sizes);
-    starg_release(context, pieces->wall_facets);
-    starg_release(context, pieces->wall_start);
-    starg_release(context, pieces);
+    RELEASE(pieces->outer_facets, pieces->sizes, pieces->wall_facets, pieces->wall_start, pieces);
 }

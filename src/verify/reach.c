@@ -12,11 +12,7 @@
  * face those about its box. */
 #include <math.h>
 
-#include "core/bits.h"
-#include "core/memory.h"
 #include "verify/facts.h"
-#include "verify/signs.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -153,7 +149,6 @@ static void mark_cube(grid *g, const size_t at[3], const double middle[3], void 
 }
 
 static starg_status mark_faces(grid *g) {
-    starg_status status = STARG_OK;
     const verify_surface *surface = g->known->surface;
     for (size_t f = 0; f < surface->face_count; f++) {
         const double *t[3];
@@ -166,10 +161,9 @@ static starg_status mark_faces(grid *g) {
         if (near)
             for_cubes(g, range, mark_cube, t);
         if (f % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(surface->context, STAGE));
+            TRY(starg_check_cancel(surface->context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- ends ---- */
@@ -210,13 +204,12 @@ static bool visit_near(grid *g, const double p[3], uint64_t *mark) {
 typedef STARG_ARRAY(size_t) cube_stack;
 
 static starg_status flood(grid *g) {
-    starg_status status = STARG_OK;
     starg_context *context = g->known->surface->context;
     const size_t step[3] = {1, g->count[0], g->count[0] * g->count[1]};
-    cube_stack stack = {0};
+    SCOPED cube_stack stack = {0};
     for (size_t w = 0; w < starg_bit_words(g->all); w++)
         STARG_FOR_BITS (bit, g->reached[w])
-            STARG_PUSH(context, STAGE, &stack, 64 * w + bit);
+            PUSH(context, STAGE, &stack, 64 * w + bit);
     while (stack.count > 0) {
         size_t cube = stack.data[--stack.count];
         for (int side = 0; side < 6; side++) {
@@ -226,12 +219,10 @@ static starg_status flood(grid *g) {
             if (ends || starg_bit_test(g->taken, next) || starg_bit_test(g->reached, next))
                 continue;
             starg_bit_set(g->reached, next);
-            STARG_PUSH(context, STAGE, &stack, next);
+            PUSH(context, STAGE, &stack, next);
         }
     }
-done:
-    STARG_ARRAY_FREE(context, &stack);
-    return status;
+    return STARG_OK;
 }
 
 starg_status verify_find_unreached(const verify_facts *known, bool *known_cubes, size_t *count,
@@ -250,12 +241,12 @@ starg_status verify_find_unreached(const verify_facts *known, bool *known_cubes,
     visit_near(&g, guards->space.from, g.reached);
     STARG_TRY(flood(&g));
     for (size_t i = guards->count; i-- > 0;)
-        if (!known->inside[i] || !visit_near(&g, guards->positions + 3 * i, NULL)) {
+        if (!verify_is_kept(guards, i) &&
+            (!known->inside[i] || !visit_near(&g, guards->positions + 3 * i, NULL))) {
             ++*count;
             *first = i;
         }
 done:
-    starg_release(context, g.taken);
-    starg_release(context, g.reached);
+    RELEASE(g.taken, g.reached);
     return status;
 }

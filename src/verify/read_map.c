@@ -3,10 +3,8 @@
  * checks the numbers. Skips unknown keys. Shares only the JSON parser with starg_map_read. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "core/json.h"
-#include "core/memory.h"
 #include "verify/map.h"
 
 static const char STAGE[] = "map file";
@@ -159,15 +157,9 @@ done:
 void starg_map_file_free(starg_map_file *file) {
     if (file == NULL)
         return;
-    starg_context *context = file->context;
-    starg_release(context, file->points.faces);
-    starg_release(context, file->points.weights);
-    starg_release(context, file->pairs);
+    RELEASE(file->points.faces, file->points.weights, file->pairs);
     for (int s = 0; s < 2; s++) {
-        starg_release(context, file->directions[s]);
-        starg_release(context, file->overlay[s].faces);
-        starg_release(context, file->overlay[s].weights);
+        RELEASE(file->directions[s], file->overlay[s].faces, file->overlay[s].weights);
     }
-    starg_release(context, file->triangles);
-    starg_release(context, file);
+    RELEASE(file->triangles, file);
 }

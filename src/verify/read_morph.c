@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The report of a morph, read for the verifier (docs/formats.md). Skips unknown keys. */
 #include <math.h>
-#include <string.h>
 
 #include "core/json.h"
-#include "core/memory.h"
 #include "verify/map.h"
 
 static const char STAGE[] = "morph report";
@@ -34,18 +32,16 @@ static bool read_frame(const json_t *object, verify_frame *frame) {
 
 static starg_status read_frames(starg_context *context, const char *name, const json_t *list,
                                 starg_morph_report *report) {
-    starg_status status = STARG_OK;
     size_t count = json_array_size(list);
     if (!json_is_array(list) || count < 2)
         return reject(context, name, "frames", "an array of at least two");
-    STARG_NEW(context, STAGE, report->frames, count);
+    NEW(context, STAGE, report->frames, count);
     for (size_t i = 0; i < count; i++)
         if (!read_frame(json_array_get(list, i), &report->frames[i]))
             return reject(context, name, "frames",
                           "objects with t, intersections, volume, area and their drifts");
     report->frame_count = count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_morph_report_read_memory(starg_context *context, const void *bytes, size_t size,
@@ -74,6 +70,5 @@ done:
 void starg_morph_report_free(starg_morph_report *report) {
     if (report == NULL)
         return;
-    starg_release(report->context, report->frames);
-    starg_release(report->context, report);
+    RELEASE(report->frames, report);
 }

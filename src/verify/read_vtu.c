@@ -14,11 +14,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
-#include "starguard/verify.h"
 #include "verify/pieces.h"
 
 static const char STAGE[] = "map file";
@@ -39,6 +36,7 @@ typedef enum vtu_name {
     DISTORTION,
     GUARD,
     GUARD_IMAGE,
+    MISSED,
     TIME,
     NAMES
 } vtu_name;
@@ -58,6 +56,7 @@ static const vtu_array WANTED[NAMES] = {
     [DISTORTION] = {"FieldData", "distortion"},
     [GUARD] = {"FieldData", "guard"},
     [GUARD_IMAGE] = {"FieldData", "guard_image"},
+    [MISSED] = {"FieldData", "missed"},
     [TIME] = {"FieldData", "time"},
 };
 
@@ -146,25 +145,21 @@ static bool next_tag(reader *r, tag *out) {
 
 /* The numbers up to the next tag. */
 static starg_status read_numbers(reader *r, number_list *out) {
-    starg_status status = STARG_OK;
     while (true) {
         while (r->at < r->end && is_blank(*r->at))
             r->at++;
         if (r->at == r->end || *r->at == '<')
             break;
         if (out->count % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(r->context, STAGE));
+            TRY(starg_check_cancel(r->context, STAGE));
         char *rest;
         double value = strtod(r->at, &rest); /* a zero byte follows the file */
-        if (rest == r->at || (rest < r->end && !is_blank(*rest) && *rest != '<')) {
-            status = reject(r, "a number is expected here");
-            goto done;
-        }
-        STARG_PUSH(r->context, STAGE, out, value);
+        if (rest == r->at || (rest < r->end && !is_blank(*rest) && *rest != '<'))
+            return reject(r, "a number is expected here");
+        PUSH(r->context, STAGE, out, value);
         r->at = rest;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Arrays of keys must come in order. */
@@ -246,20 +241,16 @@ static starg_status expect_count(const reader *r, vtu_name array, size_t count) 
 }
 
 static starg_status take_points(const reader *r, const number_list *from, double **out) {
-    starg_status status = STARG_OK;
-    STARG_NEW(r->context, STAGE, *out, from->count);
+    NEW(r->context, STAGE, *out, from->count);
     for (size_t i = 0; i < from->count; i++) {
         uint64_t index = i / 3;
-        if (!(fabs(from->data[i]) < 1e100)) {
-            status = starg_fail_at(
+        if (!(fabs(from->data[i]) < 1e100))
+            return starg_fail_at(
                 r->context, STARG_ERROR_RANGE, STAGE, STARG_ELEMENT_VERTEX, &index, 1,
                 "'%s': point %zu is not finite, or not below 1e100 in magnitude", r->name, i / 3);
-            goto done;
-        }
         (*out)[i] = from->data[i];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status reject_cell(const reader *r, size_t t, const char *what, double found) {
@@ -269,10 +260,9 @@ static starg_status reject_cell(const reader *r, size_t t, const char *what, dou
 }
 
 static starg_status take_cells(const reader *r, starg_solid_map *map) {
-    starg_status status = STARG_OK;
-    STARG_NEW(r->context, STAGE, map->tetrahedra, 4 * r->cells);
-    STARG_NEW(r->context, STAGE, map->labels, r->cells);
-    STARG_NEW(r->context, STAGE, map->ratios, r->cells);
+    NEW(r->context, STAGE, map->tetrahedra, 4 * r->cells);
+    NEW(r->context, STAGE, map->labels, r->cells);
+    NEW(r->context, STAGE, map->ratios, r->cells);
     for (size_t t = 0; t < r->cells; t++) {
         double label = r->numbers[PIECE].data[t];
         if (r->numbers[TYPES].data[t] != TETRAHEDRON)
@@ -292,74 +282,82 @@ static starg_status take_cells(const reader *r, starg_solid_map *map) {
             map->first_misplaced = t;
     }
     map->count = r->cells;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Places at times that ascend between 0 and 1. */
 static starg_status take_keys(const reader *r, starg_solid_map *map) {
-    starg_status status = STARG_OK;
     double before = 0;
     if (r->key_count == 0 && !r->found[TIME])
         return STARG_OK;
-    STARG_TRY(expect_count(r, TIME, r->key_count));
+    TRY(expect_count(r, TIME, r->key_count));
     if (r->keys.count != 3 * r->points * r->key_count)
         return reject_array(r, "key_0000", "and those that follow have not three numbers a point");
-    STARG_NEW(r->context, STAGE, map->times, r->key_count);
+    NEW(r->context, STAGE, map->times, r->key_count);
     for (size_t key = 0; key < r->key_count; key++) {
         map->times[key] = r->numbers[TIME].data[key];
         if (!(map->times[key] > before && map->times[key] < 1))
             return reject_array(r, "time", "does not ascend between 0 and 1");
         before = map->times[key];
     }
-    STARG_TRY(take_points(r, &r->keys, &map->keys));
+    TRY(take_points(r, &r->keys, &map->keys));
     map->key_count = r->key_count;
-done:
-    return status;
+    return STARG_OK;
+}
+
+/* What a map tells that ends near B. */
+static starg_status take_missed(const reader *r, starg_solid_map *map) {
+    const double *missed = r->numbers[MISSED].data;
+    if (!r->found[MISSED])
+        return STARG_OK;
+    TRY(expect_count(r, MISSED, 3));
+    if (!(missed[0] >= 0 && missed[1] >= 0))
+        return reject_array(r, "missed", "has a distance below 0");
+    map->compared = true;
+    map->distance = missed[0];
+    map->distance_back = missed[1];
+    map->missing = missed[2];
+    return STARG_OK;
 }
 
 static starg_status take_map(const reader *r, starg_solid_map *map) {
-    starg_status status = STARG_OK;
     size_t pieces = r->numbers[GUARD].count / 3;
     if (!r->counted || r->cells == 0 || r->cells > VERIFY_TETRAHEDRA || r->points > UINT32_MAX / 4)
         return starg_fail(r->context, STARG_ERROR_FORMAT, STAGE,
                           "'%s': there are no cells, or more than 2^29", r->name);
-    STARG_TRY(expect_count(r, POINTS, 3 * r->points));
-    STARG_TRY(expect_count(r, IMAGE, 3 * r->points));
-    STARG_TRY(expect_count(r, CONNECTIVITY, 4 * r->cells));
-    STARG_TRY(expect_count(r, OFFSETS, r->cells));
-    STARG_TRY(expect_count(r, TYPES, r->cells));
-    STARG_TRY(expect_count(r, PIECE, r->cells));
-    STARG_TRY(expect_count(r, RATIO, r->cells));
-    STARG_TRY(expect_count(r, DISTORTION, 3));
-    STARG_TRY(expect_count(r, GUARD, 3 * pieces));
-    STARG_TRY(expect_count(r, GUARD_IMAGE, 3 * pieces));
-    STARG_TRY(take_points(r, &r->numbers[POINTS], &map->vertices));
-    STARG_TRY(take_points(r, &r->numbers[IMAGE], &map->images));
-    STARG_TRY(take_points(r, &r->numbers[GUARD], &map->guards));
-    STARG_TRY(take_points(r, &r->numbers[GUARD_IMAGE], &map->guard_images));
+    TRY(expect_count(r, POINTS, 3 * r->points));
+    TRY(expect_count(r, IMAGE, 3 * r->points));
+    TRY(expect_count(r, CONNECTIVITY, 4 * r->cells));
+    TRY(expect_count(r, OFFSETS, r->cells));
+    TRY(expect_count(r, TYPES, r->cells));
+    TRY(expect_count(r, PIECE, r->cells));
+    TRY(expect_count(r, RATIO, r->cells));
+    TRY(expect_count(r, DISTORTION, 3));
+    TRY(expect_count(r, GUARD, 3 * pieces));
+    TRY(expect_count(r, GUARD_IMAGE, 3 * pieces));
+    TRY(take_points(r, &r->numbers[POINTS], &map->vertices));
+    TRY(take_points(r, &r->numbers[IMAGE], &map->images));
+    TRY(take_points(r, &r->numbers[GUARD], &map->guards));
+    TRY(take_points(r, &r->numbers[GUARD_IMAGE], &map->guard_images));
     map->vertex_count = r->points;
     map->piece_count = pieces;
     map->worst = r->numbers[DISTORTION].data[0];
     map->mean = r->numbers[DISTORTION].data[1];
     map->above_10 = r->numbers[DISTORTION].data[2];
-    STARG_TRY(take_cells(r, map));
-    STARG_TRY(take_keys(r, map));
-done:
-    return status;
+    TRY(take_cells(r, map));
+    TRY(take_keys(r, map));
+    return take_missed(r, map);
 }
 
 /* strtod needs a byte behind the last number that ends it. */
 static starg_status copy_text(reader *r, const void *bytes, size_t size, char **copy) {
-    starg_status status = STARG_OK;
-    STARG_NEW(r->context, STAGE, *copy, size + 1);
+    NEW(r->context, STAGE, *copy, size + 1);
     if (size > 0)
         memcpy(*copy, bytes, size);
     (*copy)[size] = '\0';
     r->begin = r->at = *copy;
     r->end = *copy + size;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_solid_map_read_memory(starg_context *context, const void *bytes, size_t size,
@@ -380,8 +378,7 @@ done:
     starg_c_locale_leave(&locale);
     for (int i = 0; i < NAMES; i++)
         STARG_ARRAY_FREE(context, &r.numbers[i]);
-    STARG_ARRAY_FREE(context, &r.keys);
-    starg_release(context, copy);
+    RELEASE(r.keys.data, copy);
     if (status != STARG_OK)
         starg_solid_map_free(context, map);
     return status;

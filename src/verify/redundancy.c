@@ -7,12 +7,9 @@
  * guard may stand at a quarter of them and sees an element from there, the search for candidates
  * cannot have missed all of them: two admissible places are shown for the element, and the result
  * is refuted. Signs are exact. Cost: that of HOSTS x ROUNDS x PLACES guards, if anything lacks. */
-#include <math.h>
 
-#include "core/memory.h"
 #include "core/rng.h"
 #include "verify/facts.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -35,6 +32,8 @@ static bool take_host(const verify_facts *known, const uint8_t *lacks, uint8_t *
     size_t most = 0;
     for (size_t g = 0; g < rows->rows; g++) {
         size_t seen = 0;
+        if (verify_is_kept(known->guards, g))
+            continue; /* candidates were not looked for beside it */
         for (size_t j = 0; j < rows->columns; j++)
             seen += lacks[j] && !looked[j] && starg_bits_test(rows, g, j);
         if (seen > most) {
@@ -50,7 +49,6 @@ static bool take_host(const verify_facts *known, const uint8_t *lacks, uint8_t *
 /* From how many places beside a guard are the lacking elements seen that it sees? */
 static starg_status look_beside(const verify_facts *known, verify_sight *sight, size_t host,
                                 const uint8_t *lacks, uint32_t *times, verify_lack *found) {
-    starg_status status = STARG_OK;
     const verify_surface *surface = known->surface;
     const starg_bits *rows = verify_rows(known);
     const verify_view view = verify_view_of(known->guards, host);
@@ -58,17 +56,17 @@ static starg_status look_beside(const verify_facts *known, verify_sight *sight, 
     double distance = FIRST_DISTANCE * verify_diagonal(surface);
     memset(times, 0, rows->columns * sizeof *times);
     for (int i = 0; i < ROUNDS * PLACES && found->shown == VERIFY_NO_COLUMN; i++) {
-        const uint8_t *vertices, *faces;
+        const uint8_t *vertices, *patches;
         double p[3];
         for (size_t k = 0; k < 3; k++)
             p[k] =
                 known->guards->positions[3 * host + k] + distance * (2 * starg_rng_unit(&rng) - 1);
         distance /= i % PLACES == PLACES - 1 ? 2 : 1;
-        STARG_TRY(starg_check_cancel(surface->context, STAGE));
+        TRY(starg_check_cancel(surface->context, STAGE));
         if (!verify_admits(known, p))
             continue;
-        STARG_TRY(verify_look(sight, p, &view, &vertices, &faces));
-        const uint8_t *seen = verify_targets_vertices(known) ? vertices : faces;
+        TRY(verify_look(sight, p, &view, &vertices, &patches));
+        const uint8_t *seen = verify_targets_vertices(known) ? vertices : patches;
         for (size_t j = 0; j < rows->columns && found->shown == VERIFY_NO_COLUMN; j++) {
             times[j] += seen[j] && lacks[j] && starg_bits_test(rows, host, j);
             if (times[j] < ENOUGH)
@@ -77,70 +75,78 @@ static starg_status look_beside(const verify_facts *known, verify_sight *sight, 
             memcpy(found->place, p, sizeof p);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status show_places(const verify_facts *known, const uint8_t *lacks,
                                 verify_lack *found) {
-    starg_status status = STARG_OK;
     starg_context *context = known->surface->context;
     size_t columns = verify_rows(known)->columns, host = 0;
-    verify_sight *sight = NULL;
-    uint32_t *times = NULL;
-    uint8_t *looked = NULL;
-    STARG_TRY(verify_sight_create(known->surface, &sight));
-    STARG_NEW(context, STAGE, times, columns);
-    STARG_NEW_ZERO(context, STAGE, looked, columns);
+    SCOPED_BY(verify_sight_drop) verify_sight *sight = NULL;
+    SCOPED uint32_t *times = NULL;
+    SCOPED uint8_t *looked = NULL;
+    TRY(verify_sight_create(known->surface, &sight));
+    NEW(context, STAGE, times, columns);
+    NEW_ZERO(context, STAGE, looked, columns);
     for (int i = 0; i < HOSTS && found->shown == VERIFY_NO_COLUMN; i++)
         if (take_host(known, lacks, looked, &host))
-            STARG_TRY(look_beside(known, sight, host, lacks, times, found));
-done:
-    verify_sight_free(sight);
-    starg_release(context, times);
-    starg_release(context, looked);
-    return status;
+            TRY(look_beside(known, sight, host, lacks, times, found));
+    return STARG_OK;
 }
 
 starg_status verify_find_lack(const verify_facts *known, verify_lack *found) {
-    starg_status status = STARG_OK;
     starg_context *context = known->surface->context;
-    uint32_t redundancy = known->guards->options.redundancy;
     size_t columns = verify_rows(known)->columns;
-    uint32_t *held = NULL;
-    uint8_t *lacks = NULL;
+    SCOPED uint32_t *held = NULL;
+    SCOPED uint8_t *lacks = NULL;
     *found = (verify_lack){.shown = VERIFY_NO_COLUMN};
-    if (redundancy < 2)
+    if (known->guards->options.redundancy < 2 && known->guards->need_count == 0)
         return STARG_OK;
-    STARG_TRY(verify_count_held(known, &held));
-    STARG_NEW(context, STAGE, lacks, columns);
+    TRY(verify_count_held(known, verify_rows(known), &held));
+    NEW(context, STAGE, lacks, columns);
     for (size_t j = 0; j < columns; j++) {
-        lacks[j] = held[j] > 0 && held[j] < redundancy;
+        lacks[j] = held[j] > 0 && held[j] < verify_times(known, j);
         found->lacking += lacks[j];
     }
     if (found->lacking > 0 && must_hold(known))
-        STARG_TRY(show_places(known, lacks, found));
+        TRY(show_places(known, lacks, found));
+    return STARG_OK;
+}
+
+/* By how many guards is each patch of a face seen? */
+static size_t least_times(const verify_facts *known, const uint32_t *held, size_t face) {
+    size_t least = SIZE_MAX;
+    for (size_t j = verify_first_patch(known->surface, face);
+         j < verify_first_patch(known->surface, face + 1); j++)
+        least = held[j] < least ? held[j] : least;
+    return least;
+}
+
+starg_status verify_count_met(const verify_facts *known, size_t *met) {
+    starg_status status = STARG_OK;
+    const starg_guards *guards = known->guards;
+    uint32_t *held = NULL;
+    *met = 0;
+    STARG_TRY(verify_count_held(known, known->patches, &held));
+    for (size_t i = 0; i < guards->need_count; i++) {
+        size_t face = guards->needs[i].face;
+        *met += face < known->surface->model_faces &&
+                least_times(known, held, face) >=
+                    verify_times(known, verify_first_patch(known->surface, face));
+    }
 done:
-    starg_release(context, held);
-    starg_release(context, lacks);
+    starg_release(known->surface->context, held);
     return status;
 }
 
 starg_status verify_count_often(const verify_facts *known, size_t most, size_t *often) {
-    starg_status status = STARG_OK;
-    starg_context *context = known->surface->context;
-    const starg_bits *rows = known->faces;
-    uint32_t *held = NULL;
-    STARG_NEW_ZERO(context, STAGE, held, rows->columns);
+    SCOPED uint32_t *held = NULL;
+    TRY(verify_count_held(known, known->patches, &held));
     memset(often, 0, most * sizeof *often);
-    for (size_t g = 0; g < rows->rows; g++)
-        for (size_t w = 0; w < rows->words; w++)
-            STARG_FOR_BITS (bit, starg_bits_row(rows, g)[w]) {
-                size_t times = held[64 * w + bit]++;
-                if (times < most)
-                    often[times]++;
-            }
-done:
-    starg_release(context, held);
-    return status;
+    for (size_t f = 0; f < known->surface->model_faces; f++) {
+        size_t times = verify_is_target(known->surface, f) ? least_times(known, held, f) : 0;
+        for (size_t k = 0; k < most && k < times; k++)
+            often[k]++;
+    }
+    return STARG_OK;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Recognizes the kind of a result file by its content. */
 #include <jansson.h>
-#include <string.h>
 
 #include "core/file.h"
 #include "core/memory.h"

@@ -4,10 +4,8 @@
  * the boundary of all tetrahedra, which it may touch only at the vertex; a guard that is not
  * strictly inside sees nothing. If there are too many pairs, a random sample is drawn with
  * replacement. */
-#include "core/memory.h"
 #include "core/rng.h"
 #include "verify/pieces.h"
-#include "verify/surface.h"
 
 static const char STAGE[] = "verify";
 
@@ -30,24 +28,21 @@ typedef struct search {
 } search;
 
 static starg_status sort_members(search *own) {
-    starg_status status = STARG_OK;
     const verify_pieces *pieces = own->pieces;
     const starg_pieces_mesh *mesh = pieces->mesh;
-    STARG_NEW(pieces->context, STAGE, own->start, pieces->piece_count + 1);
-    STARG_NEW(pieces->context, STAGE, own->members, mesh->count);
+    NEW(pieces->context, STAGE, own->start, pieces->piece_count + 1);
+    NEW(pieces->context, STAGE, own->members, mesh->count);
     size_t sum = 0;
     for (size_t p = 0; p < pieces->piece_count; p++)
         own->start[p] = sum += pieces->sizes[p];
     own->start[pieces->piece_count] = sum;
     for (size_t t = mesh->count; t-- > 0;)
         own->members[--own->start[mesh->labels[t]]] = (uint32_t)t;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Counts the vertices of a piece, and lists them unless they are known to be visible. */
 static starg_status gather_pairs(search *own, uint32_t piece, verify_seen *seen) {
-    starg_status status = STARG_OK;
     bool proven = own->certificates[piece].proof == VERIFY_PROVEN;
     for (size_t i = 4 * own->start[piece]; i < 4 * own->start[piece + 1]; i++) {
         uint32_t vertex = own->pieces->mesh->tetrahedra[4 * (size_t)own->members[i / 4] + i % 4];
@@ -57,15 +52,13 @@ static starg_status gather_pairs(search *own, uint32_t piece, verify_seen *seen)
         seen->pairs++;
         seen->proven += proven;
         if (!proven)
-            STARG_PUSH(own->pieces->context, STAGE, &own->open, ((pair){piece, vertex}));
+            PUSH(own->pieces->context, STAGE, &own->open, ((pair){piece, vertex}));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status find_inside(search *own) {
-    starg_status status = STARG_OK;
-    STARG_NEW_ZERO(own->pieces->context, STAGE, own->inside, own->pieces->piece_count);
+    NEW_ZERO(own->pieces->context, STAGE, own->inside, own->pieces->piece_count);
     for (size_t p = 0; p < own->pieces->piece_count; p++) {
         if (own->certificates[p].proof == VERIFY_PROVEN)
             continue;
@@ -73,10 +66,9 @@ static starg_status find_inside(search *own) {
         bool on_surface;
         int winding = verify_tree_winding(own->tree, guard, &on_surface);
         own->inside[p] = !on_surface && winding > 0;
-        STARG_TRY(starg_check_cancel(own->pieces->context, STAGE));
+        TRY(starg_check_cancel(own->pieces->context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool sees(const search *own, pair line) {
@@ -86,18 +78,16 @@ static bool sees(const search *own, pair line) {
 }
 
 static starg_status look(search *own, verify_seen *seen) {
-    starg_status status = STARG_OK;
     starg_rng rng = starg_rng_make(0, RNG_STAGE, 0);
     bool all = own->open.count <= MOST_LINES;
     seen->looked = all ? own->open.count : MOST_LINES;
     for (size_t i = 0; i < seen->looked; i++) {
         if (i % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(own->pieces->context, STAGE));
+            TRY(starg_check_cancel(own->pieces->context, STAGE));
         size_t which = all ? i : (size_t)starg_rng_below(&rng, own->open.count);
         seen->seen += sees(own, own->open.data[which]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status verify_find_seen(const verify_pieces *pieces, const starg_pieces_report *report,
@@ -116,11 +106,7 @@ starg_status verify_find_seen(const verify_pieces *pieces, const starg_pieces_re
         STARG_TRY(look(&own, seen));
     }
 done:
-    starg_release(context, own.start);
-    starg_release(context, own.members);
-    starg_release(context, own.last);
-    starg_release(context, own.inside);
-    STARG_ARRAY_FREE(context, &own.open);
+    RELEASE(own.start, own.members, own.last, own.inside, own.open.data);
     verify_tree_free(own.tree);
     return status;
 }

@@ -8,11 +8,8 @@
 #include "verify/sight.h"
 
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "core/int128.h"
-#include "verify/signs.h"
 
 /* Bit 0 is worth 2^(-8 x 1074); 2^14 products below 2^2680 end below bit 11290. */
 enum { FACTORS = 8, WORDS = 178, LOWEST = -1074 };
@@ -217,6 +214,14 @@ static bool is_before(const double p[3], const double normal[3], const double q[
     return sign_of_polynomial(&height) >= 0;
 }
 
+bool verify_is_near(const verify_view *view, const double p[3], double depth, const double q[3]) {
+    double at[3], normal[3];
+    if (!(depth < 1e100))
+        return true;
+    starg_depth_plane(p, view->ahead, depth, at, normal);
+    return is_before(at, normal, q);
+}
+
 bool verify_in_view(const verify_view *view, const double p[3], const double q[3]) {
     if (!verify_within(p, q, view->range))
         return false;
@@ -228,7 +233,7 @@ bool verify_in_view(const verify_view *view, const double p[3], const double q[3
     for (int side = 0; view->framed && side < 4; side++)
         if (!is_before(p, view->planes[side], q))
             return false;
-    return true;
+    return !view->framed || verify_is_near(view, p, view->depth, q);
 }
 
 /* The normal towards the inner side: the products of all pairs of corners, clockwise. */
@@ -260,7 +265,8 @@ static bool is_steep(const polynomial n[3], const double p[3], const double q[3]
     return sign_of(&sum) >= 0;
 }
 
-bool verify_faces(const verify_view *view, const double p[3], const double *const t[3]) {
+bool verify_faces(const verify_view *view, const double p[3], const double *const t[3],
+                  const double *const corners[3]) {
     double u[3], v[3], rounded[3], line[3];
     if (view->steepest == 0)
         return true;
@@ -270,7 +276,7 @@ bool verify_faces(const verify_view *view, const double p[3], const double *cons
         rounded[k] = u[(k + 2) % 3] * v[(k + 1) % 3] - u[(k + 1) % 3] * v[(k + 2) % 3];
     for (int i = 0; i < 3; i++) {
         polynomial normal[3];
-        subtract(line, p, t[i]);
+        subtract(line, p, corners[i]);
         int guess = estimate(rounded, line, view->steepest,
                              1e-13 * length_of(u) * length_of(v) * length_of(line));
         if (guess < 0)
@@ -278,7 +284,7 @@ bool verify_faces(const verify_view *view, const double p[3], const double *cons
         if (guess > 0)
             continue;
         inner_normal(normal, t);
-        if (!is_steep(normal, p, t[i], view->steepest))
+        if (!is_steep(normal, p, corners[i], view->steepest))
             return false;
     }
     return true;

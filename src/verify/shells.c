@@ -5,7 +5,6 @@
  * the other. Cost: O(n). */
 #include "verify/surface.h"
 
-#include "core/memory.h"
 #include "core/rng.h"
 
 static const char STAGE[] = "verify";
@@ -38,16 +37,15 @@ static void insert(const verify_surface *surface, uint32_t *slots, size_t mask, 
 
 starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent) {
     starg_context *context = surface->context;
-    starg_status status = STARG_OK;
-    uint32_t *slots = NULL, *partner = NULL;
+    SCOPED uint32_t *slots = NULL, *partner = NULL;
     size_t edges = 3 * surface->face_count, mask = 1;
     while (mask < 2 * edges)
         mask = 2 * mask + 1;
     if (edges >= SPOILT)
         return starg_fail_memory(context, STAGE);
-    STARG_NEW(context, STAGE, *parent, surface->face_count);
-    STARG_NEW(context, STAGE, partner, edges);
-    STARG_NEW_ZERO(context, STAGE, slots, mask + 1);
+    NEW(context, STAGE, *parent, surface->face_count);
+    NEW(context, STAGE, partner, edges);
+    NEW_ZERO(context, STAGE, slots, mask + 1);
     for (size_t f = 0; f < surface->face_count; f++)
         (*parent)[f] = (uint32_t)f;
     for (size_t e = 0; e < edges; e++)
@@ -57,8 +55,5 @@ starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent
     for (size_t e = 0; e < edges; e++)
         if (partner[e] < SPOILT)
             verify_join(*parent, (uint32_t)(e / 3), partner[e] / 3);
-done:
-    starg_release(context, slots);
-    starg_release(context, partner);
-    return status;
+    return STARG_OK;
 }

@@ -8,8 +8,10 @@
  * the four planes, by more than rounding, which proves it to be outside the cone. Where all w are
  * positive, the ratios u / w and v / w give these cells at once; elsewhere halving does. A point on
  * the segment from p to a vertex q lies in the same cones as q; so q is seen exactly if no triangle
- * blocks [p, q) among those listed in the cells that may contain q. The same holds for a face:
- * whatever enters the tetrahedron (p, face) is listed in a cell that the face may meet.
+ * blocks [p, q) among those listed in the cells that may contain q. The same holds for a face, or a
+ * part of one: whatever enters the tetrahedron (p, face) is listed in a cell that the face may
+ * meet. Corners of parts lie near their rounded places: the cells are those that any point so near
+ * meets.
  *
  * No triangle is omitted for facing away or being hidden. One that is certainly farther than the
  * view reaches is: what blocks [p, q) has a point nearer than q. Cost per point: a test of each
@@ -18,10 +20,10 @@
 
 #include <math.h>
 
-#include "core/memory.h"
-#include "verify/signs.h"
-
 enum { SIDES = 6, MAX_LEVELS = 12 };
+
+/* How many times its blur an item is ahead before ratios are used. */
+static const double AHEAD = 0x1p30;
 
 typedef struct listing {
     uint32_t cell, face;
@@ -42,9 +44,10 @@ struct verify_sight {
     size_t *start;                 /* of each cell's faces in `listed` */
     uint32_t *listed;              /* faces by cell */
     size_t listed_capacity;
-    uint32_t blocker;                 /* a face: that of the last view that one blocked */
-    int8_t *sides;                    /* of the planes of faces on which p is, as by verify_side */
-    uint8_t *vertices, *faces, *used; /* used: vertices of faces */
+    uint32_t blocker;            /* a face: that of the last view that one blocked */
+    int8_t *sides;               /* of the planes of faces on which p is, as by verify_side */
+    uint8_t *vertices, *patches; /* seen ones; points between vertices follow these */
+    uint8_t *used;               /* those that are corners of patches */
 };
 
 static size_t count_cells(uint32_t width) {
@@ -70,16 +73,16 @@ starg_status verify_sight_create(const verify_surface *surface, verify_sight **o
     sight->start = starg_allocate(context, most_cells + 1, sizeof *sight->start);
     sight->reached = starg_allocate(context, surface->face_count, sizeof *sight->reached);
     sight->sides = starg_allocate(context, surface->face_count, 1);
-    sight->vertices = starg_allocate(context, surface->vertex_count, 1);
-    sight->faces = starg_allocate(context, surface->face_count, 1);
-    sight->used = starg_allocate_zero(context, surface->vertex_count, 1);
+    sight->vertices = starg_allocate(context, verify_spot_count(surface), 1);
+    sight->patches = starg_allocate(context, verify_patch_count(surface), 1);
+    sight->used = starg_allocate_zero(context, verify_spot_count(surface), 1);
     if (sight->start == NULL || sight->reached == NULL || sight->sides == NULL ||
-        sight->vertices == NULL || sight->faces == NULL || sight->used == NULL) {
+        sight->vertices == NULL || sight->patches == NULL || sight->used == NULL) {
         verify_sight_free(sight);
         return STARG_ERROR_MEMORY;
     }
-    for (size_t i = 0; i < 3 * surface->face_count; i++)
-        sight->used[surface->faces[i]] = 1;
+    for (size_t i = 0; i < 3 * verify_patch_count(surface); i++)
+        sight->used[verify_patch_corners(surface, 0)[i]] = 1;
     *out = sight;
     return STARG_OK;
 }
@@ -87,17 +90,8 @@ starg_status verify_sight_create(const verify_surface *surface, verify_sight **o
 void verify_sight_free(verify_sight *sight) {
     if (sight == NULL)
         return;
-    starg_context *context = sight->surface->context;
-    STARG_ARRAY_FREE(context, &sight->listings);
-    STARG_ARRAY_FREE(context, &sight->cells);
-    starg_release(context, sight->start);
-    starg_release(context, sight->listed);
-    starg_release(context, sight->reached);
-    starg_release(context, sight->sides);
-    starg_release(context, sight->vertices);
-    starg_release(context, sight->faces);
-    starg_release(context, sight->used);
-    starg_release(context, sight);
+    RELEASE(sight->listings.data, sight->cells.data, sight->start, sight->listed, sight->reached,
+            sight->sides, sight->vertices, sight->patches, sight->used, sight);
 }
 
 /* ---- placing points and triangles in cells ---- */
@@ -105,6 +99,7 @@ void verify_sight_free(verify_sight *sight) {
 /* One to three points relative to p, in the coordinates of one side of the cube. */
 typedef struct item {
     double x[3][3]; /* u, v, w of each */
+    double blur;    /* what they are off at most, but for the rounding of differences */
     int count;
 } item;
 
@@ -113,7 +108,7 @@ typedef struct item {
 static bool beyond(const item *it, int k, double limit, int direction) {
     for (int i = 0; i < it->count; i++) {
         double x = it->x[i][k], along = limit * it->x[i][2];
-        double bound = 0x1p-50 * (fabs(x) + fabs(it->x[i][2])) + 0x1p-1072;
+        double bound = 0x1p-50 * (fabs(x) + fabs(it->x[i][2])) + 2 * it->blur + 0x1p-1072;
         if (!(direction * (x - along) > bound))
             return false;
     }
@@ -143,19 +138,21 @@ static uint32_t strip_of(double ratio, uint32_t width, double margin) {
     return at < 0 ? 0 : at < width ? (uint32_t)at : width - 1;
 }
 
-/* The columns or rows of an item, all of it at w > 0: the ratios of what is between points are
- * between theirs. Ratios have an error below 2^-50 of themselves; the margin is 2^-30 of a cell, of
- * which a side has at most 2^MAX_LEVELS in a row. */
+/* The columns or rows of an item, all of it at w > AHEAD x blur: the ratios of what is between
+ * points are between theirs. Ratios have an error below 2^-50 of themselves; the margin is 2^-30 of
+ * a cell, of which a side has at most 2^MAX_LEVELS in a row. What blur adds to a ratio is below
+ * 2 / AHEAD times it and 1. */
 static strips spanned(const item *it, int k, uint32_t width) {
     double low = it->x[0][k] / it->x[0][2], high = low;
+    double slack = it->blur > 0 ? 4 / AHEAD : 0, margin = 0x1p-30 + slack * width;
     for (int i = 1; i < it->count; i++) {
         double ratio = it->x[i][k] / it->x[i][2];
         low = ratio < low ? ratio : low;
         high = ratio > high ? ratio : high;
     }
-    if (low > 1 + 0x1p-40 || high < -1 - 0x1p-40)
+    if (low > 1 + 0x1p-40 + slack || high < -1 - 0x1p-40 - slack)
         return (strips){0, 0};
-    return (strips){strip_of(low, width, -0x1p-30), strip_of(high, width, 0x1p-30) + 1};
+    return (strips){strip_of(low, width, -margin), strip_of(high, width, margin) + 1};
 }
 
 static strips find_strips(const item *it, int k, uint32_t width, bool ahead) {
@@ -182,15 +179,17 @@ static starg_status reserve_cells(verify_sight *sight, size_t more) {
 /* Appends the cells of a side that the item may meet: all in such a column and such a row. Nothing
  * of it, as p is not on it, is in a cell if no point of it is at w > 0. */
 static starg_status place(verify_sight *sight, const item *it, uint32_t side) {
-    int ahead = 0;
-    for (int i = 0; i < it->count; i++)
-        ahead += it->x[i][2] > 0;
+    int ahead = 0, far_ahead = 0;
+    for (int i = 0; i < it->count; i++) {
+        ahead += it->x[i][2] > -2 * it->blur;
+        far_ahead += it->x[i][2] > AHEAD * it->blur;
+    }
     if (ahead == 0)
         return STARG_OK;
-    strips columns = find_strips(it, 0, sight->width, ahead == it->count);
+    strips columns = find_strips(it, 0, sight->width, far_ahead == it->count);
     if (columns.end == 0)
         return STARG_OK;
-    strips rows = find_strips(it, 1, sight->width, ahead == it->count);
+    strips rows = find_strips(it, 1, sight->width, far_ahead == it->count);
     starg_status status =
         reserve_cells(sight, (size_t)(columns.end - columns.first) * (rows.end - rows.first));
     for (uint32_t r = rows.first; r < rows.end && status == STARG_OK; r++)
@@ -201,20 +200,18 @@ static starg_status place(verify_sight *sight, const item *it, uint32_t side) {
 
 /* Sets sight->cells to all cells that the points, relative to p, may meet. */
 static starg_status find_cells(verify_sight *sight, const double p[3], const double *const *points,
-                               int count) {
+                               int count, double blur) {
     sight->cells.count = 0;
     for (uint32_t side = 0; side < SIDES; side++) {
         uint32_t axis = side / 2;
         double sign = side % 2 ? -1 : 1;
-        item it = {.count = count};
+        item it = {.blur = blur, .count = count};
         for (int i = 0; i < count; i++) {
             it.x[i][0] = points[i][(axis + 1) % 3] - p[(axis + 1) % 3];
             it.x[i][1] = points[i][(axis + 2) % 3] - p[(axis + 2) % 3];
             it.x[i][2] = sign * (points[i][axis] - p[axis]);
         }
-        starg_status status = place(sight, &it, side);
-        if (status != STARG_OK)
-            return status;
+        TRY(place(sight, &it, side));
     }
     return STARG_OK;
 }
@@ -241,7 +238,7 @@ static void survey(verify_sight *sight, const double p[3], double range) {
         const double *t[3];
         verify_corners(sight->surface, f, t);
         sight->sides[f] = (int8_t)verify_side(t[0], t[1], t[2], p);
-        if (!out_of_reach(p, t, range))
+        if (!verify_is_clear(sight->surface, f) && !out_of_reach(p, t, range))
             sight->reached[sight->reached_count++] = f;
     }
     sight->width = width_for(sight->reached_count);
@@ -253,9 +250,7 @@ static starg_status list_faces(verify_sight *sight, const double p[3]) {
     for (size_t n = 0; n < sight->reached_count; n++) {
         const double *t[3];
         verify_corners(sight->surface, sight->reached[n], t);
-        starg_status status = find_cells(sight, p, t, 3);
-        if (status != STARG_OK)
-            return status;
+        TRY(find_cells(sight, p, t, 3, 0));
         size_t count = sight->listings.count + sight->cells.count;
         if (count > sight->listings.capacity) {
             listing *grown = starg_reallocate(context, sight->listings.data, sight->listings.count,
@@ -300,10 +295,11 @@ static starg_status sort_listings(verify_sight *sight) {
 
 /* Does no face listed in sight->cells block the view to q? The one that blocked the last view is
  * tried first: points follow one another in the file mostly where they do on the surface. */
-static bool sees_point(verify_sight *sight, const double p[3], const double q[3]) {
+static bool sees_point(verify_sight *sight, const double p[3], const verify_spot *q) {
     const double *last[3];
     verify_corners(sight->surface, sight->blocker, last);
-    if (verify_blocks_from(sight->sides[sight->blocker], p, q, last))
+    if (!verify_is_clear(sight->surface, sight->blocker) &&
+        verify_blocks_from(sight->sides[sight->blocker], p, q, last))
         return false;
     for (size_t c = 0; c < sight->cells.count; c++) {
         uint32_t cell = sight->cells.data[c];
@@ -320,8 +316,9 @@ static bool sees_point(verify_sight *sight, const double p[3], const double q[3]
     return true;
 }
 
-/* Does nothing listed in sight->cells enter the tetrahedron (p, face)? */
-static bool sees_whole(const verify_sight *sight, const double p[3], uint32_t face) {
+/* Does nothing listed in sight->cells enter the tetrahedron (p, patch)? */
+static bool sees_whole(const verify_sight *sight, const double p[3], size_t face,
+                       const verify_spot patch[3]) {
     const double *f[3];
     verify_corners(sight->surface, face, f);
     for (size_t c = 0; c < sight->cells.count; c++) {
@@ -329,7 +326,7 @@ static bool sees_whole(const verify_sight *sight, const double p[3], uint32_t fa
         for (size_t i = sight->start[cell]; i < sight->start[cell + 1]; i++) {
             const double *t[3];
             verify_corners(sight->surface, sight->listed[i], t);
-            if (sight->listed[i] != face && verify_enters(p, f, t))
+            if (sight->listed[i] != face && verify_enters(p, f, patch, t))
                 return false;
         }
     }
@@ -338,55 +335,78 @@ static bool sees_whole(const verify_sight *sight, const double p[3], uint32_t fa
 
 static starg_status look_at_vertices(verify_sight *sight, const double p[3],
                                      const verify_view *view) {
-    for (size_t v = 0; v < sight->surface->vertex_count; v++) {
-        const double *q = sight->surface->vertices + 3 * v;
+    const verify_surface *surface = sight->surface;
+    for (uint32_t v = 0; v < verify_spot_count(surface); v++) {
+        const verify_spot q = verify_spot_of(surface, v);
         sight->vertices[v] = 0;
-        if (!sight->used[v] || !verify_in_view(view, p, q))
+        if (!sight->used[v] || !verify_in_view(view, p, q.at))
             continue;
-        starg_status status = find_cells(sight, p, &q, 1);
-        if (status != STARG_OK)
-            return status;
-        sight->vertices[v] = sees_point(sight, p, q);
+        TRY(find_cells(sight, p, &q.at, 1, q.blur));
+        sight->vertices[v] = sees_point(sight, p, &q);
     }
     return STARG_OK;
 }
 
-static starg_status look_at_faces(verify_sight *sight, const double p[3], const verify_view *view) {
-    for (uint32_t f = 0; f < sight->surface->face_count; f++) {
-        const uint32_t *corner = sight->surface->faces + 3 * (size_t)f;
+/* Has the view the density that the face needs? A back needs what its front does. */
+static bool is_resolved(const verify_surface *surface, const verify_view *view, const double p[3],
+                        size_t face, const double *const at[3]) {
+    if (view->needs == NULL || !view->framed)
+        return true;
+    if (surface->backs > 0 && face >= surface->backs)
+        face -= surface->backs;
+    const starg_face_need *need = verify_need_of(view->needs, face);
+    double depth =
+        starg_density_depth(&view->needs->options.visibility, need != NULL ? need->density : 0);
+    return verify_is_near(view, p, depth, at[0]) && verify_is_near(view, p, depth, at[1]) &&
+           verify_is_near(view, p, depth, at[2]);
+}
+
+static starg_status look_at_patches(verify_sight *sight, const double p[3],
+                                    const verify_view *view) {
+    const verify_surface *surface = sight->surface;
+    for (size_t j = 0; j < verify_patch_count(surface); j++) {
+        const uint32_t *corner = verify_patch_corners(surface, j);
+        size_t f = verify_patch_face(surface, j);
         const double *t[3];
-        verify_corners(sight->surface, f, t);
-        sight->faces[f] = sight->vertices[corner[0]] && sight->vertices[corner[1]] &&
-                          sight->vertices[corner[2]] && sight->sides[f] > 0 &&
-                          verify_faces(view, p, t);
-        if (!sight->faces[f] || view->rule != STARG_FACES_WHOLE)
+        verify_spot spots[3];
+        sight->patches[j] = sight->vertices[corner[0]] && sight->vertices[corner[1]] &&
+                            sight->vertices[corner[2]] && sight->sides[f] > 0;
+        if (!sight->patches[j] ||
+            (view->steepest == 0 && view->rule != STARG_FACES_WHOLE && view->needs == NULL))
             continue;
-        starg_status status = find_cells(sight, p, t, 3);
-        if (status != STARG_OK)
-            return status;
-        sight->faces[f] = sees_whole(sight, p, f);
+        verify_corners(surface, f, t);
+        verify_patch_spots(surface, j, spots);
+        const double *at[3] = {spots[0].at, spots[1].at, spots[2].at};
+        sight->patches[j] = verify_faces(view, p, t, at) && is_resolved(surface, view, p, f, at);
+        if (!sight->patches[j] || view->rule != STARG_FACES_WHOLE)
+            continue;
+        double blur = fmax(spots[0].blur, fmax(spots[1].blur, spots[2].blur));
+        TRY(find_cells(sight, p, at, 3, blur));
+        sight->patches[j] = sees_whole(sight, p, f, spots);
     }
     return STARG_OK;
 }
 
-/* Faces that count from either side are seen where their backs are. */
+/* Patches that count from either side are seen where their backs are. */
 static void add_backs(verify_sight *sight) {
     const verify_surface *surface = sight->surface;
-    for (size_t f = 0; surface->backs > 0 && f < surface->model_faces; f++)
-        sight->faces[f] |= sight->faces[surface->backs + f];
+    if (surface->backs == 0)
+        return;
+    size_t backs = verify_first_patch(surface, surface->backs);
+    for (size_t j = 0; j < verify_first_patch(surface, surface->model_faces); j++)
+        sight->patches[j] |= sight->patches[backs + j];
 }
 
 starg_status verify_look(verify_sight *sight, const double p[3], const verify_view *view,
-                         const uint8_t **vertices, const uint8_t **faces) {
-    starg_status status = STARG_OK;
-    survey(sight, p, view->range);
-    STARG_TRY(list_faces(sight, p));
-    STARG_TRY(sort_listings(sight));
-    STARG_TRY(look_at_vertices(sight, p, view));
-    STARG_TRY(look_at_faces(sight, p, view));
+                         const uint8_t **vertices, const uint8_t **patches) {
+    const verify_patches *parts = sight->surface->patches;
+    survey(sight, p, view->range + (parts != NULL ? 4 * parts->blur : 0));
+    TRY(list_faces(sight, p));
+    TRY(sort_listings(sight));
+    TRY(look_at_vertices(sight, p, view));
+    TRY(look_at_patches(sight, p, view));
     add_backs(sight);
     *vertices = sight->vertices;
-    *faces = sight->faces;
-done:
-    return status;
+    *patches = sight->patches;
+    return STARG_OK;
 }

@@ -4,17 +4,19 @@
  * The map is taken apart into two sets of labelled tetrahedra, in A and in B, and both are checked
  * as a decomposition is (verify/pieces.c): tetrahedra are positive and conforming, and their
  * boundary is the model's surface, covered once. In addition that boundary does not cross itself
- * and winds once around its inside. So the tetrahedra fill either solid without overlap; the map is
- * linear on each and the same on common faces: a piecewise linear homeomorphism. Labels are shared,
- * so that a piece corresponds to itself, and its two guards prove it star-shaped in both.
+ * and winds once around its inside. A map that tells how far its end is from B is checked for that.
+ * So the tetrahedra fill either solid without overlap; the map is linear on each and the same on
+ * common faces: a piecewise linear homeomorphism. Labels are shared, so that a piece corresponds to
+ * itself, and its two guards prove it star-shaped in both.
  *
  * Cost: twice that of a decomposition. */
+#include <math.h>
 #include <stdio.h>
 
-#include "core/memory.h"
 #include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
+static const double VOLUME = 1e-9; /* relative: what volumes may differ by */
 
 /* A map seen from one of its ends. */
 typedef struct end {
@@ -40,7 +42,6 @@ static starg_status check_keys(starg_context *context, const starg_solid_map *ma
 }
 
 static starg_status take_end(starg_context *context, const starg_solid_map *map, end *e, int side) {
-    starg_status status = STARG_OK;
     const double *guards = side == 0 ? map->guards : map->guard_images;
     e->name = side == 0 ? "in A" : "in B";
     e->mesh = (starg_pieces_mesh){.vertex_count = map->vertex_count,
@@ -50,15 +51,16 @@ static starg_status take_end(starg_context *context, const starg_solid_map *map,
                                   .labels = map->labels};
     e->report.tetrahedra = map->count;
     e->report.piece_count = map->piece_count;
-    STARG_NEW_ZERO(context, STAGE, e->report.pieces, map->piece_count);
+    NEW_ZERO(context, STAGE, e->report.pieces, map->piece_count);
     for (size_t p = 0; p < map->piece_count; p++)
         for (int k = 0; k < 3; k++)
             e->report.pieces[p].guard[k] = guards[3 * p + (size_t)k];
-    STARG_TRY(verify_check_arrays(context, &e->mesh, &e->report));
+    TRY(verify_check_arrays(context, &e->mesh, &e->report));
     e->own = (verify_context){.context = context, .mesh = &e->mesh, .report = NULL};
-    STARG_TRY(verify_pieces_create(context, &e->mesh, &e->report, &e->own.pieces));
-done:
-    return status;
+    e->report.approximated = side == 1 && map->compared;
+    e->report.distance = map->distance;
+    e->report.distance_back = map->distance_back;
+    return verify_pieces_create(context, &e->mesh, &e->report, &e->own.pieces);
 }
 
 static void free_end(starg_context *context, end *e) {
@@ -70,11 +72,10 @@ static void free_end(starg_context *context, end *e) {
 /* ---- claims ---- */
 
 static starg_status claim_pieces(const end *e) {
-    starg_status status = STARG_OK;
-    verify_certificate *certificates = NULL;
+    SCOPED verify_certificate *certificates = NULL;
     size_t count = e->report.piece_count, proven = 0, first = 0;
-    STARG_NEW(e->own.context, STAGE, certificates, count);
-    STARG_TRY(verify_certify(e->own.pieces, &e->report, certificates));
+    NEW(e->own.context, STAGE, certificates, count);
+    TRY(verify_certify(e->own.pieces, &e->report, certificates));
     for (size_t p = count; p-- > 0;)
         if (certificates[p].proof == VERIFY_PROVEN)
             proven++;
@@ -88,27 +89,48 @@ static starg_status claim_pieces(const end *e) {
                      "all %zu pieces are star-shaped about their guards: %zu are not, first piece "
                      "%zu",
                      count, count - proven, first);
-done:
-    starg_release(e->own.context, certificates);
-    return status;
+    return STARG_OK;
+}
+
+/* By how much the solid B is larger than the tetrahedra. */
+static void claim_missing(end *e, const starg_solid_map *map) {
+    verify_volume filled = {0}, solid = {0};
+    int scale = e->own.pieces->scale;
+    const double *lower = e->own.model->lower;
+    for (size_t t = 0; t < e->mesh.count; t++)
+        verify_add_tetrahedron(&filled, &e->mesh, t, scale);
+    for (size_t f = 0; f < e->own.model->face_count; f++) {
+        const double *t[4] = {lower};
+        verify_corners(e->own.model, f, t + 1);
+        verify_add_volume(&solid, t, scale);
+    }
+    double all = verify_volume_value(&solid);
+    double found = ldexp(all - verify_volume_value(&filled), -3 * scale);
+    double room = ldexp(filled.slack + solid.slack + VOLUME * fabs(all), -3 * scale);
+    verify_claim(e->own.verdict, fabs(found - map->missing) <= room,
+                 "the model has %.9g more volume than the image (found: %.9g)", map->missing,
+                 found);
 }
 
 /* Without a model the boundary is compared with nothing. */
-static starg_status claim_surface(end *e) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
-    STARG_TRY(verify_claim_once(&e->own));
+static starg_status claim_surface(end *e, const starg_solid_map *map) {
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
+    bool near = e->report.approximated && e->model != NULL;
+    if (!near)
+        TRY(verify_claim_once(&e->own));
     if (e->model == NULL) {
         verify_leave(e->own.verdict, "the surface: there is no model");
-        goto done;
+        return STARG_OK;
     }
-    STARG_TRY(verify_surface_create(e->own.context, e->model, &surface));
+    TRY(verify_surface_create(e->own.context, e->model, &surface));
     e->own.model = e->own.solid = surface;
-    STARG_TRY(verify_claim_boundary(&e->own));
+    e->own.report = &e->report;
+    TRY(verify_claim_boundary(&e->own));
+    if (near)
+        claim_missing(e, map);
     e->own.model = e->own.solid = NULL;
-done:
-    verify_surface_free(surface);
-    return status;
+    e->own.report = NULL;
+    return STARG_OK;
 }
 
 /* Moves an end's claims to the verdict on the map. */
@@ -120,16 +142,14 @@ static void merge(starg_verdict *verdict, const end *e) {
         verify_leave(verdict, "%s %s", e->name, own->not_checked[i].text);
 }
 
-static starg_status claim_end(end *e, starg_verdict *verdict) {
-    starg_status status = STARG_OK;
-    STARG_TRY(verify_verdict_create(e->own.context, &e->own.verdict));
-    STARG_TRY(verify_claim_tetrahedra(&e->own));
-    STARG_TRY(claim_surface(e));
+static starg_status claim_end(end *e, const starg_solid_map *map, starg_verdict *verdict) {
+    TRY(verify_verdict_create(e->own.context, &e->own.verdict));
+    TRY(verify_claim_tetrahedra(&e->own));
+    TRY(claim_surface(e, map));
     if (e->own.pieces->labels.good)
-        STARG_TRY(claim_pieces(e));
+        TRY(claim_pieces(e));
     merge(verdict, e);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void add_tetrahedron(verify_distortion *sum, const starg_solid_map *map, const end ends[2],
@@ -190,7 +210,7 @@ starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
     STARG_TRY(check_keys(context, map));
     STARG_TRY(verify_verdict_create(context, &verdict));
     for (int side = 0; side < 2; side++)
-        STARG_TRY(claim_end(&ends[side], verdict));
+        STARG_TRY(claim_end(&ends[side], map, verdict));
     claim_distortion(verdict, map, ends);
     claim_cells(verdict, map, ends);
     STARG_TRY(verify_claim_path(context, map, verdict));

@@ -6,11 +6,6 @@
  * Cost: that of the surfaces. */
 #include "verify/sight.h"
 
-#include <string.h>
-
-#include "core/memory.h"
-#include "verify/signs.h"
-
 static const char STAGE[] = "verify";
 
 typedef struct gathering {
@@ -21,37 +16,29 @@ typedef struct gathering {
 } gathering;
 
 static starg_status add_vertices(gathering *g, const verify_surface *surface, uint32_t *first) {
-    starg_status status = STARG_OK;
     *first = (uint32_t)(g->vertices.count / 3);
     for (size_t i = 0; i < 3 * surface->vertex_count; i++)
-        STARG_PUSH(g->context, STAGE, &g->vertices, surface->vertices[i]);
-done:
-    return status;
+        PUSH(g->context, STAGE, &g->vertices, surface->vertices[i]);
+    return STARG_OK;
 }
 
 static starg_status add_faces(gathering *g, const uint32_t *faces, size_t count, uint32_t first,
                               bool reversed) {
-    starg_status status = STARG_OK;
     for (size_t f = 0; f < count; f++)
         for (size_t k = 0; k < 3; k++)
-            STARG_PUSH(g->context, STAGE, &g->faces, faces[3 * f + (reversed ? 2 - k : k)] + first);
-done:
-    return status;
+            PUSH(g->context, STAGE, &g->faces, faces[3 * f + (reversed ? (3 - k) % 3 : k)] + first);
+    return STARG_OK;
 }
 
 /* One side of each face of a mesh of any kind. */
 typedef enum sheet_side { FRONT, BACK } sheet_side;
 
 static starg_status add_sheet(gathering *g, const starg_mesh *mesh, sheet_side side) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     uint32_t first;
-    STARG_TRY(verify_surface_welded(g->context, mesh, &surface));
-    STARG_TRY(add_vertices(g, surface, &first));
-    status = add_faces(g, surface->faces, surface->face_count, first, side == BACK);
-done:
-    verify_surface_free(surface);
-    return status;
+    TRY(verify_surface_welded(g->context, mesh, &surface));
+    TRY(add_vertices(g, surface, &first));
+    return add_faces(g, surface->faces, surface->face_count, first, side == BACK);
 }
 
 static int volume_sign(const verify_surface *surface) {
@@ -105,23 +92,20 @@ done:
 /* Those that are closed, then the fronts of the others, then the backs of these and of a soup. */
 static starg_status add_obstacles(gathering *g, const starg_mesh *model, bool soup,
                                   const starg_mesh *const *obstacles, size_t count) {
-    starg_status status = STARG_OK;
-    bool *closed = NULL;
-    STARG_NEW_ZERO(g->context, STAGE, closed, count);
+    SCOPED bool *closed = NULL;
+    NEW_ZERO(g->context, STAGE, closed, count);
     for (size_t i = 0; i < count; i++)
-        STARG_TRY(add_closed(g, obstacles[i], &closed[i]));
+        TRY(add_closed(g, obstacles[i], &closed[i]));
     for (size_t i = 0; i < count; i++)
         if (!closed[i])
-            STARG_TRY(add_sheet(g, obstacles[i], FRONT));
+            TRY(add_sheet(g, obstacles[i], FRONT));
     g->backs = g->faces.count / 3;
     if (soup)
-        STARG_TRY(add_sheet(g, model, FRONT));
+        TRY(add_sheet(g, model, FRONT));
     for (size_t i = 0; i < count; i++)
         if (!closed[i])
-            STARG_TRY(add_sheet(g, obstacles[i], BACK));
-done:
-    starg_release(g->context, closed);
-    return status;
+            TRY(add_sheet(g, obstacles[i], BACK));
+    return STARG_OK;
 }
 
 static starg_status check_obstacles(starg_context *context, const starg_mesh *const *obstacles,
@@ -145,17 +129,26 @@ static starg_status check_obstacles(starg_context *context, const starg_mesh *co
 
 /* How much each face counts; obstacles not at all. */
 static starg_status weigh(starg_context *context, const starg_mesh *mesh,
-                          const starg_guards *guards, verify_surface *surface) {
-    starg_status status = STARG_OK;
+                          const starg_guards *guards, size_t backs, verify_surface *surface) {
     size_t faces = starg_mesh_face_count(mesh);
-    STARG_NEW_ZERO(context, STAGE, surface->importance, surface->face_count);
+    NEW_ZERO(context, STAGE, surface->importance, surface->face_count);
     for (size_t f = 0; f < faces && guards->targets == NULL; f++)
         surface->importance[f] = 1;
     for (size_t i = 0; guards->targets != NULL && i < guards->target_count; i++)
         if (guards->targets[i] < faces)
             surface->importance[guards->targets[i]] = guards->importance[i];
-done:
-    return status;
+    if (guards->space.clear_count > 0)
+        NEW_ZERO(context, STAGE, surface->clear, surface->face_count);
+    for (size_t i = 0; i < guards->space.clear_count; i++) {
+        size_t face = guards->space.clear[i];
+        if (face >= faces)
+            continue;
+        surface->clear[face] = 1;
+        surface->importance[face] = 0;
+        if (guards->space.soup && backs + face < surface->face_count)
+            surface->clear[backs + face] = 1;
+    }
+    return STARG_OK;
 }
 
 starg_status verify_space_create(starg_context *context, const starg_mesh *mesh,
@@ -178,12 +171,11 @@ starg_status verify_space_create(starg_context *context, const starg_mesh *mesh,
     surface->model_faces = starg_mesh_face_count(mesh);
     surface->backs = guards->space.two_sided ? g.backs : 0;
     surface->ambient = guards->space.outside || guards->space.soup ? 1 : 0;
-    STARG_TRY(weigh(context, mesh, guards, surface));
+    STARG_TRY(weigh(context, mesh, guards, g.backs, surface));
     *out = surface;
     surface = NULL;
 done:
-    STARG_ARRAY_FREE(context, &g.vertices);
-    STARG_ARRAY_FREE(context, &g.faces);
+    RELEASE(g.vertices.data, g.faces.data);
     verify_surface_free(surface);
     return status;
 }

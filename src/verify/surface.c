@@ -4,7 +4,8 @@
  * reimplemented: a shell inside an even number of others bounds the solid from outside and must
  * have positive volume; inside an odd number it bounds a cavity and must have negative volume;
  * "inside" means that the other shell has a nonzero winding number about points that are not on it.
- * A shell that crosses another gets positive volume. Signs of volumes are exact.
+ * A shell that crosses another gets positive volume: one of which an edge passes through the inside
+ * of a face, or with corners on both sides. Signs of volumes are exact.
  *
  * Cost: sorted edges, O(n log n); with several shells one winding number for each pair whose bounds
  * allow nesting, and all pairs of faces for each cavity and a shell around it. */
@@ -12,10 +13,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/memory.h"
-#include "verify/signs.h"
+#include "verify/sight.h"
 
 static const char STAGE[] = "verify";
 
@@ -166,10 +165,10 @@ static void widen(shell *own, const double p[3]) {
 static starg_status gather_shells(const verify_surface *surface, uint32_t *parent,
                                   shell_list *shells) {
     starg_context *context = surface->context;
-    starg_status status = STARG_OK;
-    size_t n = surface->face_count, *place = NULL, next = 0;
-    STARG_NEW_ZERO(context, STAGE, place, n);
-    STARG_NEW(context, STAGE, shells->faces, n);
+    size_t n = surface->face_count, next = 0;
+    SCOPED size_t *place = NULL;
+    NEW_ZERO(context, STAGE, place, n);
+    NEW(context, STAGE, shells->faces, n);
     for (uint32_t f = 0; f < n; f++)
         place[verify_root(parent, f)]++;
     for (uint32_t f = 0; f < n; f++)
@@ -180,7 +179,7 @@ static starg_status gather_shells(const verify_surface *surface, uint32_t *paren
                          .upper = {-INFINITY, -INFINITY, -INFINITY}};
             place[f] = next;
             next += own.count;
-            STARG_PUSH(context, STAGE, &shells->list, own);
+            PUSH(context, STAGE, &shells->list, own);
         }
     for (uint32_t f = 0; f < n; f++)
         shells->faces[place[verify_root(parent, f)]++] = f;
@@ -191,9 +190,7 @@ static starg_status gather_shells(const verify_surface *surface, uint32_t *paren
             widen(own, surface->vertices + 3 * (size_t)surface->faces[corner]);
         }
     }
-done:
-    starg_release(context, place);
-    return status;
+    return STARG_OK;
 }
 
 static int volume_sign(const verify_surface *surface, const shell *own) {
@@ -277,7 +274,7 @@ static bool shells_cross(const verify_surface *surface, const shell *own, const 
                 continue;
             near = true;
             verify_corners(surface, other->faces[j], t);
-            if (verify_cross(s, t))
+            if (verify_pierce(s, t))
                 return true;
         }
         if (near && strays(surface, s, other, in))
@@ -303,12 +300,11 @@ static bool is_cavity(const verify_surface *surface, const shell_list *shells, c
 static starg_status turn_shells(verify_surface *surface, const shell_list *shells,
                                 verify_facing facing) {
     starg_context *context = surface->context;
-    starg_status status = STARG_OK;
-    uint8_t *turn = NULL;
-    STARG_NEW_ZERO(context, STAGE, turn, shells->list.count);
+    SCOPED uint8_t *turn = NULL;
+    NEW_ZERO(context, STAGE, turn, shells->list.count);
     for (size_t s = 0; s < shells->list.count; s++) {
         const shell *own = &shells->list.data[s];
-        STARG_TRY(starg_check_cancel(context, STAGE));
+        TRY(starg_check_cancel(context, STAGE));
         bool cavity = facing == VERIFY_NESTED && is_cavity(surface, shells, own);
         turn[s] = volume_sign(surface, own) == (cavity ? 1 : -1);
     }
@@ -319,9 +315,7 @@ static starg_status turn_shells(verify_surface *surface, const shell_list *shell
             face[1] = face[2];
             face[2] = second;
         }
-done:
-    starg_release(context, turn);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- public function ---- */
@@ -329,15 +323,14 @@ done:
 /* The corners at each vertex that follow each other across edges keep it, or get a copy, in the
  * order of the lowest corners, behind the other vertices. */
 static starg_status part_vertices(verify_surface *surface, const uint32_t *twin) {
-    starg_status status = STARG_OK;
     starg_context *context = surface->context;
-    STARG_ARRAY(double) vertices = {0};
-    uint8_t *met = NULL, *used = NULL;
+    SCOPED STARG_ARRAY(double) vertices = {0};
+    SCOPED uint8_t *met = NULL, *used = NULL;
     size_t given = surface->vertex_count;
-    STARG_NEW_ZERO(context, STAGE, met, 3 * surface->face_count);
-    STARG_NEW_ZERO(context, STAGE, used, given);
+    NEW_ZERO(context, STAGE, met, 3 * surface->face_count);
+    NEW_ZERO(context, STAGE, used, given);
     for (size_t i = 0; i < 3 * given; i++)
-        STARG_PUSH(context, STAGE, &vertices, surface->vertices[i]);
+        PUSH(context, STAGE, &vertices, surface->vertices[i]);
     for (uint32_t e = 0; e < 3 * surface->face_count; e++) {
         uint32_t vertex = surface->faces[e], own = vertex;
         if (met[e])
@@ -345,7 +338,7 @@ static starg_status part_vertices(verify_surface *surface, const uint32_t *twin)
         if (used[vertex]) {
             own = (uint32_t)(vertices.count / 3);
             for (size_t k = 0; k < 3; k++)
-                STARG_PUSH(context, STAGE, &vertices, surface->vertices[3 * (size_t)vertex + k]);
+                PUSH(context, STAGE, &vertices, surface->vertices[3 * (size_t)vertex + k]);
         }
         used[vertex] = 1;
         for (uint32_t c = e; !met[c]; c = twin[c % 3 == 0 ? c + 2 : c - 1]) {
@@ -359,11 +352,7 @@ static starg_status part_vertices(verify_surface *surface, const uint32_t *twin)
         surface->vertices = surface->own_vertices = vertices.data;
         vertices.data = NULL;
     }
-done:
-    STARG_ARRAY_FREE(context, &vertices);
-    starg_release(context, met);
-    starg_release(context, used);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status orient(verify_surface *surface, verify_facing facing) {
@@ -382,10 +371,7 @@ static starg_status orient(verify_surface *surface, verify_facing facing) {
     if (facing != VERIFY_AS_GIVEN)
         STARG_TRY(turn_shells(surface, &shells, facing));
 done:
-    starg_release(context, twin);
-    starg_release(context, parent);
-    starg_release(context, shells.faces);
-    STARG_ARRAY_FREE(context, &shells.list);
+    RELEASE(twin, parent, shells.faces, shells.list.data);
     return status;
 }
 
@@ -424,11 +410,10 @@ static int compare_places(const void *left, const void *right) {
 
 /* Maps corners at one position to the lowest vertex there, as in the library's solids. */
 static starg_status weld(verify_surface *surface) {
-    starg_status status = STARG_OK;
-    place *places = NULL;
-    uint32_t *first = NULL;
-    STARG_NEW(surface->context, STAGE, places, surface->vertex_count);
-    STARG_NEW(surface->context, STAGE, first, surface->vertex_count);
+    SCOPED place *places = NULL;
+    SCOPED uint32_t *first = NULL;
+    NEW(surface->context, STAGE, places, surface->vertex_count);
+    NEW(surface->context, STAGE, first, surface->vertex_count);
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         memcpy(places[v].p, surface->vertices + 3 * (size_t)v, sizeof places[v].p);
         places[v].vertex = v;
@@ -440,10 +425,7 @@ static starg_status weld(verify_surface *surface) {
                                       : places[i].vertex;
     for (size_t i = 0; i < 3 * surface->face_count; i++)
         surface->faces[i] = first[surface->faces[i]];
-done:
-    starg_release(surface->context, places);
-    starg_release(surface->context, first);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status copy_faces(starg_context *context, const starg_mesh *mesh,
@@ -494,16 +476,13 @@ starg_status verify_surface_create(starg_context *context, const starg_mesh *mes
 
 starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     *out = NULL;
-    STARG_TRY(copy_faces(context, mesh, &surface));
-    STARG_TRY(weld(surface));
+    TRY(copy_faces(context, mesh, &surface));
+    TRY(weld(surface));
     *out = surface;
     surface = NULL;
-done:
-    verify_surface_free(surface);
-    return status;
+    return STARG_OK;
 }
 
 starg_status verify_surface_wrap(starg_context *context, const double *vertices,
@@ -531,8 +510,7 @@ done:
 void verify_surface_free(verify_surface *surface) {
     if (surface == NULL)
         return;
-    starg_release(surface->context, surface->faces);
-    starg_release(surface->context, surface->importance);
-    starg_release(surface->context, surface->own_vertices);
+    RELEASE(surface->faces, surface->importance, surface->clear, surface->own_vertices);
+    verify_patches_free(surface->patches);
     starg_release(surface->context, surface);
 }

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The surface of a model as it is checked: faces with neighbours, shells, parts, a tree of boxes.
  */
-#ifndef STARG_VERIFY_SURFACE_H
-#define STARG_VERIFY_SURFACE_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "core/context.h"
+#include "core/memory.h"
 #include "starguard/mesh.h"
 
 /* Disjoint sets: parent[i] is another member of the set of i, or i if it is the lowest one. */
@@ -39,13 +34,19 @@ typedef struct verify_surface {
     /* of scenes (verify/sight.h) */
     int ambient;                        /* the winding number far away */
     size_t model_vertices, model_faces; /* copies, and those of obstacles, follow */
+    uint8_t *clear;                     /* by face: 1 blocks no view; NULL: all block */
     double *importance;                 /* by face: how much its area counts; NULL: 1 each */
     size_t backs; /* above 0: face f of the model counts from either side, and face backs + f is its
                      back */
-    double *own_vertices; /* freed with the surface */
+    struct verify_patches *patches; /* freed with it; NULL: faces are seen as they are */
+    double *own_vertices;           /* freed with the surface */
 } verify_surface;
 
 /* Is the face a target? */
+static inline bool verify_is_clear(const verify_surface *surface, size_t face) {
+    return surface->clear != NULL && surface->clear[face];
+}
+
 static inline bool verify_is_target(const verify_surface *surface, size_t face) {
     return surface->importance == NULL || surface->importance[face] > 0;
 }
@@ -68,6 +69,7 @@ starg_status verify_surface_wrap(starg_context *context, const double *vertices,
                                  size_t vertex_count, uint32_t *faces, size_t face_count,
                                  verify_surface **out);
 void verify_surface_free(verify_surface *surface);
+STARG_DROP(verify_surface, verify_surface)
 
 /* By directed edge 3 f + k, from corner k of face f to the next: the opposite one. `surface` has
  * been checked. *twin is a block of the context. Errors: MEMORY. */
@@ -134,6 +136,7 @@ typedef struct verify_tree verify_tree;
 /* `surface` must outlive the tree. Errors: MEMORY. */
 starg_status verify_tree_create(const verify_surface *surface, verify_tree **out);
 void verify_tree_free(verify_tree *tree);
+STARG_DROP(verify_tree, verify_tree)
 
 /* Called with a face; false ends the visit. */
 typedef bool verify_visit(void *data, uint32_t face);
@@ -172,5 +175,3 @@ starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent
  * Errors: MEMORY, CANCELLED. */
 starg_status verify_find_parts(const verify_surface *surface, const verify_tree *tree,
                                uint32_t **part);
-
-#endif

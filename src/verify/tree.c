@@ -7,9 +7,6 @@
  * certain. Cost: O(n log n) to build, typically O(log n) per query near a point. */
 #include "verify/surface.h"
 
-#include <math.h>
-
-#include "core/memory.h"
 #include "core/rng.h"
 #include "verify/signs.h"
 
@@ -169,10 +166,7 @@ done:
 void verify_tree_free(verify_tree *tree) {
     if (tree == NULL)
         return;
-    starg_release(tree->surface->context, tree->order);
-    starg_release(tree->surface->context, tree->boxes);
-    starg_release(tree->surface->context, tree->centers);
-    starg_release(tree->surface->context, tree);
+    RELEASE(tree->order, tree->boxes, tree->centers, tree);
 }
 
 const verify_surface *verify_tree_surface(const verify_tree *tree) {

@@ -4,7 +4,6 @@
  * meets a face other than in its interior is replaced by another one, from a growing range, so that
  * models with very few representable points (subnormal ones) leave room for directions as well;
  * almost every direction is good. */
-#include <math.h>
 
 #include "core/rng.h"
 #include "verify/signs.h"

@@ -161,14 +161,7 @@ done:
 void adjacency_free(visibility_adjacency *adjacency) {
     if (adjacency == NULL)
         return;
-    starg_context *context = adjacency->context;
-    starg_release(context, adjacency->edges);
-    starg_release(context, adjacency->fan_start);
-    starg_release(context, adjacency->neighbour);
-    starg_release(context, adjacency->fan_face);
-    starg_release(context, adjacency->parents);
-    starg_release(context, adjacency->first_face);
-    starg_release(context, adjacency->order);
-    starg_release(context, adjacency->shell_start);
-    starg_release(context, adjacency);
+    RELEASE(adjacency->edges, adjacency->fan_start, adjacency->neighbour, adjacency->fan_face,
+            adjacency->parents, adjacency->first_face, adjacency->order, adjacency->shell_start,
+            adjacency);
 }

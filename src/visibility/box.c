@@ -54,6 +54,24 @@ static void make_triangles(box_scene *scene, const mesh_topology *topology) {
     }
 }
 
+static starg_status make_points(box_scene *scene) {
+    const mesh_patches *patches = scene->solid->patches;
+    if (patches == NULL)
+        return STARG_OK;
+    NEW(scene->context, STAGE, scene->between, patches->points.count);
+    for (size_t i = 0; i < patches->points.count; i++) {
+        const patch_point *of = &patches->points.data[i];
+        scene->between[i] = (box_point){patch_point_dyadic(of, scene->points), of};
+    }
+    return STARG_OK;
+}
+
+/* Vertices and points that can be asked about. */
+static size_t target_count(const box_scene *scene) {
+    const mesh_patches *patches = scene->solid->patches;
+    return scene->vertex_count + (patches != NULL ? patches->points.count : 0);
+}
+
 starg_status box_scene_create(starg_context *context, const starg_solid *solid, box_scene **out) {
     starg_status status = STARG_OK;
     box_scene *scene = NULL;
@@ -77,6 +95,7 @@ starg_status box_scene_create(starg_context *context, const starg_solid *solid, 
     STARG_NEW(context, STAGE, scene->rank_of, scene->face_count);
     STARG_NEW(context, STAGE, scene->outgoing, scene->vertex_count);
     make_triangles(scene, topology);
+    STARG_TRY(make_points(scene));
     STARG_TRY(box_find_sound(scene));
     STARG_TRY(box_tree_create(context, scene->tree, scene->centre, scene->extent, &scene->boxes));
     *out = scene;
@@ -91,12 +110,8 @@ void box_scene_free(box_scene *scene) {
     if (scene == NULL)
         return;
     box_tree_free(scene->boxes);
-    starg_release(scene->context, scene->triangles);
-    starg_release(scene->context, scene->rank_of);
-    starg_release(scene->context, scene->outgoing);
-    starg_release(scene->context, scene->sound);
-    starg_release(scene->context, scene->sound_about);
-    starg_release(scene->context, scene);
+    RELEASE(scene->between, scene->triangles, scene->rank_of, scene->outgoing, scene->sound,
+            scene->sound_about, scene);
 }
 
 /* ---- a triangle against a box ---- */
@@ -222,7 +237,7 @@ enum { STEPS = 32 }; /* triangles that take about a microsecond */
 
 starg_status box_worker_create(const box_scene *scene, box_worker **out) {
     starg_context *context = scene->context;
-    size_t n = scene->vertex_count, m = scene->face_count;
+    size_t n = target_count(scene), m = scene->face_count;
     box_worker *w = starg_allocate_zero(context, 1, sizeof *w);
     *out = NULL;
     if (w == NULL)
@@ -249,15 +264,8 @@ starg_status box_worker_create(const box_scene *scene, box_worker **out) {
 void box_worker_free(box_worker *w) {
     if (w == NULL)
         return;
-    starg_context *context = w->scene->context;
-    starg_release(context, w->crossing);
-    starg_release(context, w->crossing_mark);
-    starg_release(context, w->visit);
-    starg_release(context, w->stack);
-    starg_release(context, w->seed);
-    starg_release(context, w->answer_mark);
-    starg_release(context, w->answer);
-    starg_release(context, w);
+    RELEASE(w->crossing, w->crossing_mark, w->visit, w->stack, w->seed, w->answer_mark, w->answer,
+            w);
 }
 
 uint64_t box_worker_tests(const box_worker *worker) {
@@ -287,7 +295,7 @@ static void renew_marks(box_worker *w) {
         return;
     memset(w->visit, 0, w->scene->face_count * sizeof *w->visit);
     memset(w->crossing_mark, 0, w->scene->face_count * sizeof *w->crossing_mark);
-    memset(w->answer_mark, 0, w->scene->vertex_count * sizeof *w->answer_mark);
+    memset(w->answer_mark, 0, target_count(w->scene) * sizeof *w->answer_mark);
     w->flood = w->question = w->meeting = 0;
 }
 
@@ -344,7 +352,36 @@ static bool is_beyond(const bvh_box *box, const double v[3], double range) {
     return range < 1e100 && compare_distance(nearest, v, range) > 0;
 }
 
-/* Why the current box does not see the vertex. */
+/* Is the point in the box, as far as it is known where it lies? */
+static bool may_hold(const bvh_box *box, const dyadic_point *v) {
+    bool in = true;
+    for (int k = 0; k < 3; k++)
+        in = in && v->at[k] + v->blur >= box->lower[k] && v->at[k] - v->blur <= box->upper[k];
+    return in;
+}
+
+/* Why the current box does not see the point between vertices. Where segments to it begin is for
+ * the face to say. */
+static box_reason_kind ask_point(box_worker *w, const box_question *q, uint32_t target,
+                                 bool recorded, uint32_t *seed) {
+    const dyadic_point *v = &w->scene->between[target - w->scene->vertex_count].place;
+    box_shaft shaft;
+    box_reason_kind kind = BOX_OPEN;
+    if (is_beyond(w->current, v->at, q->range))
+        return BOX_FAR;
+    if (may_hold(w->current, v))
+        return BOX_OPEN;
+    w->point = &w->scene->between[target - w->scene->vertex_count];
+    shaft_make(&shaft, v->at, v->blur, w->current);
+    if (box_patch_hides(w, &shaft, FLOOD_PATCH, recorded, seed))
+        kind = BOX_PATCH;
+    else if (box_entry_hides(w, &shaft))
+        kind = BOX_ENTRY;
+    w->point = NULL;
+    return kind;
+}
+
+/* Why the current box does not see the vertex or point. */
 static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t vertex,
                                   bool recorded, uint32_t *seed) {
     const double *v = w->scene->points + 3 * (size_t)vertex;
@@ -352,13 +389,15 @@ static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t
     *seed = BOX_NONE;
     w->tests++;
     w->vertex = vertex;
+    if (vertex >= w->scene->vertex_count)
+        return ask_point(w, q, vertex, recorded, seed);
     if (w->scene->outgoing[vertex] == BOX_NONE)
         return BOX_OUTSIDE;
     if (is_beyond(w->current, v, q->range))
         return BOX_FAR;
     if (holds(w->current, v))
         return BOX_OPEN;
-    shaft_make(&shaft, v, w->current);
+    shaft_make(&shaft, v, 0, w->current);
     if (box_start_hides(w, &shaft))
         return BOX_START;
     if (box_patch_hides(w, &shaft, FLOOD_PATCH, recorded, seed))
@@ -386,9 +425,9 @@ static box_reason hidden_by(const box_scene *scene, box_reason_kind kind, uint32
                         clipped};
 }
 
-/* About the corners of the face from number `first` on, before `end`: hidden if one of them is. */
-static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, int first, int end,
-                           bool recorded) {
+/* About some vertices and points of the face: hidden if one of them is. */
+static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face,
+                           const uint32_t *corner, size_t count, bool recorded) {
     const box_scene *scene = w->scene;
     const box_triangle *t = &scene->triangles[scene->rank_of[face]];
     bvh_box left;
@@ -396,40 +435,57 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
     clip_result inner = clip(scene, t, &w->box, &left);
     if (inner == CLIP_NOTHING_LEFT)
         return (box_reason){BOX_PLANE, BOX_NONE, BOX_NONE, false};
-    for (int k = first; k < end; k++) {
-        box_reason_kind kind = ask_vertex_once(w, q, t->corner[k], recorded, &seed);
+    for (size_t k = 0; k < count; k++) {
+        box_reason_kind kind = ask_vertex_once(w, q, corner[k], recorded, &seed);
         if (kind != BOX_OPEN)
-            return hidden_by(scene, kind, t->corner[k], seed, false);
+            return hidden_by(scene, kind, corner[k], seed, false);
     }
     box_reason reason = {BOX_OPEN, BOX_NONE, BOX_NONE, false};
     if (inner == CLIP_ALL_LEFT)
         return reason;
     set_current(w, &left);
-    for (int k = first; k < end && reason.kind == BOX_OPEN; k++) {
-        box_reason_kind kind = ask_vertex(w, q, t->corner[k], recorded, &seed);
+    for (size_t k = 0; k < count && reason.kind == BOX_OPEN; k++) {
+        box_reason_kind kind = ask_vertex(w, q, corner[k], recorded, &seed);
         if (kind != BOX_OPEN)
-            reason = hidden_by(scene, kind, t->corner[k], seed, true);
+            reason = hidden_by(scene, kind, corner[k], seed, true);
     }
     set_current(w, &w->box);
     return reason;
 }
 
-/* A face that counts from either side is hidden where both sides are; scenes of such faces have no
+static box_reason ask_patch(box_worker *w, const box_question *q, uint32_t patch, bool recorded) {
+    const box_scene *scene = w->scene;
+    const mesh_patches *patches = scene->solid->patches;
+    if (patches == NULL)
+        return ask_face(w, q, patch, scene->triangles[scene->rank_of[patch]].corner, 3, recorded);
+    return ask_face(w, q, patches->face.data[patch],
+                    patches->corner.data + patches->corners * patch, patches->corners, recorded);
+}
+
+/* A patch that counts from either side is hidden where both sides are; scenes of such faces have no
  * certificates, so that nobody asks for both reasons. */
-static box_reason ask_sides(box_worker *w, const box_question *q, uint32_t face, bool recorded) {
+static box_reason ask_sides(box_worker *w, const box_question *q, uint32_t patch, bool recorded) {
     const starg_solid *solid = w->scene->solid;
-    box_reason reason = ask_face(w, q, face, 0, 3, recorded);
-    if (reason.kind != BOX_OPEN && solid_is_two_sided(solid) && solid->other_side[face] != BOX_NONE)
-        reason = ask_face(w, q, solid->other_side[face], 0, 3, recorded);
+    size_t face = solid_patch_face(solid, patch);
+    box_reason reason = ask_patch(w, q, patch, recorded);
+    if (reason.kind != BOX_OPEN && solid_is_two_sided(solid) &&
+        solid->other_side[face] != BOX_NONE) {
+        size_t back = solid_first_patch(solid, solid->other_side[face]) + patch -
+                      solid_first_patch(solid, face);
+        reason = ask_patch(w, q, (uint32_t)back, recorded);
+    }
     return reason;
 }
 
 static box_reason ask(box_worker *w, const box_question *q, uint32_t target, bool recorded) {
+    const box_scene *scene = w->scene;
     uint32_t seed;
     if (q->target == STARG_TARGET_FACES)
         return ask_sides(w, q, target, recorded);
     if (q->target == STARG_TARGET_CORNERS)
-        return ask_face(w, q, target / 3, (int)(target % 3), (int)(target % 3) + 1, recorded);
+        return ask_face(w, q, target / 3,
+                        &scene->triangles[scene->rank_of[target / 3]].corner[target % 3], 1,
+                        recorded);
     box_reason_kind kind = ask_vertex_once(w, q, target, recorded, &seed);
     return hidden_by(w->scene, kind, target, seed, false);
 }
@@ -443,7 +499,7 @@ void box_look(box_worker *w, const box_question *q, uint64_t *open, box_reason *
             continue;
         box_reason reason = {outside ? BOX_OUTSIDE : BOX_OPEN, BOX_NONE, BOX_NONE, false};
         bool known = q->known != NULL && starg_bit_test(q->known, i);
-        if (reached && !outside && !known)
+        if (reached && !outside && !known && w->scene->solid->clear == NULL)
             reason = ask(w, q, q->targets != NULL ? q->targets[i] : (uint32_t)i, reasons != NULL);
         if (reason.kind == BOX_OPEN)
             starg_bit_set(open, i);

@@ -5,7 +5,7 @@
  * certain that no point of c in the free space sees them. Never wrong about "hidden"; a target that
  * stays "open" may be hidden all the same. What a point sees is defined in docs/visibility.md.
  *
- * Three notions are front-facing apart: the *blockers*, triangles with their neighbours and a tree
+ * Three notions are kept apart: the *blockers*, triangles with their neighbours and a tree
  * of boxes; the *free space*, the side of the blockers to which their inner sides turn; and the
  * *targets*. Today a solid's boundary gives all of them.
  *
@@ -19,6 +19,7 @@
  * - fold     start and patch together (box_fold.c);
  * - entry    all blockers that meet c turn their outer sides to the vertex, and the patches that
  *            they lie on close (box_flood.c).
+ * Of points between vertices, corners of patches, only far, plane, patch and entry are tried.
  * First c is cropped to the bounding box of the blockers. For a face, it is clipped to the face's
  * inner half-space. A face is hidden as soon as one of its vertices is: what sees a face, by either
  * rule, sees its three vertices.

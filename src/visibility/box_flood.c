@@ -48,7 +48,9 @@
 #include "geometry/intersect.h"
 #include "visibility/box_parts.h"
 
-enum { STEPS_OF_MEETING = 16 }; /* looks at a triangle that take as long */
+/* Looks at a triangle that take as long as a test of whether a box meets one, and as a search for a
+ * seed. That depends on which boxes the worker was asked about before, and must not be counted. */
+enum { STEPS_OF_MEETING = 16, STEPS_OF_SEED = 8 };
 
 typedef struct flood {
     box_worker *worker;
@@ -58,21 +60,16 @@ typedef struct flood {
     size_t depth;
 } flood;
 
-/* Such a triangle has v in its plane: this saves the exact computation. */
-static bool has_corner(const box_triangle *t, uint32_t vertex) {
-    return t->corner[0] == vertex || t->corner[1] == vertex || t->corner[2] == vertex;
-}
-
 /* May the triangle be in the patch? */
 static bool admits(const flood *f, uint32_t rank, const box_triangle *t) {
     box_worker *w = f->worker;
     w->steps++;
-    if (has_corner(t, w->vertex))
+    if (box_holds_target(w, t))
         return false;
     if (f->kind != FLOOD_ENTRY && w->crossing_mark[rank] == w->question &&
         box_may_cross(w->scene, t, w->current))
         return false;
-    return box_side(w->scene, t, f->shaft->v) == f->side;
+    return box_side_of_target(w, t, f->shaft->v) == f->side;
 }
 
 /* An entry holds the edge by which the triangle was entered and the codes of its ends. */
@@ -95,7 +92,7 @@ static bool cross(flood *f, const box_triangle *t, int k, unsigned code, unsigne
         return true;
     if (w->visit[rank] > first)
         return false; /* an earlier flood came here, and failed: one that closes has it all */
-    if (f->kind == FLOOD_FOLD && has_corner(&scene->triangles[rank], w->vertex))
+    if (f->kind == FLOOD_FOLD && box_holds_target(w, &scene->triangles[rank]))
         return true;
     w->visit[rank] = w->flood;
     if (!admits(f, rank, &scene->triangles[rank]))
@@ -138,6 +135,13 @@ typedef struct seed_search {
     box_flood_kind kind;
 } seed_search;
 
+static bool meets_sight(const box_worker *w, const box_triangle *t, const double v[3]) {
+    const double *a = box_corner(w->scene, t, 0), *b = box_corner(w->scene, t, 1);
+    const double *c = box_corner(w->scene, t, 2);
+    return w->point != NULL ? dyadic_segment_meets_triangle(w->centre, &w->point->place, a, b, c)
+                            : segment_meets_triangle(w->centre, v, a, b, c);
+}
+
 /* Goes on searching unless the triangle is a seed whose flood closes. */
 static bool try_seed(void *user, size_t rank) {
     seed_search *search = user;
@@ -146,12 +150,10 @@ static bool try_seed(void *user, size_t rank) {
     const box_triangle *t = &scene->triangles[rank];
     const double *v = search->shaft->v;
     w->steps++;
-    if (w->visit[rank] > search->first || has_corner(t, w->vertex))
+    if (w->visit[rank] > search->first || box_holds_target(w, t))
         return true; /* a failed flood came here, or it would fail at once */
-    int side = box_side(scene, t, v);
-    if (side == 0 || side == box_side(scene, t, w->centre) ||
-        !segment_meets_triangle(w->centre, v, box_corner(scene, t, 0), box_corner(scene, t, 1),
-                                box_corner(scene, t, 2)))
+    int side = box_side_of_target(w, t, v);
+    if (side == 0 || side == box_side(scene, t, w->centre) || !meets_sight(w, t, v))
         return true;
     if (!box_flood_closes(w, search->shaft, (uint32_t)rank, side, search->kind, search->first))
         return true;
@@ -162,8 +164,10 @@ static bool try_seed(void *user, size_t rank) {
 bool box_patch_hides(box_worker *w, const box_shaft *shaft, box_flood_kind kind, bool recorded,
                      uint32_t *seed) {
     seed_search search = {w, shaft, w->flood, BOX_NONE, kind};
+    uint64_t steps = w->steps + STEPS_OF_SEED;
     if (recorded || w->seed[w->vertex] == BOX_NONE || try_seed(&search, w->seed[w->vertex]))
         box_tree_query(w->scene->boxes, shaft->v, w->centre, try_seed, &search);
+    w->steps = steps;
     *seed = search.found;
     if (search.found != BOX_NONE)
         w->seed[w->vertex] = search.found;

@@ -43,7 +43,13 @@ bool box_tree_query(const box_tree *tree, const double p[3], const double q[3],
  * Error bounds. All differences carry one rounding. A product of two carries three, a sum of two
  * such products four: below 8 x 2^-53 of the sum of the absolute products. A component of a cross
  * product has four, times a difference six, a sum of three such eight: below 16 x 2^-53 of the sum
- * of absolute products. Underflows lose less than TINY of each. */
+ * of absolute products. Underflows lose less than TINY of each.
+ *
+ * A point v between vertices (geometry/dyadic.h) is off by at most `blur` in each coordinate. The
+ * planes about the box are those of its rounded place; v itself lies beyond one by at most the sum
+ * of the two numbers times blur, so that what is beyond by more is outside of the true shaft. With
+ * a = |p - v|, b = |q - v| and c = |x - v| the largest differences, the determinant of v, p, q and
+ * x is off by at most 6 blur ((a + b + blur)(c + blur) + a b). */
 
 #define SHAFT_TINY_2 1e-290 /* for products of two differences below 2e100   */
 #define SHAFT_TINY_3 1e-200 /* for products of three                         */
@@ -52,6 +58,7 @@ typedef struct box_shaft {
     double v[3];
     bvh_box box, hull;      /* c; the bounding box of v and c                               */
     double low[3], high[3]; /* corners of c, relative to v                                  */
+    double blur, slack[6];  /* of v; how far beyond each side counts as outside             */
     double side[6][2];      /* planes 2k and 2k + 1 look along axis k: with d = p - v, p is
                                outside if side[0] d[k + 1] + side[1] d[k + 2] > 0           */
 } box_shaft;
@@ -81,17 +88,20 @@ static inline void shaft_make_sides(box_shaft *s, int k) {
     right[1] = -(c[2] ? s->high[u] : s->low[u]);
 }
 
-static inline void shaft_make(box_shaft *s, const double v[3], const bvh_box *box) {
+static inline void shaft_make(box_shaft *s, const double v[3], double blur, const bvh_box *box) {
     s->box = *box;
+    s->blur = blur;
     for (int k = 0; k < 3; k++) {
         s->v[k] = v[k];
-        s->hull.lower[k] = v[k] < box->lower[k] ? v[k] : box->lower[k];
-        s->hull.upper[k] = v[k] > box->upper[k] ? v[k] : box->upper[k];
+        s->hull.lower[k] = v[k] - blur < box->lower[k] ? v[k] - blur : box->lower[k];
+        s->hull.upper[k] = v[k] + blur > box->upper[k] ? v[k] + blur : box->upper[k];
         s->low[k] = box->lower[k] - v[k];
         s->high[k] = box->upper[k] - v[k];
     }
     for (int k = 0; k < 3; k++)
         shaft_make_sides(s, k);
+    for (int i = 0; i < 6; i++)
+        s->slack[i] = SHAFT_TINY_2 + 2 * blur * (fabs(s->side[i][0]) + fabs(s->side[i][1]));
 }
 
 static inline unsigned shaft_code(const box_shaft *s, const double p[3]) {
@@ -103,9 +113,19 @@ static inline unsigned shaft_code(const box_shaft *s, const double p[3]) {
                                                                << (3 + k);
     for (int i = 0; i < 6; i++) {
         double x = s->side[i][0] * d[i / 2 + 1], y = s->side[i][1] * d[i / 2 + 2];
-        code |= (unsigned)(x + y > 8 * 0x1p-53 * (fabs(x) + fabs(y)) + SHAFT_TINY_2) << (6 + i);
+        code |= (unsigned)(x + y > 8 * 0x1p-53 * (fabs(x) + fabs(y)) + s->slack[i]) << (6 + i);
     }
     return code;
+}
+
+static inline double shaft_blur_bound(const box_shaft *s, const double a[3], const double b[3]) {
+    double from_a = 0, from_b = 0, from_c = 0;
+    for (int k = 0; k < 3; k++) {
+        from_a = fmax(from_a, fabs(a[k]));
+        from_b = fmax(from_b, fabs(b[k]));
+        from_c = fmax(from_c, fmax(fabs(s->low[k]), fabs(s->high[k])));
+    }
+    return 8 * s->blur * ((from_a + from_b + s->blur) * (from_c + s->blur) + from_a * from_b);
 }
 
 /* Does c lie strictly on one side of the plane of v, p and q? */
@@ -124,6 +144,8 @@ static inline bool shaft_is_beside(const box_shaft *s, const double p[3], const 
         size += (fabs(x) + fabs(y)) * fmax(fabs(s->low[k]), fabs(s->high[k]));
     }
     double bound = 16 * 0x1p-53 * size + SHAFT_TINY_3;
+    if (s->blur > 0)
+        bound += shaft_blur_bound(s, a, b);
     return least > bound || most < -bound;
 }
 
@@ -143,8 +165,15 @@ typedef struct box_triangle {
     double bound;             /* beyond this                                                    */
 } box_triangle;
 
+/* A point of a face that is asked about and is no vertex; its number follows those of vertices. */
+typedef struct box_point {
+    dyadic_point place;
+    const patch_point *of;
+} box_point;
+
 struct box_scene {
     starg_context *context;
+    box_point *between;
     const starg_solid *solid;
     const bvh *tree;
     box_tree *boxes;      /* for segments */
@@ -164,8 +193,9 @@ struct box_worker {
     bvh_box box;      /* of the question                                              */
     double centre[3]; /* of the box that is looked at, which may be a clipped one     */
     const bvh_box *current;
-    uint32_t vertex;    /* that is asked about */
-    uint32_t *crossing; /* ranks of the triangles that may meet the box of the question */
+    uint32_t vertex;        /* that is asked about, or a point */
+    const box_point *point; /* it, or NULL: a vertex is asked about */
+    uint32_t *crossing;     /* ranks of the triangles that may meet the box of the question */
     size_t crossing_count;
     uint32_t *crossing_mark; /* by rank: the number of the question, if among them     */
     uint32_t question;
@@ -195,6 +225,40 @@ static inline int box_side(const box_scene *scene, const box_triangle *t, const 
     if (sum < -t->bound)
         return -1;
     return orient3d(box_corner(scene, t, 0), box_corner(scene, t, 1), box_corner(scene, t, 2), p);
+}
+
+/* box_side of the vertex or point that is asked about. */
+static inline int box_side_of_target(const box_worker *w, const box_triangle *t,
+                                     const double v[3]) {
+    const box_scene *scene = w->scene;
+    double sum = t->offset, slack = t->bound;
+    if (w->point == NULL || w->point->place.exact)
+        return box_side(scene, t, v);
+    for (int k = 0; k < 3; k++) {
+        sum -= t->normal[k] * (v[k] - scene->centre[k]);
+        slack += 2 * fabs(t->normal[k]) * w->point->place.blur;
+    }
+    if (sum > slack)
+        return 1;
+    if (sum < -slack)
+        return -1;
+    const dyadic_point a = dyadic_of(box_corner(scene, t, 0)),
+                       b = dyadic_of(box_corner(scene, t, 1));
+    const dyadic_point c = dyadic_of(box_corner(scene, t, 2));
+    return dyadic_orient3d(&a, &b, &c, &w->point->place);
+}
+
+/* Does the triangle hold the vertex or point that is asked about, as the mesh tells? Then that lies
+ * in its plane: this saves the exact computation. */
+static inline bool box_holds_target(const box_worker *w, const box_triangle *t) {
+    bool has = true;
+    if (w->point == NULL)
+        return t->corner[0] == w->vertex || t->corner[1] == w->vertex || t->corner[2] == w->vertex;
+    for (int k = 0; k < 3 && has && w->point->of->weight[k] > 0; k++) {
+        uint32_t vertex = w->point->of->vertex[k];
+        has = t->corner[0] == vertex || t->corner[1] == vertex || t->corner[2] == vertex;
+    }
+    return has;
 }
 
 /* Fills `sound` and `sound_about` from the rest of the scene. Errors: MEMORY. */

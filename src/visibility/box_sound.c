@@ -98,12 +98,11 @@ static void judge_component(box_scene *scene, uint32_t first, uint32_t *list) {
 }
 
 starg_status box_find_sound(box_scene *scene) {
-    starg_status status = STARG_OK;
     const starg_solid *solid = scene->solid;
-    uint32_t *list = NULL;
+    SCOPED uint32_t *list = NULL;
     bool embedded = solid->check->embedded;
-    STARG_NEW(scene->context, STAGE, scene->sound, scene->face_count);
-    STARG_NEW(scene->context, STAGE, scene->sound_about, scene->vertex_count);
+    NEW(scene->context, STAGE, scene->sound, scene->face_count);
+    NEW(scene->context, STAGE, scene->sound_about, scene->vertex_count);
     memset(scene->sound, embedded ? SOUND : solid->scene ? DOUBTFUL : CLEAR, scene->face_count);
     memset(scene->sound_about, embedded, scene->vertex_count);
     if (embedded || solid->scene)
@@ -114,7 +113,7 @@ starg_status box_find_sound(box_scene *scene) {
         if (collinear(box_corner(scene, t, 0), box_corner(scene, t, 1), box_corner(scene, t, 2)))
             scene->sound[rank] = DOUBTFUL;
     }
-    STARG_NEW(scene->context, STAGE, list, scene->face_count);
+    NEW(scene->context, STAGE, list, scene->face_count);
     for (size_t rank = 0; rank < scene->face_count; rank++)
         if (scene->sound[rank] == CLEAR)
             judge_component(scene, (uint32_t)rank, list);
@@ -122,7 +121,5 @@ starg_status box_find_sound(box_scene *scene) {
     for (size_t rank = 0; rank < scene->face_count; rank++)
         for (int k = 0; k < 3 && scene->sound[rank] != SOUND; k++)
             scene->sound_about[scene->triangles[rank].corner[k]] = false;
-done:
-    starg_release(scene->context, list);
-    return status;
+    return STARG_OK;
 }

@@ -124,8 +124,7 @@ done:
 void box_tree_free(box_tree *tree) {
     if (tree == NULL)
         return;
-    starg_release(tree->context, tree->nodes);
-    starg_release(tree->context, tree);
+    RELEASE(tree->nodes, tree);
 }
 
 typedef struct ray {

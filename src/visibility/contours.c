@@ -64,19 +64,8 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_context *context = scene->context;
     visibility_grid.free_scratch(scene, s->grid);
     cube_free(context, &s->directions);
-    starg_release(context, s->grade);
-    starg_release(context, s->followed);
-    starg_release(context, s->parent);
-    starg_release(context, s->tree_edges);
-    starg_release(context, s->contours);
-    starg_release(context, s->contour_edges);
-    starg_release(context, s->rows);
-    starg_release(context, s->cell_start);
-    starg_release(context, s->pieces);
-    starg_release(context, s->sorted.low);
-    starg_release(context, s->sorted.a);
-    starg_release(context, s->layers);
-    starg_release(context, s);
+    RELEASE(s->grade, s->followed, s->parent, s->tree_edges, s->contours, s->contour_edges, s->rows,
+            s->cell_start, s->pieces, s->sorted.low, s->sorted.a, s->layers, s);
 }
 
 /* The columns are in two blocks, of reals and of integers. */

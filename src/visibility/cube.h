@@ -92,14 +92,18 @@ static inline double subtract_all(const double *restrict from, double by, size_t
 }
 
 /* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
- * most 6 mx my mz and an error of at most 8 roundings of it; four of them sum to less than 30. */
+ * most 6 mx my mz and an error of at most 8 roundings of it; four of them sum to less than 30. One
+ * whose last row is off by b in each coordinate is off by at most 6 m^2 b more, m being the largest
+ * of the three. */
 static inline void cube_make_relative(const visibility_scene *scene, const double p[3],
                                       cube_directions *d) {
-    double mx = subtract_all(scene->x, p[0], scene->vertex_count, d->x);
-    double my = subtract_all(scene->y, p[1], scene->vertex_count, d->y);
-    double mz = subtract_all(scene->z, p[2], scene->vertex_count, d->z);
+    double mx = subtract_all(scene->x, p[0], scene->slot_count, d->x);
+    double my = subtract_all(scene->y, p[1], scene->slot_count, d->y);
+    double mz = subtract_all(scene->z, p[2], scene->slot_count, d->z);
     d->extent = larger(larger(mx, my), mz);
     d->bound = 6 * 40 * 0x1p-53 * mx * my * mz;
+    if (scene->slot_count > scene->vertex_count)
+        d->bound += 4 * 8 * scene->blur * d->extent * d->extent;
     if (!(d->bound > 1e-200))
         d->bound = INFINITY;
 }

@@ -38,21 +38,10 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     if (g == NULL)
         return;
     starg_context *context = scene->context;
-    starg_release(context, g->rows);
-    starg_release(context, g->cell_start);
+    RELEASE(g->rows, g->cell_start);
     cube_free(context, &g->at);
-    starg_release(context, g->in_use);
-    starg_release(context, g->used);
-    starg_release(context, g->front_facing);
-    starg_release(context, g->place);
-    starg_release(context, g->slot);
-    starg_release(context, g->sx);
-    starg_release(context, g->sy);
-    starg_release(context, g->sz);
-    starg_release(context, g->hider);
-    starg_release(context, g->hidden);
-    starg_release(context, g->chunks);
-    starg_release(context, g);
+    RELEASE(g->in_use, g->used, g->front_facing, g->place, g->slot, g->sx, g->sy, g->sz, g->hider,
+            g->hidden, g->chunks, g);
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {
@@ -61,7 +50,7 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     *scratch = NULL;
     if (g == NULL)
         return STARG_ERROR_MEMORY;
-    size_t n = scene->vertex_count;
+    size_t n = scene->slot_count;
     g->row_limit = (size_t)(CUBE_FACES * (ROW_FACTOR * sqrt((double)n) + 2));
     g->rows = starg_allocate(context, g->row_limit, sizeof *g->rows);
     g->cell_start = starg_allocate(context, 2 * n + g->row_limit + 1, sizeof *g->cell_start);

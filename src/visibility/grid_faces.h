@@ -321,7 +321,7 @@ static void test_block(const visibility_scene *scene, const double p[3], grid_sc
 static void test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
                        grid_scratch *g) {
     face_block block;
-    for (size_t slot = 0; slot < scene->vertex_count; slot++)
+    for (size_t slot = 0; slot < scene->slot_count; slot++)
         g->hider[slot] = SCENE_NONE;
     for (size_t done = 0; done < g->front_facing_count;) {
         done += fill_block(scene, side, g, done, &block);

@@ -62,7 +62,7 @@ static uint32_t cut_cells(grid_scratch *g) {
 
 /* Counting sort; cell_start[c] is first the end of cell c, and its start once all are placed. */
 static void sort_into_cells(const visibility_scene *scene, grid_scratch *g) {
-    memset(g->hidden, 0, (starg_bit_words(scene->vertex_count) + 1) * sizeof *g->hidden);
+    memset(g->hidden, 0, (starg_bit_words(scene->slot_count) + 1) * sizeof *g->hidden);
     cut_rows(g);
     uint32_t cells = cut_cells(g);
     memset(g->cell_start, 0, (cells + 1) * sizeof *g->cell_start);
@@ -104,13 +104,22 @@ static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
     return count;
 }
 
+/* Corners of the patches of a kept face are looked at, too. */
+static void keep_patches(const visibility_scene *scene, size_t rank, uint8_t keep,
+                         grid_scratch *g) {
+    const mesh_patches *patches = scene->solid->patches;
+    const size_t *first = patches->first + scene->face_of[rank];
+    for (size_t i = patches->corners * first[0]; keep && i < patches->corners * first[1]; i++)
+        g->in_use[scene->patch_corners[i]] = 1;
+}
+
 /* Stage 1: lists the faces that can block first, and the vertices that they use; others are not
  * seen, or out of range. */
 static void keep_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
                        grid_scratch *g) {
     size_t chunk_count = order_chunks(scene, g);
     g->front_facing_count = g->used_count = 0;
-    memset(g->in_use, 0, scene->vertex_count);
+    memset(g->in_use, 0, scene->slot_count);
     for (size_t c = 0; c < chunk_count; c++) {
         size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
         if (scene_is_beyond(scene, g->chunks[c].chunk, p))
@@ -123,9 +132,11 @@ static void keep_faces(const visibility_scene *scene, const double p[3], const i
             g->in_use[corner[0]] |= keep;
             g->in_use[corner[1]] |= keep;
             g->in_use[corner[2]] |= keep;
+            if (scene->patch_corners != NULL)
+                keep_patches(scene, rank, keep, g);
         }
     }
-    for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
+    for (uint32_t slot = 0; slot < scene->slot_count; slot++) {
         g->used[g->used_count] = slot;
         g->used_count += g->in_use[slot];
     }
@@ -137,9 +148,9 @@ void GRID_RUN(const visibility_scene *scene, grid_scratch *g, const double p[3],
               uint8_t *visible) {
     cube_make_relative(scene, p, &g->at);
     keep_faces(scene, p, side, g);
-    cube_project(scene->vertex_count, &g->at);
+    cube_project(scene->slot_count, &g->at);
     sort_into_cells(scene, g);
     test_faces(scene, p, side, g);
-    for (size_t i = 0; i < scene->vertex_count; i++)
+    for (size_t i = 0; i < scene->slot_count; i++)
         visible[i] = g->in_use[i] && !starg_bit_test(g->hidden, g->place[i]);
 }

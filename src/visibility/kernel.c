@@ -289,8 +289,7 @@ starg_status kernel_find(starg_context *context, const kernel_faces *surface,
             goto done;
     }
 done:
-    starg_release(context, f.rows);
-    starg_release(context, f.order);
+    RELEASE(f.rows, f.order);
     return status;
 }
 
@@ -332,24 +331,17 @@ done:
 
 starg_status starg_kernel(starg_context *context, const starg_mesh *mesh,
                           const starg_kernel_options *options, starg_kernel_result *result) {
-    starg_status status = STARG_OK;
     starg_kernel_options defaults;
     starg_kernel_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
     *result = (starg_kernel_result){.verdict = STARG_KERNEL_UNDECIDED};
     const kernel_faces surface = {mesh->vertices, mesh->faces, mesh->face_count};
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_progress_begin(context, STAGE);
-    if (mesh->face_count == 0) {
-        status = starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no faces");
-        goto done;
-    }
+    TIME_RULE(context, STARG_TIME_FAILS);
+    IN_STAGE(context, STAGE);
+    if (mesh->face_count == 0)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no faces");
     if (!options->trust_closed)
-        STARG_TRY(check_closed(context, mesh));
-    STARG_TRY(kernel_find(context, &surface, result));
-done:
-    starg_progress_end(context);
-    starg_time_end(context, former);
-    return status;
+        TRY(check_closed(context, mesh));
+    return kernel_find(context, &surface, result);
 }

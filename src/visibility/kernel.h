@@ -5,6 +5,7 @@
 #define STARG_VISIBILITY_KERNEL_H
 
 #include "core/context.h"
+#include "core/private.h"
 #include "mesh/solid.h"
 #include "starguard/kernel.h"
 
@@ -16,13 +17,15 @@ typedef struct kernel_faces {
 
 /* starg_kernel for a set of faces whose edges cancel. Errors: MEMORY, CANCELLED. */
 starg_status kernel_find(starg_context *context, const kernel_faces *surface,
-                         starg_kernel_result *result);
+                         starg_kernel_result *result) STARG_PRIVATE(kernel_find);
 
 /* Is `point` strictly on the inner side of every face? Exact. */
-bool kernel_sees_all(const kernel_faces *surface, const double point[3]);
+bool kernel_sees_all(const kernel_faces *surface, const double point[3])
+    STARG_PRIVATE(kernel_sees_all);
 
 /* Winding number of the faces about a point on none of them. Exact. */
-int kernel_winding(const kernel_faces *surface, const double point[3]);
+int kernel_winding(const kernel_faces *surface, const double point[3])
+    STARG_PRIVATE(kernel_winding);
 
 /* The parts of a solid: connected components of its interior. No point sees faces of two of them,
  * so bounds for parts add up. */
@@ -36,7 +39,7 @@ typedef struct solid_parts {
  * and so does a scene. Release with
  * solid_parts_free, whatever the status. Errors: MEMORY, CANCELLED, TIME. */
 starg_status solid_parts_find(starg_context *context, const starg_solid *solid, solid_parts *out);
-void solid_parts_free(starg_context *context, solid_parts *parts);
+void solid_parts_free(solid_parts *parts);
 
 /* A lower bound on the number of points that see each target (bits of faces; NULL: all) `times`
  * times, wherever the points stand: so many for each part with a target. If points see faces from

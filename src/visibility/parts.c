@@ -45,17 +45,13 @@ static bool join_touching(void *user, uint32_t a, uint32_t b) {
 }
 
 static starg_status join_contacts(starg_context *context, const starg_solid *solid, joining *j) {
-    starg_status status = STARG_OK;
-    uint32_t *first = NULL;
+    SCOPED uint32_t *first = NULL;
     size_t moved;
-    STARG_TRY(mesh_find_coincident(context, solid->mesh, &first, &moved));
-    STARG_NEW(context, STAGE, j->welded, 3 * solid->mesh->face_count);
+    TRY(mesh_find_coincident(context, solid->mesh, &first, &moved));
+    NEW(context, STAGE, j->welded, 3 * solid->mesh->face_count);
     for (size_t i = 0; i < 3 * solid->mesh->face_count; i++)
         j->welded[i] = first[solid->mesh->faces[i]];
-    STARG_TRY(face_pairs_visit(context, solid->mesh, solid->tree, join_touching, j));
-done:
-    starg_release(context, first);
-    return status;
+    return face_pairs_visit(context, solid->mesh, solid->tree, join_touching, j);
 }
 
 static starg_status join_shells(starg_context *context, const starg_solid *solid, joining *j) {
@@ -78,17 +74,14 @@ static starg_status join_shells(starg_context *context, const starg_solid *solid
             sets_join(j->parent, c, crossed);
     }
 done:
-    starg_release(context, j->touching);
-    starg_release(context, j->welded);
-    starg_release(context, shells);
+    RELEASE(j->touching, j->welded, shells);
     return status;
 }
 
 /* Gives parts numbers in the order of their lowest faces. */
 static starg_status number_parts(starg_context *context, const joining *j, solid_parts *out) {
-    starg_status status = STARG_OK;
-    uint32_t *number = NULL;
-    STARG_NEW(context, STAGE, number, j->topology->component_count);
+    SCOPED uint32_t *number = NULL;
+    NEW(context, STAGE, number, j->topology->component_count);
     for (size_t c = 0; c < j->topology->component_count; c++)
         number[c] = UINT32_MAX;
     for (size_t f = 0; f < j->topology->face_count; f++) {
@@ -97,9 +90,7 @@ static starg_status number_parts(starg_context *context, const joining *j, solid
             number[root] = (uint32_t)out->count++;
         out->of[f] = number[root];
     }
-done:
-    starg_release(context, number);
-    return status;
+    return STARG_OK;
 }
 
 starg_status solid_parts_find(starg_context *context, const starg_solid *solid, solid_parts *out) {
@@ -122,25 +113,23 @@ done:
     return status;
 }
 
-void solid_parts_free(starg_context *context, solid_parts *parts) {
-    starg_release(context, parts->of);
+void solid_parts_free(solid_parts *parts) {
+    RELEASE(parts->of);
     *parts = (solid_parts){0};
 }
 
 /* Faces by part: those of part i are list[first[i]] to list[first[i + 1] - 1]. */
 static starg_status list_faces(starg_context *context, const solid_parts *parts, size_t faces,
                                uint32_t **list, size_t **first) {
-    starg_status status = STARG_OK;
-    STARG_NEW(context, STAGE, *list, faces);
-    STARG_NEW_ZERO(context, STAGE, *first, parts->count + 2);
+    NEW(context, STAGE, *list, faces);
+    NEW_ZERO(context, STAGE, *first, parts->count + 2);
     for (size_t f = 0; f < faces; f++)
         (*first)[parts->of[f] + 2]++;
     for (size_t i = 2; i < parts->count + 2; i++)
         (*first)[i] += (*first)[i - 1];
     for (size_t f = 0; f < faces; f++)
         (*list)[(*first)[parts->of[f] + 1]++] = (uint32_t)f;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_flat(const starg_mesh *mesh, const uint32_t *c) {
@@ -152,33 +141,29 @@ static bool is_flat(const starg_mesh *mesh, const uint32_t *c) {
  * nothing sees them. */
 static starg_status is_without_kernel(starg_context *context, const starg_mesh *mesh,
                                       const uint32_t *list, size_t count, bool *empty) {
-    starg_status status = STARG_OK;
-    uint32_t *faces = NULL;
+    SCOPED uint32_t *faces = NULL;
     kernel_faces surface = {.vertices = mesh->vertices};
     starg_kernel_result result;
-    STARG_NEW(context, STAGE, faces, 3 * count);
+    NEW(context, STAGE, faces, 3 * count);
     surface.faces = faces;
     for (size_t i = 0; i < count; i++) {
         const uint32_t *c = mesh->faces + 3 * (size_t)list[i];
         if (!is_flat(mesh, c))
             memcpy(faces + 3 * surface.count++, c, 3 * sizeof *c);
     }
-    STARG_TRY(kernel_find(context, &surface, &result));
+    TRY(kernel_find(context, &surface, &result));
     *empty = result.verdict == STARG_KERNEL_EMPTY && result.witness_count > 0;
-done:
-    starg_release(context, faces);
-    return status;
+    return STARG_OK;
 }
 
 starg_status solid_parts_bound(starg_context *context, const starg_solid *solid,
                                const solid_parts *parts, const uint64_t *targets, size_t times,
                                bool inner, size_t *bound) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = solid->mesh;
-    uint32_t *list = NULL;
-    size_t *first = NULL;
+    SCOPED uint32_t *list = NULL;
+    SCOPED size_t *first = NULL;
     *bound = 0;
-    STARG_TRY(list_faces(context, parts, mesh->face_count, &list, &first));
+    TRY(list_faces(context, parts, mesh->face_count, &list, &first));
     for (size_t i = 0; i < parts->count; i++) {
         bool any = false, all = inner, empty = false;
         for (size_t k = first[i]; k < first[i + 1]; k++) {
@@ -187,12 +172,8 @@ starg_status solid_parts_bound(starg_context *context, const starg_solid *solid,
             all = all && (target || is_flat(mesh, mesh->faces + 3 * (size_t)list[k]));
         }
         if (any && all)
-            STARG_TRY(
-                is_without_kernel(context, mesh, list + first[i], first[i + 1] - first[i], &empty));
+            TRY(is_without_kernel(context, mesh, list + first[i], first[i + 1] - first[i], &empty));
         *bound += any ? times + empty : 0;
     }
-done:
-    starg_release(context, list);
-    starg_release(context, first);
-    return status;
+    return STARG_OK;
 }

@@ -11,10 +11,10 @@
 
 /* The columns of visibility rows. */
 
-static inline size_t target_columns(const starg_mesh *mesh, starg_target target) {
-    return target == STARG_TARGET_VERTICES  ? mesh->vertex_count
-           : target == STARG_TARGET_CORNERS ? 3 * mesh->face_count
-                                            : mesh->face_count;
+static inline size_t target_columns(const starg_solid *solid, starg_target target) {
+    return target == STARG_TARGET_VERTICES  ? solid->mesh->vertex_count
+           : target == STARG_TARGET_CORNERS ? 3 * solid->mesh->face_count
+                                            : solid_patch_count(solid);
 }
 
 /* A matrix under construction: row i is what point i sees. */

@@ -19,8 +19,8 @@ enum { LEAST_WORK = 1 << 22 };
 /* The fixed part of a job. */
 typedef struct job_head {
     uint64_t points, vertices, faces;
-    double range, near, incidence, cone, fov[2], up[3], diagonal;
-    uint32_t engine, target, face_rule, embedded, ambient, has_ups;
+    double range, near, incidence, cone, fov[2], up[3], resolution[2], density, diagonal;
+    uint32_t engine, target, face_rule, embedded, ambient, has_ups, unit, unused;
 } job_head;
 
 typedef struct remote_job {
@@ -41,7 +41,6 @@ bool visibility_is_shared(starg_context *context, const visibility_job *job) {
 starg_status visibility_pack_scene(starg_context *context, const starg_solid *solid,
                                    const starg_visibility_options *o, size_t points,
                                    starg_bytes *out) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = solid->mesh;
     const job_head head = {.points = points,
                            .vertices = mesh->vertex_count,
@@ -52,6 +51,9 @@ starg_status visibility_pack_scene(starg_context *context, const starg_solid *so
                            .cone = o->cone,
                            .fov = {o->fov[0], o->fov[1]},
                            .up = {o->up[0], o->up[1], o->up[2]},
+                           .resolution = {o->resolution[0], o->resolution[1]},
+                           .density = o->density,
+                           .unit = o->unit,
                            .diagonal = solid->check->diagonal,
                            .engine = o->engine,
                            .target = o->target,
@@ -59,75 +61,62 @@ starg_status visibility_pack_scene(starg_context *context, const starg_solid *so
                            .embedded = solid->check->embedded,
                            .ambient = (uint32_t)solid->ambient,
                            .has_ups = sensor_is_directed(o) && o->ups != NULL};
-    STARG_TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
-    STARG_TRY(starg_bytes_put(context, out, mesh->vertices, 3 * mesh->vertex_count, 8));
-    STARG_TRY(starg_bytes_put(context, out, mesh->faces, 3 * mesh->face_count, 4));
-done:
-    return status;
+    TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
+    TRY(starg_bytes_put(context, out, mesh->vertices, 3 * mesh->vertex_count, 8));
+    return starg_bytes_put(context, out, mesh->faces, 3 * mesh->face_count, 4);
 }
 
 starg_status visibility_pack(starg_context *context, const visibility_job *job, starg_bytes *out) {
-    starg_status status = STARG_OK;
     const starg_visibility_options *o = job->options;
-    STARG_TRY(visibility_pack_scene(context, job->scene->solid, o, job->count, out));
-    STARG_TRY(starg_bytes_put(context, out, job->points, 3 * job->count, 8));
+    TRY(visibility_pack_scene(context, job->scene->solid, o, job->count, out));
+    TRY(starg_bytes_put(context, out, job->points, 3 * job->count, 8));
     if (sensor_is_directed(o))
-        STARG_TRY(starg_bytes_put(context, out, o->directions, 3 * job->count, 8));
+        TRY(starg_bytes_put(context, out, o->directions, 3 * job->count, 8));
     if (sensor_is_directed(o) && o->ups != NULL)
-        STARG_TRY(starg_bytes_put(context, out, o->ups, 3 * job->count, 8));
-done:
-    return status;
+        TRY(starg_bytes_put(context, out, o->ups, 3 * job->count, 8));
+    return STARG_OK;
 }
 
 starg_status visibility_take(starg_context *context, void *shared, size_t first, size_t count,
                              starg_bytes_reader *reply) {
-    starg_status status = STARG_OK;
     const visibility_job *job = shared;
-    uint8_t *finished = NULL;
+    SCOPED uint8_t *finished = NULL;
     if (count * job->rows->words * sizeof(uint64_t) + count != reply->left)
         return STARG_ERROR_RANK;
-    STARG_NEW(context, STAGE, finished, count);
+    NEW(context, STAGE, finished, count);
     starg_bytes_take(reply, finished, count, 1);
     if (job->finished != NULL)
         memcpy(job->finished + first, finished, count);
     starg_bytes_take(reply, starg_bits_row_mutable(job->rows, first), count * job->rows->words,
                      sizeof(uint64_t));
-done:
-    starg_release(context, finished);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- helpers ---- */
 
 static void end(starg_context *context, void *state) {
+    (void)context;
     remote_job *job = state;
     if (job == NULL)
         return;
     scene_free(job->scene);
     starg_solid_free(job->solid);
-    starg_release(context, job->points);
-    starg_release(context, job->directions);
-    starg_release(context, job->ups);
-    starg_release(context, job);
+    RELEASE(job->points, job->directions, job->ups, job);
 }
 
 static starg_status take_solid(starg_context *context, starg_bytes_reader *bytes,
                                const job_head *head, starg_solid **out) {
-    starg_status status = STARG_OK;
-    void *vertices = NULL, *faces = NULL;
-    STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head->vertices, 8, &vertices));
-    STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head->faces, 4, &faces));
+    SCOPED void *vertices = NULL, *faces = NULL;
+    TRY(starg_bytes_take_block(context, bytes, 3 * head->vertices, 8, &vertices));
+    TRY(starg_bytes_take_block(context, bytes, 3 * head->faces, 4, &faces));
     const starg_check check = {.usable = true,
                                .embedded = head->embedded,
                                .diagonal = head->diagonal,
                                .vertices = head->vertices,
                                .faces = head->faces};
-    STARG_TRY(solid_of_parts(context, vertices, head->vertices, faces, head->faces, &check, out));
+    TRY(solid_of_parts(context, vertices, head->vertices, faces, head->faces, &check, out));
     (*out)->ambient = (int)head->ambient;
-done:
-    starg_release(context, vertices);
-    starg_release(context, faces);
-    return status;
+    return STARG_OK;
 }
 
 /* Is this a valid job? Excessive counts are caught later. */
@@ -135,7 +124,7 @@ static bool is_sound(const job_head *head, size_t left) {
     return head->points <= left / 24 && head->vertices <= left / 24 && head->faces <= left / 12 &&
            head->engine <= STARG_VISIBILITY_FASTEST && head->target <= STARG_TARGET_CORNERS &&
            head->face_rule <= STARG_FACES_WHOLE && head->ambient <= 1 && head->cone > 0 &&
-           head->range >= 0;
+           head->range >= 0 && head->unit <= STARG_UNIT_INCH;
 }
 
 static starg_status unpack(starg_context *context, starg_bytes_reader *bytes, job_head *head,
@@ -151,7 +140,11 @@ static starg_status unpack(starg_context *context, starg_bytes_reader *bytes, jo
                                           .incidence = head->incidence,
                                           .cone = head->cone,
                                           .fov = {head->fov[0], head->fov[1]},
-                                          .up = {head->up[0], head->up[1], head->up[2]}};
+                                          .up = {head->up[0], head->up[1], head->up[2]},
+                                          .tilt = {STARG_TILT_ANY, STARG_TILT_ANY},
+                                          .resolution = {head->resolution[0], head->resolution[1]},
+                                          .density = head->density,
+                                          .unit = (starg_unit)head->unit};
     return status;
 }
 
@@ -162,29 +155,26 @@ starg_status visibility_unpack_scene(starg_context *context, starg_bytes_reader 
 }
 
 static starg_status begin(starg_context *context, starg_bytes_reader *bytes, void **state) {
-    starg_status status = STARG_OK;
     remote_job *job = NULL;
     job_head head;
     void *points, *directions, *ups;
     end(context, *state);
     *state = NULL;
-    STARG_NEW_ZERO(context, STAGE, job, 1);
+    NEW_ZERO(context, STAGE, job, 1);
     *state = job;
-    STARG_TRY(unpack(context, bytes, &head, &job->solid, &job->options));
-    STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &points));
+    TRY(unpack(context, bytes, &head, &job->solid, &job->options));
+    TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &points));
     job->points = points;
     if (sensor_is_directed(&job->options)) {
-        STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &directions));
+        TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &directions));
         job->directions = directions;
     }
     if (head.has_ups) {
-        STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &ups));
+        TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &ups));
         job->ups = ups;
     }
     job->count = head.points;
-    STARG_TRY(visibility_scene_for(context, job->solid, &job->options, job->count, &job->scene));
-done:
-    return status;
+    return visibility_scene_for(context, job->solid, &job->options, job->count, &job->scene);
 }
 
 static starg_status run(starg_context *context, void *state, size_t first, size_t count,
@@ -194,8 +184,7 @@ static starg_status run(starg_context *context, void *state, size_t first, size_
     starg_visibility_options options = all->options;
     starg_bits *rows = NULL;
     uint8_t *finished = NULL;
-    const starg_mesh *mesh = all->solid->mesh;
-    size_t columns = target_columns(mesh, options.target);
+    size_t columns = target_columns(all->solid, options.target);
     if (count > all->count || first > all->count - count)
         return STARG_ERROR_RANK;
     if (all->directions != NULL)

@@ -32,44 +32,92 @@ static void order_vertices(visibility_scene *scene) {
         }
 }
 
-static starg_status find_least(visibility_scene *scene) {
-    starg_status status = STARG_OK;
-    const uint32_t *other_side = scene->solid->other_side;
-    if (other_side == NULL)
-        return STARG_OK;
-    STARG_NEW(scene->context, "visibility", scene->least, scene->face_count);
-    for (size_t rank = 0; rank < scene->face_count; rank++)
-        scene->least[rank] = other_side[scene->face_of[rank]] != SCENE_NONE ? 0 : -1;
-done:
-    return status;
+static scene_point point_of(const visibility_scene *scene, const patch_point *of) {
+    scene_point point = {patch_point_dyadic(of, scene->mesh->vertices), {0}};
+    for (int k = 0; k < 3; k++)
+        point.support[k] = of->weight[k] > 0 ? scene->slot_of[of->vertex[k]] : SCENE_NONE;
+    return point;
 }
 
-/* Ranks of the other sides of faces that count from either side. */
-static starg_status find_backs(visibility_scene *scene) {
-    starg_status status = STARG_OK;
-    uint32_t *rank_of = NULL;
-    if (!solid_is_two_sided(scene->solid))
+static void set_point(visibility_scene *scene, const patch_point *of, uint32_t slot) {
+    scene_point *point = &scene->points[slot - scene->vertex_count];
+    *point = point_of(scene, of);
+    scene->x[slot] = point->place.at[0];
+    scene->y[slot] = point->place.at[1];
+    scene->z[slot] = point->place.at[2];
+}
+
+scene_point scene_point_at(const visibility_scene *scene, uint32_t slot) {
+    if (slot >= scene->vertex_count)
+        return scene->points[slot - scene->vertex_count];
+    return (scene_point){dyadic_of(scene->mesh->vertices + 3 * (size_t)scene->vertex_of[slot]),
+                         {slot, SCENE_NONE, SCENE_NONE}};
+}
+
+scene_point scene_point_of(const visibility_scene *scene, size_t rank, const patch_corner *corner) {
+    patch_point point;
+    uint32_t vertex;
+    const uint32_t *face = scene->mesh->faces + 3 * (size_t)scene->face_of[rank];
+    return patch_point_of(face, corner, &point, &vertex)
+               ? point_of(scene, &point)
+               : scene_point_at(scene, scene->slot_of[vertex]);
+}
+
+/* Points of patches follow the vertices, in the order of the faces. */
+static starg_status add_points(visibility_scene *scene) {
+    const mesh_patches *patches = scene->solid->patches;
+    SCOPED uint32_t *slot_of = NULL;
+    scene->slot_count = scene->vertex_count;
+    if (patches == NULL)
         return STARG_OK;
-    STARG_NEW(scene->context, "visibility", scene->backs, scene->face_count);
-    STARG_NEW(scene->context, "visibility", rank_of, scene->face_count);
-    for (size_t rank = 0; rank < scene->face_count; rank++)
-        rank_of[scene->face_of[rank]] = (uint32_t)rank;
+    NEW(scene->context, "visibility", scene->points, patches->points.count);
+    NEW(scene->context, "visibility", scene->patch_corners, patches->corner.count);
+    NEW(scene->context, "visibility", slot_of, patches->points.count);
+    memset(slot_of, 0xff, patches->points.count * sizeof *slot_of);
     for (size_t rank = 0; rank < scene->face_count; rank++) {
-        uint32_t back = scene->solid->other_side[scene->face_of[rank]];
-        scene->backs[rank] = back == SCENE_NONE ? SCENE_NONE : rank_of[back];
+        size_t face = scene->face_of[rank];
+        for (size_t i = patches->corners * patches->first[face];
+             i < patches->corners * patches->first[face + 1]; i++) {
+            uint32_t corner = patches->corner.data[i],
+                     point = corner - (uint32_t)patches->vertex_count;
+            if (corner < patches->vertex_count) {
+                scene->patch_corners[i] = scene->slot_of[corner];
+                continue;
+            }
+            if (slot_of[point] == SCENE_NONE) {
+                slot_of[point] = (uint32_t)scene->slot_count++;
+                set_point(scene, &patches->points.data[point], slot_of[point]);
+            }
+            scene->patch_corners[i] = slot_of[point];
+        }
     }
-done:
-    starg_release(scene->context, rank_of);
-    return status;
+    return STARG_OK;
+}
+
+static starg_status find_least(visibility_scene *scene) {
+    const uint32_t *other_side = scene->solid->other_side;
+    if (other_side == NULL && scene->solid->clear == NULL)
+        return STARG_OK;
+    NEW(scene->context, "visibility", scene->least, scene->face_count);
+    for (size_t rank = 0; rank < scene->face_count; rank++) {
+        uint32_t face = scene->face_of[rank];
+        bool twice = other_side != NULL && other_side[face] != SCENE_NONE;
+        scene->least[rank] = solid_is_clear(scene->solid, face) ? SCENE_NEVER : twice ? 0 : -1;
+    }
+    return STARG_OK;
 }
 
 uint32_t scene_back(const visibility_scene *scene, size_t rank) {
-    return scene->backs == NULL ? SCENE_NONE : scene->backs[rank];
+    const starg_solid *solid = scene->solid;
+    uint32_t back =
+        solid_is_two_sided(solid) ? solid->other_side[scene->face_of[rank]] : SCENE_NONE;
+    return back == SCENE_NONE ? SCENE_NONE : scene->rank_of[back];
 }
 
 /* The error bound: with e the longest extent of an edge and h that of the box, a normal's
  * components are below 2 e^2 and carry 4 roundings, the products another 4; there are six terms
- * with factors up to h (which itself carries a rounding). 128 covers the sum. */
+ * with factors up to h (which itself carries a rounding). 128 covers the sum. Points of patches are
+ * off by at most `blur` in each coordinate. */
 static void compute_planes(visibility_scene *scene) {
     const bvh_box *all = &scene->all;
     double edge = 0;
@@ -93,6 +141,10 @@ static void compute_planes(visibility_scene *scene) {
     scene->side_bound = 128 * 0x1p-53 * edge * edge * scene->extent;
     if (!(scene->side_bound > 1e-250))
         scene->side_bound = INFINITY; /* too small for the analysis: always decide exactly */
+    for (size_t i = 0; i < 3 * scene->mesh->vertex_count; i++)
+        scene->blur = fmax(scene->blur, fabs(scene->mesh->vertices[i]));
+    scene->blur = dyadic_blur(scene->blur);
+    scene->point_bound = scene->side_bound + 8 * edge * edge * scene->blur;
 }
 
 static sides_run *choose_sides(void) {
@@ -124,20 +176,24 @@ starg_status scene_create(starg_context *context, const starg_solid *solid,
     scene->face_of = solid->tree->order;
     solid_extent(solid, &scene->all);
     size_t n = solid->mesh->vertex_count, m = scene->face_count;
+    size_t slots = n + (solid->patches != NULL ? solid->patches->points.count : 0);
     STARG_NEW(context, "visibility", scene->vertex_of, n);
     STARG_NEW(context, "visibility", scene->slot_of, n);
-    STARG_NEW(context, "visibility", scene->x, n);
-    STARG_NEW(context, "visibility", scene->y, n);
-    STARG_NEW(context, "visibility", scene->z, n);
+    STARG_NEW(context, "visibility", scene->rank_of, m);
+    STARG_NEW(context, "visibility", scene->x, slots);
+    STARG_NEW(context, "visibility", scene->y, slots);
+    STARG_NEW(context, "visibility", scene->z, slots);
     STARG_NEW(context, "visibility", scene->corners, 3 * m);
     STARG_NEW(context, "visibility", scene->nx, m);
     STARG_NEW(context, "visibility", scene->ny, m);
     STARG_NEW(context, "visibility", scene->nz, m);
     STARG_NEW(context, "visibility", scene->offset, m);
+    for (size_t rank = 0; rank < m; rank++)
+        scene->rank_of[scene->face_of[rank]] = (uint32_t)rank;
     order_vertices(scene);
+    STARG_TRY(add_points(scene));
     compute_planes(scene);
     STARG_TRY(find_least(scene));
-    STARG_TRY(find_backs(scene));
     *out = scene;
 done:
     if (status != STARG_OK)
@@ -146,11 +202,10 @@ done:
 }
 
 starg_status scene_limit(visibility_scene *scene, double range) {
-    starg_status status = STARG_OK;
     size_t count = (scene->face_count + SCENE_CHUNK - 1) / SCENE_CHUNK;
     if (!(range < 1e100) || !(range > 1e-100)) /* squares neither overflow nor vanish */
         return STARG_OK;
-    STARG_NEW(scene->context, "visibility", scene->chunks, count);
+    NEW(scene->context, "visibility", scene->chunks, count);
     scene->range = range;
     for (size_t c = 0; c < count; c++)
         for (int k = 0; k < 3; k++) {
@@ -166,30 +221,17 @@ starg_status scene_limit(visibility_scene *scene, double range) {
                 box->upper[k] = fmax(box->upper[k], x);
             }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 void scene_free(visibility_scene *scene) {
     if (scene == NULL)
         return;
-    starg_context *context = scene->context;
     adjacency_free(scene->adjacency);
     sight_tree_free(scene->sights);
-    starg_release(context, scene->vertex_of);
-    starg_release(context, scene->slot_of);
-    starg_release(context, scene->x);
-    starg_release(context, scene->y);
-    starg_release(context, scene->z);
-    starg_release(context, scene->corners);
-    starg_release(context, scene->backs);
-    starg_release(context, scene->least);
-    starg_release(context, scene->chunks);
-    starg_release(context, scene->nx);
-    starg_release(context, scene->ny);
-    starg_release(context, scene->nz);
-    starg_release(context, scene->offset);
-    starg_release(context, scene);
+    RELEASE(scene->vertex_of, scene->slot_of, scene->x, scene->y, scene->z, scene->corners,
+            scene->points, scene->patch_corners, scene->rank_of, scene->least, scene->chunks,
+            scene->nx, scene->ny, scene->nz, scene->offset, scene);
 }
 
 starg_status scene_add_adjacency(visibility_scene *scene) {
@@ -226,11 +268,70 @@ void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side)
                                  scene_corner(scene, rank, 2), p);
 }
 
+bool scene_blocks_point(const visibility_scene *scene, size_t rank, int side, const double p[3],
+                        const scene_point *point) {
+    if (scene_is_clear(scene, rank) || (side != 0 && scene_has_point(scene, rank, point)))
+        return false;
+    return dyadic_segment_meets_triangle(p, &point->place, scene_corner(scene, rank, 0),
+                                         scene_corner(scene, rank, 1),
+                                         scene_corner(scene, rank, 2));
+}
+
 bool scene_blocks(const visibility_scene *scene, size_t rank, int side, const double p[3],
                   uint32_t slot) {
-    if (side != 0 && scene_has_corner(scene, rank, slot))
+    if (slot >= scene->vertex_count)
+        return scene_blocks_point(scene, rank, side, p, &scene->points[slot - scene->vertex_count]);
+    if (scene_is_clear(scene, rank) || (side != 0 && scene_has_corner(scene, rank, slot)))
         return false;
     return segment_meets_triangle(p, scene->mesh->vertices + 3 * (size_t)scene->vertex_of[slot],
                                   scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
                                   scene_corner(scene, rank, 2));
+}
+
+void scene_patch_centre(const visibility_scene *scene, size_t patch, double centre[3]) {
+    const uint32_t *corner = scene_patch_corners(scene, patch);
+    size_t size = scene_patch_size(scene);
+    double sum[3] = {0};
+    for (size_t k = 0; k < size; k++) {
+        sum[0] += scene->x[corner[k]] / (double)size;
+        sum[1] += scene->y[corner[k]] / (double)size;
+        sum[2] += scene->z[corner[k]] / (double)size;
+    }
+    vec3_copy(sum, centre);
+}
+
+sensor scene_sensor(const visibility_scene *scene, const starg_visibility_options *options) {
+    sensor own = sensor_of(options);
+    if (scene->solid->density != NULL && options->target == STARG_TARGET_FACES)
+        own.depth = INFINITY;
+    return own;
+}
+
+bool scene_resolves_patch(const visibility_scene *scene, const sensor *looks, const double p[3],
+                          size_t patch) {
+    const double *density = scene->solid->density;
+    size_t face = solid_patch_face(scene->solid, patch);
+    if (density == NULL || !looks->rectangular)
+        return true;
+    const uint32_t *corner = scene_patch_corners(scene, patch);
+    double depth = starg_density_depth(looks->options, density[face]);
+    for (size_t k = 0; k < scene_patch_size(scene); k++) {
+        const double q[3] = {scene->x[corner[k]], scene->y[corner[k]], scene->z[corner[k]]};
+        if (!sensor_is_near(looks, p, depth, q))
+            return false;
+    }
+    return true;
+}
+
+bool scene_faces_patch(const visibility_scene *scene, const sensor *looks, const double p[3],
+                       size_t rank, size_t patch) {
+    const uint32_t *corner = scene_patch_corners(scene, patch);
+    const double *const face[3] = {scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                                   scene_corner(scene, rank, 2)};
+    for (size_t k = 0; looks->steepest > 0 && k < scene_patch_size(scene); k++) {
+        const double q[3] = {scene->x[corner[k]], scene->y[corner[k]], scene->z[corner[k]]};
+        if (!sensor_faces(looks, p, face, q))
+            return false;
+    }
+    return true;
 }

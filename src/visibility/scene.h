@@ -15,9 +15,15 @@
 #define SCENE_NONE UINT32_MAX
 
 /* Faces in a chunk of ranks. */
-enum { SCENE_CHUNK = 128 };
+enum { SCENE_CHUNK = 128, SCENE_NEVER = 2 };
 
 struct visibility_scene;
+
+/* A point of a face that is to be seen and is no vertex. */
+typedef struct scene_point {
+    dyadic_point place;
+    uint32_t support[3]; /* slots of the vertices that it lies between, or SCENE_NONE */
+} scene_point;
 
 /* side[rank] = 1 or -1 as in scene_sides if certain, otherwise 0. */
 typedef void sides_run(const struct visibility_scene *scene, const double p[3], int8_t *side);
@@ -40,23 +46,28 @@ typedef struct visibility_scene {
 
     /* By rank: the least side at which a face has to be tested as a blocker. A triangle that stands
      * twice blocks the same with either side, so that the one that faces away may be left out: 0.
-     * NULL: all alike, 1 if `cull`, else -1. */
+     * SCENE_NEVER: it blocks none. NULL: all alike, 1 if `cull`, else -1. */
     int8_t *least;
 
     size_t vertex_count, face_count; /* vertex_count: those that faces use */
-    uint32_t *vertex_of;             /* slot -> vertex of the mesh, in spatial order          */
-    uint32_t *slot_of;               /* vertex of the mesh -> slot, or SCENE_NONE if unused   */
-    const uint32_t *face_of;         /* rank -> face of the mesh, in spatial order            */
-    uint32_t *corners;               /* rank x 3 -> slots                                     */
-    uint32_t *backs;   /* rank -> rank of the other side, or SCENE_NONE; NULL: only fronts count */
-    double *x, *y, *z; /* by slot                                               */
+    size_t slot_count;               /* slots of vertices, and of points that follow them */
+    scene_point *points;
+    uint32_t *patch_corners; /* slots of the corners of patches; NULL: patches are the faces */
+    uint32_t *rank_of;       /* by face */
+    uint32_t *vertex_of;     /* slot -> vertex of the mesh, in spatial order          */
+    uint32_t *slot_of;       /* vertex of the mesh -> slot, or SCENE_NONE if unused   */
+    const uint32_t *face_of; /* rank -> face of the mesh, in spatial order            */
+    uint32_t *corners;       /* rank x 3 -> slots                                     */
+    double *x, *y, *z;       /* by slot                                               */
 
     /* Plane of each face by rank: normal . (centre - p) + offset is positive where p is inside. */
     double *nx, *ny, *nz, *offset;
-    bvh_box all;       /* of the mesh and all places where guards may stand */
-    double centre[3];  /* of the box */
-    double extent;     /* its longest side */
-    double side_bound; /* larger than the rounding error of that expression for p in the box */
+    bvh_box all;        /* of the mesh and all places where guards may stand */
+    double centre[3];   /* of the box */
+    double extent;      /* its longest side */
+    double side_bound;  /* larger than the rounding error of that expression for p in the box */
+    double blur;        /* what coordinates of points between vertices are off at most */
+    double point_bound; /* the same as side_bound for such a point */
     sides_run *find_sides;
 
     double range;    /* vertices farther away need not be looked at; INFINITY: all are */
@@ -98,12 +109,26 @@ static inline bool scene_may_block(const visibility_scene *scene, size_t rank, i
     return side >= (scene->least != NULL ? scene->least[rank] : scene->cull ? 1 : -1);
 }
 
+/* Does the face block no view? */
+static inline bool scene_is_clear(const visibility_scene *scene, size_t rank) {
+    return scene->least != NULL && scene->least[rank] == SCENE_NEVER;
+}
+
 /* On which side of a face is p? 0: within rounding of its plane. p lies in the box. */
 static inline int scene_likely_side(const visibility_scene *scene, size_t rank, const double p[3]) {
     double value = scene->nx[rank] * (scene->centre[0] - p[0]) +
                    scene->ny[rank] * (scene->centre[1] - p[1]) +
                    scene->nz[rank] * (scene->centre[2] - p[2]) + scene->offset[rank];
     return (value > scene->side_bound) - (value < -scene->side_bound);
+}
+
+/* The same of a point between vertices, in the box. */
+static inline int scene_likely_side_of(const visibility_scene *scene, size_t rank,
+                                       const dyadic_point *q) {
+    double value = scene->nx[rank] * (scene->centre[0] - q->at[0]) +
+                   scene->ny[rank] * (scene->centre[1] - q->at[1]) +
+                   scene->nz[rank] * (scene->centre[2] - q->at[2]) + scene->offset[rank];
+    return (value > scene->point_bound) - (value < -scene->point_bound);
 }
 
 /* Is p in the box of the scene? */
@@ -125,10 +150,55 @@ static inline bool scene_has_corner(const visibility_scene *scene, size_t rank, 
     return c[0] == slot || c[1] == slot || c[2] == slot;
 }
 
-/* Does the face block the view from p to the vertex in `slot`? Exact. `side` is that of p. If p is
- * off its plane, a face never blocks its own corners. */
+/* Does the closed face hold a point of this or another face, as the mesh tells: has it all vertices
+ * that the point lies between? */
+static inline bool scene_has_point(const visibility_scene *scene, size_t rank,
+                                   const scene_point *point) {
+    bool has = true;
+    for (int k = 0; k < 3 && has; k++)
+        has = point->support[k] == SCENE_NONE || scene_has_corner(scene, rank, point->support[k]);
+    return has;
+}
+
+/* Does the face block the view from p to the vertex or point in `slot`? Exact. `side` is that of p.
+ * If p is off its plane, a face never blocks what it holds. */
 bool scene_blocks(const visibility_scene *scene, size_t rank, int side, const double p[3],
                   uint32_t slot);
+bool scene_blocks_point(const visibility_scene *scene, size_t rank, int side, const double p[3],
+                        const scene_point *point);
+
+/* Slots of the corners of a patch, and how many it has. */
+static inline const uint32_t *scene_patch_corners(const visibility_scene *scene, size_t patch) {
+    return scene->patch_corners != NULL
+               ? scene->patch_corners + scene->solid->patches->corners * patch
+               : scene->corners + 3 * (size_t)scene->rank_of[patch];
+}
+
+static inline size_t scene_patch_size(const visibility_scene *scene) {
+    return scene->patch_corners != NULL ? scene->solid->patches->corners : 3;
+}
+
+/* The middle of a patch. */
+void scene_patch_centre(const visibility_scene *scene, size_t patch, double centre[3]);
+
+/* Is no corner of a patch in the face of `rank`, p being on its inner side, seen too obliquely? */
+bool scene_faces_patch(const visibility_scene *scene, const sensor *looks, const double p[3],
+                       size_t rank, size_t patch);
+
+/* The sensor of some options, which must outlive it, for a scene: where faces have densities of
+ * their own, those are asked about by face. */
+sensor scene_sensor(const visibility_scene *scene, const starg_visibility_options *options);
+
+/* Has an aimed sensor, at every corner of a patch, the density that its face needs, where faces
+ * have needs of their own? */
+bool scene_resolves_patch(const visibility_scene *scene, const sensor *looks, const double p[3],
+                          size_t patch);
+
+/* A corner of a part of a face. */
+scene_point scene_point_of(const visibility_scene *scene, size_t rank, const patch_corner *corner);
+
+/* The same for a corner of a patch, or for a vertex. */
+scene_point scene_point_at(const visibility_scene *scene, uint32_t slot);
 
 /* An algorithm that finds the vertices seen from a point. */
 typedef struct visibility_engine {
@@ -152,22 +222,36 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
                              size_t count, const starg_visibility_options *options,
                              uint8_t *finished, starg_bits **out);
 
-/* Does p, strictly inside, see the vertex in `slot`, by the tree? Where views are
+/* Does p, strictly inside and with these sides, see the vertex or point in `slot`, by the tree? */
+bool scene_sees_slot(const visibility_scene *scene, const double p[3], const int8_t *side,
+                     uint32_t slot);
+
+/* Does p, strictly inside, see the vertex or point in `slot`, by the tree? Where views are
  * directed, options->directions and ups have the one direction of p. */
 bool scene_sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
                        const starg_visibility_options *options);
 
-/* Does p, strictly inside, see the one face, from either side of it where the scene says so? The
+/* The same for a point of a face, and a sensor that is aimed. */
+bool scene_sees_point(const visibility_scene *scene, const double p[3], const scene_point *point,
+                      const sensor *looks);
+
+/* Does p, strictly inside, see the one patch, from either side of it where the scene says so? The
  * rules of starg_visibility, by the tree. */
-bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
-                     const starg_visibility_options *options);
+bool scene_sees_patch(const visibility_scene *scene, const double p[3], size_t patch,
+                      const starg_visibility_options *options);
 
 /* Where faces count from either side: the rank of the other side of a face, else SCENE_NONE. */
 uint32_t scene_back(const visibility_scene *scene, size_t rank);
 
-/* Is every point of the face of `rank` visible from p? Its three vertices are, and p is on its
- * inner side. `side` holds the sides of p by rank, or is NULL. Exact. */
-bool face_is_wholly_visible(const visibility_scene *scene, const double p[3], const int8_t *side,
-                            size_t rank);
+/* Is every point of a triangle in the face of `rank` visible from p? Its three corners are, and p
+ * is on the face's inner side. `side` holds the sides of p by rank, or is NULL. *blocker, if not
+ * NULL, is a face that is tried first, SCENE_NONE for none, and then the one found. Exact. */
+bool triangle_is_wholly_visible(const visibility_scene *scene, const double p[3],
+                                const int8_t *side, size_t rank, const scene_point corner[3],
+                                uint32_t *blocker);
+
+/* The same of a patch in that face; points are. */
+bool patch_is_wholly_visible(const visibility_scene *scene, const double p[3], const int8_t *side,
+                             size_t rank, size_t patch);
 
 #endif

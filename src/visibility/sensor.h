@@ -21,6 +21,7 @@ typedef struct sensor {
     double steepest; /* cosine of the incidence; 0: any */
     const double *direction;
     double planes[4][3];
+    double depth; /* largest, by the density; INFINITY: any */
 } sensor;
 
 /* Do guards look in one direction each? */
@@ -37,15 +38,21 @@ void sensor_frame(const double direction[3], const double up[3], double frame[3]
 /* Aims it, if it looks in one direction; `up` may be NULL. */
 void sensor_aim(sensor *own, const double direction[3], const double up[3]);
 
+/* Turns a direction, not zero, to the nearest within the tilt; of unit length if it turns. */
+void sensor_tilt(const starg_visibility_options *options, double direction[3]);
+
 /* Is q at a distance from p that it sees? */
 bool sensor_reaches(const sensor *own, const double p[3], const double q[3]);
+
+/* Is q, from p, at most so deep in the view? */
+bool sensor_is_near(const sensor *own, const double p[3], double depth, const double q[3]);
 
 /* Is q in the view of the sensor, aimed from p? */
 bool sensor_frames(const sensor *own, const double p[3], const double q[3]);
 
-/* Is the triangle, p being on its inner side, not seen too obliquely? */
-bool sensor_faces(const sensor *own, const double p[3], const double a[3], const double b[3],
-                  const double c[3]);
+/* Is a point q of the plane of a face, p being on its inner side, not seen too obliquely? */
+bool sensor_faces(const sensor *own, const double p[3], const double *const face[3],
+                  const double q[3]);
 
 /* Errors: ARGUMENT (limits that exclude each other, directions that are none). */
 starg_status sensor_check(starg_context *context, const char *stage, size_t count,

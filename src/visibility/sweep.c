@@ -43,14 +43,11 @@ typedef struct sweep_scratch {
 } sweep_scratch;
 
 static void free_scratch(const visibility_scene *scene, void *scratch) {
+    (void)scene;
     sweep_scratch *s = scratch;
     if (s == NULL)
         return;
-    starg_release(scene->context, s->directions);
-    starg_release(scene->context, s->sorted);
-    starg_release(scene->context, s->ranges);
-    starg_release(scene->context, s->active);
-    starg_release(scene->context, s);
+    RELEASE(s->directions, s->sorted, s->ranges, s->active, s);
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {

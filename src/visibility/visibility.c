@@ -17,26 +17,22 @@ typedef visibility_job job;
 typedef struct worker {
     void *engine_scratch;
     const job *job;
-    int8_t *side;            /* by rank */
-    uint8_t *visible;        /* by slot */
-    uint8_t *within;         /* by slot: visible, and in the view; only where it is directed */
-    uint32_t *slots, *ranks; /* where views are directed: what the place sees all around */
-    size_t slot_count, rank_count;
+    int8_t *side;              /* by rank */
+    uint8_t *visible;          /* by slot */
+    uint8_t *within;           /* by slot: visible, and in the view; only where it is directed */
+    uint32_t *slots, *patches; /* where views are directed: what the place sees all around */
+    size_t slot_count, patch_count;
     sensor sensor;
     const double *last; /* point that side and visible are for, or NULL */
 } worker;
 
 static void free_worker(starg_context *context, void *scratch) {
+    (void)context;
     worker *w = scratch;
     if (w == NULL)
         return;
     w->job->engine->free_scratch(w->job->scene, w->engine_scratch);
-    starg_release(context, w->side);
-    starg_release(context, w->visible);
-    starg_release(context, w->within);
-    starg_release(context, w->slots);
-    starg_release(context, w->ranks);
-    starg_release(context, w);
+    RELEASE(w->side, w->visible, w->within, w->slots, w->patches, w);
 }
 
 static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
@@ -46,15 +42,15 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     if (w == NULL)
         return STARG_ERROR_MEMORY;
     w->job = all;
-    w->sensor = sensor_of(all->options);
+    w->sensor = scene_sensor(all->scene, all->options);
     w->side = starg_allocate(context, all->scene->face_count, sizeof *w->side);
-    w->visible = starg_allocate(context, all->scene->vertex_count, sizeof *w->visible);
-    w->within = starg_allocate_zero(context, all->scene->vertex_count, sizeof *w->within);
-    w->slots = starg_allocate(context, all->scene->vertex_count, sizeof *w->slots);
-    w->ranks = starg_allocate(context, all->scene->face_count, sizeof *w->ranks);
+    w->visible = starg_allocate(context, all->scene->slot_count, sizeof *w->visible);
+    w->within = starg_allocate_zero(context, all->scene->slot_count, sizeof *w->within);
+    w->slots = starg_allocate(context, all->scene->slot_count, sizeof *w->slots);
+    w->patches = starg_allocate(context, solid_patch_count(all->scene->solid), sizeof *w->patches);
     starg_status status = STARG_ERROR_MEMORY;
     if (w->side != NULL && w->visible != NULL && w->within != NULL && w->slots != NULL &&
-        w->ranks != NULL)
+        w->patches != NULL)
         status = all->engine->make_scratch(all->scene, &w->engine_scratch);
     if (status != STARG_OK) {
         free_worker(context, w);
@@ -66,19 +62,33 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
 
 static void drop_out_of_reach(const worker *w, const double p[3]) {
     const visibility_scene *scene = w->job->scene;
-    for (size_t slot = 0; w->sensor.reaches && slot < scene->vertex_count; slot++) {
+    for (size_t slot = 0; w->sensor.reaches && slot < scene->slot_count; slot++) {
         const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
         w->visible[slot] = w->visible[slot] && sensor_reaches(&w->sensor, p, q);
     }
 }
 
-/* Does the place see the face, wherever it looks? */
-static bool sees_around(const worker *w, const double p[3], size_t rank) {
+static bool all_visible(const visibility_scene *scene, const uint8_t *visible, size_t patch) {
+    const uint32_t *corner = scene_patch_corners(scene, patch);
+    uint8_t all = 1;
+    for (size_t k = 0; k < scene_patch_size(scene); k++)
+        all &= visible[corner[k]];
+    return all;
+}
+
+/* Does the place, which is on the inner side, see the patch, wherever it looks? */
+static bool sees_around(const worker *w, const double p[3], size_t rank, size_t patch) {
     const visibility_scene *scene = w->job->scene;
-    const uint32_t *c = scene->corners + 3 * rank;
-    return w->side[rank] > 0 && (w->visible[c[0]] & w->visible[c[1]] & w->visible[c[2]]) &&
-           sensor_faces(&w->sensor, p, scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
-                        scene_corner(scene, rank, 2));
+    return all_visible(scene, w->visible, patch) &&
+           scene_faces_patch(scene, &w->sensor, p, rank, patch);
+}
+
+static void list_patches(worker *w, const double p[3], size_t rank) {
+    const visibility_scene *scene = w->job->scene;
+    size_t face = scene->face_of[rank], end = solid_first_patch(scene->solid, face + 1);
+    for (size_t i = solid_first_patch(scene->solid, face); w->side[rank] > 0 && i < end; i++)
+        if (sees_around(w, p, rank, i))
+            w->patches[w->patch_count++] = (uint32_t)i;
 }
 
 /* Directions of one place look among what it sees all around. */
@@ -86,8 +96,8 @@ static void list_visible(worker *w, const double p[3]) {
     const visibility_scene *scene = w->job->scene;
     for (size_t i = 0; i < w->slot_count; i++)
         w->within[w->slots[i]] = 0;
-    w->slot_count = w->rank_count = 0;
-    for (uint32_t slot = 0; slot < scene->vertex_count; slot++)
+    w->slot_count = w->patch_count = 0;
+    for (uint32_t slot = 0; slot < scene->slot_count; slot++)
         if (w->visible[slot])
             w->slots[w->slot_count++] = slot;
     if (w->job->options->target != STARG_TARGET_FACES)
@@ -98,14 +108,25 @@ static void list_visible(worker *w, const double p[3]) {
         if (scene_is_beyond(scene, first / SCENE_CHUNK, p))
             continue;
         for (size_t rank = first; rank < end; rank++)
-            if (sees_around(w, p, rank))
-                w->ranks[w->rank_count++] = (uint32_t)rank;
+            list_patches(w, p, rank);
     }
+}
+
+/* Engines sort points that are no vertices by directions of their rounded places; of those right at
+ * p that is not good enough. */
+static void look_closely(const visibility_scene *scene, const double p[3], const int8_t *side,
+                         uint8_t *visible) {
+    double near = 0x1p24 * scene->blur;
+    for (size_t slot = scene->vertex_count; slot < scene->slot_count; slot++)
+        if (fabs(scene->x[slot] - p[0]) < near && fabs(scene->y[slot] - p[1]) < near &&
+            fabs(scene->z[slot] - p[2]) < near)
+            visible[slot] = scene_sees_slot(scene, p, side, (uint32_t)slot);
 }
 
 static void find_visible(const job *all, worker *w, const double p[3]) {
     scene_sides(all->scene, p, w->side);
     all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
+    look_closely(all->scene, p, w->side, w->visible);
     drop_out_of_reach(w, p);
     if (sensor_is_directed(all->options))
         list_visible(w, p);
@@ -138,30 +159,41 @@ static void write_corners(const job *all, const worker *w, const uint8_t *visibl
                 starg_bit_set(row, 3 * (size_t)scene->face_of[rank] + k);
 }
 
-static bool sees_whole(const job *all, const worker *w, const double p[3], size_t rank) {
+static bool sees_whole(const job *all, const worker *w, const double p[3], size_t rank,
+                       size_t patch) {
     const visibility_engine *engine = all->engine;
     if (engine->sees_plainly != NULL && engine->sees_plainly(all->scene, w->engine_scratch, rank))
         return true;
-    return face_is_wholly_visible(all->scene, p, w->side, rank);
+    return patch_is_wholly_visible(all->scene, p, w->side, rank, patch);
 }
 
-static void write_face(const job *all, const worker *w, const double p[3], size_t rank,
-                       uint64_t *row) {
-    if (all->options->face_rule != STARG_FACES_WHOLE || sees_whole(all, w, p, rank))
-        starg_bit_set(row, all->scene->face_of[rank]);
+static void write_patch(const job *all, const worker *w, const double p[3], size_t rank,
+                        size_t patch, uint64_t *row) {
+    if (all->options->face_rule != STARG_FACES_WHOLE || sees_whole(all, w, p, rank, patch))
+        starg_bit_set(row, patch);
 }
 
-static void write_faces(const job *all, const worker *w, const double p[3], uint64_t *row) {
-    for (size_t rank = 0; rank < all->scene->face_count; rank++)
-        if (sees_around(w, p, rank))
-            write_face(all, w, p, rank, row);
+static void write_patches(const job *all, const worker *w, const double p[3], uint64_t *row) {
+    const starg_solid *solid = all->scene->solid;
+    for (size_t rank = 0; rank < all->scene->face_count; rank++) {
+        if (w->side[rank] <= 0)
+            continue;
+        size_t face = all->scene->face_of[rank], end = solid_first_patch(solid, face + 1);
+        for (size_t i = solid_first_patch(solid, face); i < end; i++)
+            if (sees_around(w, p, rank, i))
+                write_patch(all, w, p, rank, i, row);
+    }
 }
 
-static void write_faces_within(const job *all, const worker *w, const double p[3], uint64_t *row) {
-    for (size_t i = 0; i < w->rank_count; i++) {
-        const uint32_t *c = all->scene->corners + 3 * (size_t)w->ranks[i];
-        if (w->within[c[0]] & w->within[c[1]] & w->within[c[2]])
-            write_face(all, w, p, w->ranks[i], row);
+static void write_patches_within(const job *all, const worker *w, const double p[3],
+                                 uint64_t *row) {
+    const visibility_scene *scene = all->scene;
+    for (size_t i = 0; i < w->patch_count; i++) {
+        size_t patch = w->patches[i];
+        if (all_visible(scene, w->within, patch) &&
+            scene_resolves_patch(scene, &w->sensor, p, patch))
+            write_patch(all, w, p, scene->rank_of[solid_patch_face(scene->solid, patch)], patch,
+                        row);
     }
 }
 
@@ -186,9 +218,9 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
         else if (all->options->target == STARG_TARGET_CORNERS)
             write_corners(all, w, visible, row);
         else if (sensor_is_directed(all->options))
-            write_faces_within(all, w, p, row);
+            write_patches_within(all, w, p, row);
         else
-            write_faces(all, w, p, row);
+            write_patches(all, w, p, row);
     }
     if (all->finished != NULL)
         all->finished[item] = 1;
@@ -212,11 +244,14 @@ static starg_status check_arguments(starg_context *context, const double *points
 }
 
 /* Of the engines for all points, only contours can tell quickly which faces are entirely
- * visible. */
-static const visibility_engine *choose_engine(const starg_visibility_options *options) {
+ * visible. Points that are no vertices have no contours, and the sweep leaves them out. */
+static const visibility_engine *choose_engine(const visibility_scene *scene,
+                                              const starg_visibility_options *options) {
     static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
                                                        &visibility_sweep, &visibility_contours,
                                                        &visibility_fastest};
+    if (scene->slot_count > scene->vertex_count && options->engine != STARG_VISIBILITY_BVH)
+        return &visibility_grid;
     bool whole = options->target == STARG_TARGET_FACES && options->face_rule == STARG_FACES_WHOLE;
     return options->engine == STARG_VISIBILITY_FASTEST && whole ? &visibility_contours
                                                                 : engines[options->engine];
@@ -229,7 +264,7 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
     if (status == STARG_OK)
         status = scene_limit(*out, options->range);
     if (status == STARG_OK && options->engine >= STARG_VISIBILITY_CONTOURS &&
-        count > 1) /* does not pay for a single point */
+        solid->patches == NULL && count > 1) /* does not pay for a single point */
         status = scene_add_adjacency(*out);
     return status;
 }
@@ -238,33 +273,28 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
 static starg_status find_rows_of_place(starg_context *context, void *shared, void *scratch,
                                        size_t place) {
     const job *all = shared;
-    starg_status status = STARG_OK;
     for (size_t i = all->starts[place]; i < all->starts[place + 1]; i++)
-        STARG_TRY(find_row(context, shared, scratch, i));
-done:
-    return status;
+        TRY(find_row(context, shared, scratch, i));
+    return STARG_OK;
 }
 
 /* The first item of each place, and the number of all at the end. */
 static starg_status find_starts(starg_context *context, const job *all, size_t **out,
                                 size_t *places) {
-    starg_status status = STARG_OK;
     *places = 0;
-    STARG_NEW(context, STAGE, *out, all->count + 1);
+    NEW(context, STAGE, *out, all->count + 1);
     for (size_t i = 0; i < all->count; i++)
         if (i == 0 || !vec3_equal(all->points + 3 * i, all->points + 3 * (i - 1)))
             (*out)[(*places)++] = i;
     (*out)[*places] = all->count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status visibility_fill(starg_context *context, const visibility_job *of,
                              const starg_parallel_remote *remote) {
-    starg_status status = STARG_OK;
     job all = *of;
-    size_t *starts = NULL;
-    all.engine = choose_engine(of->options);
+    SCOPED size_t *starts = NULL;
+    all.engine = choose_engine(of->scene, of->options);
     starg_parallel_loop loop = {.stage = STAGE,
                                 .count = of->count,
                                 .shared = &all,
@@ -273,29 +303,22 @@ starg_status visibility_fill(starg_context *context, const visibility_job *of,
                                 .free_scratch = free_worker,
                                 .remote = remote};
     if (remote == NULL && sensor_is_directed(of->options)) {
-        STARG_TRY(find_starts(context, &all, &starts, &loop.count));
+        TRY(find_starts(context, &all, &starts, &loop.count));
         all.starts = starts;
         loop.item = find_rows_of_place;
     }
-    status = starg_parallel_in_time(context, &loop);
-done:
-    starg_release(context, starts);
-    return status;
+    return starg_parallel_in_time(context, &loop);
 }
 
 /* With other processes, if there are any and enough work. */
 static starg_status fill_shared(starg_context *context, const job *all) {
-    starg_status status = STARG_OK;
-    starg_bytes packed = {0};
+    SCOPED starg_bytes packed = {0};
     const starg_parallel_remote remote = {
         .work = RANKS_VISIBILITY, .job = &packed, .take = visibility_take};
-    if (!visibility_is_shared(context, all))
+    if (all->scene->solid->patches != NULL || !visibility_is_shared(context, all))
         return visibility_fill(context, all, NULL);
-    STARG_TRY(visibility_pack(context, all, &packed));
-    STARG_TRY(visibility_fill(context, all, &remote));
-done:
-    STARG_ARRAY_FREE(context, &packed);
-    return status;
+    TRY(visibility_pack(context, all, &packed));
+    return visibility_fill(context, all, &remote);
 }
 
 starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
@@ -312,8 +335,7 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     STARG_TRY(check_arguments(context, points, count, options));
     STARG_TRY(sensor_check(context, STAGE, count, options));
     STARG_TRY(visibility_scene_for(context, solid, options, count, &scene));
-    STARG_TRY(
-        starg_bits_create(context, count, target_columns(solid->mesh, options->target), &rows));
+    STARG_TRY(starg_bits_create(context, count, target_columns(solid, options->target), &rows));
     const job all = {.scene = scene,
                      .options = options,
                      .points = points,
@@ -338,18 +360,16 @@ done:
 /* A vertex that parts share is seen if one of its copies is; these have no columns. */
 static starg_status join_copies(starg_context *context, const starg_solid *solid,
                                 starg_bits **rows) {
-    starg_status status = STARG_OK;
     const starg_mesh *own = solid->mesh, *given = solid->shared;
     starg_bits *joined = NULL;
-    STARG_TRY(starg_bits_create(context, (*rows)->rows, given->vertex_count, &joined));
+    TRY(starg_bits_create(context, (*rows)->rows, given->vertex_count, &joined));
     for (size_t i = 0; i < joined->rows; i++)
         for (size_t k = 0; k < 3 * own->face_count; k++)
             if (starg_bits_test(*rows, i, own->faces[k]))
                 starg_bit_set(starg_bits_row_mutable(joined, i), given->faces[k]);
     starg_bits_free(*rows);
     *rows = joined;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_visibility(starg_context *context, const starg_solid *solid,

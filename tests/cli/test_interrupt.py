@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import time
 
 import support
 from support import SLOWNESS, processor_time, processor_time_of_ended
@@ -56,6 +57,41 @@ class Interrupt(support.Case):
         self.assertEqual(process.returncode, 130)
 
 
+class KeepBest(support.Case):
+    """The first interrupt ends a search, the second one everything."""
+
+    def interrupt(self, words, times):
+        with self.start(*words, "--keep-best", "--threads", "1") as process:
+            self.wait_for_work(process, 1)
+            for _ in range(times):
+                process.send_signal(signal.SIGINT)
+                time.sleep(0.05)
+            out, err = process.communicate()
+        return process.returncode, out.decode(), err.decode()
+
+    def test_guard(self):
+        model = self.sample("horse", 10000)
+        status, out, err = self.interrupt(("guard", model, "-o", "g.json", "--prove"), 1)
+        self.assertEqual((status, err), (0, ""))
+        self.assertIn("interrupted", out)
+        self.assertTrue(json.loads(self.read("g.json"))["time_limited"])
+        self.run_text("verify", model, "g.json")
+
+    def test_decompose(self):
+        model = self.sample("horse", 2000)
+        status, out, _ = self.interrupt(("decompose", model, "-o", "p.vtk", "--effort", "best"), 1)
+        self.assertEqual(status, 0)
+        self.assertIn("interrupted", out)
+        self.run_text("verify", model, "p.vtk")
+
+    def test_twice(self):
+        model = self.sample("horse", 30000)
+        status, _, err = self.interrupt(("guard", model, "--visibility", "sweep", "-o", "g.json"), 2)
+        self.assertEqual(status, 130)
+        self.assertIn("cancelled", err)
+        self.assertNotIn("g.json", self.names())
+
+
 class TimeLimit(support.Case):
     def test_nothing_found(self):
         model = self.sample("horse", 30000)
@@ -69,7 +105,7 @@ class TimeLimit(support.Case):
 
     def test_something_found(self):
         """Once there is the time to make candidates: how much that is differs from machine to machine."""
-        model = self.sample("horse", 30000)
+        model = self.sample("horse", 10000)
         limit = 1
         while "g.json" not in self.names():
             limit *= 2
@@ -91,7 +127,7 @@ class TimeLimit(support.Case):
 
 class SameBytes(support.Case):
     def test_threads(self):
-        model = self.sample("cat", 1500)
+        model = self.sample("cat", 700)
         variants = {
             "ilp": [],
             "greedy": ["--method", "greedy", "--candidates", "interior"],

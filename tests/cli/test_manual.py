@@ -24,7 +24,7 @@ class Manual(support.Case):
     def test_table(self):
         """The table has what the help has."""
         for command in self.table["commands"]:
-            text = self.run_text("help", *command["name"].split())[0]
+            text = self.run_text("help", *command["name"].split(), "all")[0]
             self.assertTrue(text.startswith(f"Usage: starguard {command['name']} "))
             listed = set(re.findall(r"^  (?:-\w, )?--([\w-]+)", text, re.M))
             options = command["options"] + self.table["common_options"]

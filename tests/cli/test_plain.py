@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plain cases of ../shared/data/plain, with the answers of its README."""
+"""The plain cases of ../shared/data/plain, with the answers of its README, and others of their kinds."""
 import json
 import os
 import unittest
 
 from support import Case, main
+from test_coordinates import boxes, off
 
 PLAIN = os.path.join(os.environ.get("STARGUARD_SHARED", ""), "data", "plain")
 
@@ -65,6 +66,54 @@ class Plain(Case):
         _, errors = self.run_text("guard", self.plain("leaky_room.off"), "--soup", "--from", "2,2,1.5",
                                   "-o", "g.json")
         self.assertIn("leak", errors)
+
+
+class Kinds(Case):
+    """Boxes in other numbers, sizes and contacts."""
+
+    UNIT = (1, 1, 1)
+
+    def boxes(self, *given):
+        """Of (lower corner, sides), or with True behind for a hollow, turned by 3-4-5 about z and scaled."""
+        vertices, faces = boxes(*[(*box, False)[:3] for box in given])
+        return self.write("m.off", off([(3 * x - 4 * y, 4 * x + 3 * y, 5 * z) for x, y, z in vertices], faces))
+
+    def test_contacts(self):
+        """Cubes in a row along a diagonal, in a ring of edges, and at corners: a piece and a guard for each."""
+        for corners in ([(i, i, 0) for i in range(3)], [(0, 0, 0), (1, 1, 0), (2, 0, 0), (1, -1, 0)],
+                        [(i, i, i) for i in range(3)], [(2 * i, 0, 0) for i in range(5)]):
+            model = self.boxes(*[(c, self.UNIT) for c in corners])
+            report = self.run_json("decompose", model, "-o", "p.vtk", "--report", "p.json")
+            self.assertEqual((len(report["pieces"]), report["optimal"], report["surface"]),
+                             (len(corners), True, "kept"))
+            guards = self.run_json("guard", model, "-o", "g.json", "--redundancy", "2")
+            self.assertEqual((len(guards["guards"]), guards["optimal_everywhere"]), (2 * len(corners), True))
+            self.run_text("verify", model, "p.json", "p.vtk")
+            self.run_text("verify", model, "g.json")
+
+    def test_nested(self):
+        """A hollow that is apart, and ones that touch in a face, an edge and a corner, drawn either way."""
+        for lower in ((1, 1, 1), (1, 1, 0), (1, 0, 0), (0, 0, 0)):
+            for hollow in (False, True):
+                model = self.boxes(((0, 0, 0), (4, 4, 4)), (lower, self.UNIT, hollow))
+                self.assertAlmostEqual(self.run_json("check", model)["volume"], 63 * 125, 9, (lower, hollow))
+                self.run_text("guard", model, "-o", "g.json")
+                self.run_text("verify", model, "g.json")
+
+    def test_walls(self):
+        """Three boxes in a row: four triangles for each wall; a small one on a large one: its two."""
+        model = self.boxes(*[((i, 0, 0), self.UNIT) for i in range(3)])
+        self.assertEqual(len(self.run_json("visible", model, "--outside", "--unseen")["unseen"]), 8)
+        model = self.boxes(((0, 0, 0), (3, 3, 1)), ((1, 1, 1), self.UNIT))
+        self.assertEqual(len(self.run_json("visible", model, "--outside", "--unseen")["unseen"]), 2)
+
+    def test_units(self):
+        """A range in metres, a model in millimetres."""
+        model = self.boxes(((0, 0, 0), (6000, 5000, 3000)))
+        for words in (["--range", "6"], ["--range", "6", "--fov", "90,60"], ["--range", "0.5", "--method", "greedy"],
+                      ["--range", "6", "--outside", "--standoff", "100,500"]):
+            _, errors = self.run_text("guard", model, "-o", "g.json", *words, status=2)
+            self.assertIn("another unit", errors)
 
 
 if __name__ == "__main__":

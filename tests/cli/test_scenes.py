@@ -98,8 +98,9 @@ class Scenes(Case):
         self.verified("both.off")
 
     def test_warning(self):
-        """Under the rule of unions a guard may stand in a crate; then there is a warning."""
-        self.write("both.off", off(ROOM, box(*CRATE, 2)))
+        """Under the rule of unions a guard may stand in a crate that goes through the floor; then there is a
+        warning. One that stands on the floor is a hollow."""
+        self.write("both.off", off(ROOM, box((3, 2, -0.5), CRATE[1], 2)))
         self.write("there.txt", "4 3 0.7\n1 1 1\n")
         _, err = self.run_text("guard", "both.off", "-o", "g.json", "--candidates", "there.txt")
         self.assertIn("within more than one shell", err)
@@ -516,7 +517,7 @@ class Scenes(Case):
     def test_views_in_exports(self):
         """Cones and pyramids of cameras are in VTU and PLY files, from the guard outwards."""
         for words, sides in ((["--cone", "80"], 24), (["--fov", "90,60"], 4)):
-            result = self.guards("room.off", *words, "--range", "9", "--coverage", "0.7")
+            result = self.guards("room.off", *words, "--range", "9", "--coverage", "0.7", "--patch", "off")
             count = len(result["guards"])
             for name in ("g.vtu", "g.ply"):
                 self.run_text("export", "g.json", "-o", name)

@@ -123,7 +123,7 @@ class Schemas(support.Case):
                 "peak_resident_bytes", "report", "map", "letter", "words", "separate", "cells", "witnesses",
                 "work", "landmark_pairs", "directions", "target_directions", "overlay_points",
                 "overlay_faces", "overlay", "lower_bound_everywhere", "optimal_everywhere",
-                "area_bound_everywhere"}
+                "area_bound_everywhere", "patch", "partial", "points"}
 
     def required(self, name, path):
         if path[-1] in self.OPTIONAL:
@@ -187,7 +187,7 @@ class Schemas(support.Case):
         room = self.sample("l-room")
         for options in [[], ["--method", "ilp", "--target", "vertices"],
                         ["--method", "greedy", "--cone", "90", "--range", "5", "--max-guards", "2"],
-                        ["--prove", "--range", "4", "--prove-work", "20000"]]:
+                        ["--target", "points"], ["--prove", "--range", "4", "--prove-work", "20000"]]:
             self.report("guard", "guard", room, "-o", "g.json", *options)
             self.file("guards", "g.json")
             self.report("verify", "verify", room, "g.json")

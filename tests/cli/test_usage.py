@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Help, version, and every way to get the command line wrong."""
 import json
+import re
 
 import support
 from support import COMMANDS, TETRAHEDRON
@@ -26,15 +27,35 @@ class Help(support.Case):
 
     def test_commands(self):
         for command in COMMANDS:
-            text, err = self.run_text(command, "--help")
+            text, err = self.run_text(command, "--help", "all")
             self.assertEqual(err, "")
             self.assertTrue(text.startswith(f"Usage: starguard {command} "), text)
             examples = text.split("\nExamples\n")[1]
             self.assertGreaterEqual(examples.count(f"starguard {command} "), 2, command)
             self.assertIn("--seed N", text)
-            self.assertEqual(self.run_text("help", command)[0], text)
-            self.assertEqual(self.run_text(command, "-h", "a", "b", "c")[0], text)
+            self.assertEqual(self.run_text("help", command, "all")[0], text)
+            self.assertEqual(self.run_text(command, "-h", "a", "all", "c")[0], text)
             self.assertLessEqual(max(map(len, text.splitlines())), 90, command)
+
+    def test_groups(self):
+        """A screen for most; each option is in one group, and all of them are all."""
+        for command in ("guard", "decompose", "map", "morph", "visible"):
+            short = self.run_text(command, "--help")[0]
+            self.assertEqual(self.run_text("help", command)[0], short)
+            self.assertEqual(self.run_text(command, "-h", "a", "b")[0], short)
+            rows = short.splitlines()
+            self.assertLessEqual(len(rows), 50, command)
+            self.assertLessEqual(max(map(len, rows[1:])), 79, command)
+            groups = re.search(r"--help all\|(.*)", short).group(1).split("|")
+            name = r"^  (?:-\w, )?--([\w-]+)"
+            parts = [set(re.findall(name, self.run_text(command, "--help", group)[0], re.M)) for group in groups]
+            self.assertTrue(all(parts), command)
+            everything, common = self.run_text(command, "--help", "all")[0].split("\nCommon options\n")
+            options = re.findall(name, everything, re.M)
+            self.assertEqual(sorted(options), sorted(option for part in parts for option in part), command)
+            self.assertLess(set(re.findall(name, short, re.M)), set(options), command)
+        self.assertIn("--resolution W,H", self.run_text("help", "guard", "cameras")[0])
+        self.assertIn("takes one command", self.run_text("help", "guard", "kameras", status=1)[1])
 
     def test_contract(self):
         """The options that outside checks rely on."""
@@ -49,7 +70,7 @@ class Help(support.Case):
             "verify": [],
         }
         for command, options in contract.items():
-            text = self.run_text("help", command)[0]
+            text = self.run_text("help", command, "all")[0]
             for option in options:
                 self.assertRegex(text, rf"\n  ({option},? )|\n  -., {option} |\n  {option}\n")
 
@@ -117,8 +138,9 @@ class Mistakes(support.Case):
                 if f"{name} is given more than once" not in err:
                     adding.add((command["name"], option["name"]))
         self.assertEqual(adding, {("visible", "from"), ("visible", "box")} | {
-            (command, option) for command in ("visible", "guard") for option in ("obstacles", "see", "ignore")
-        } | {("guard", "over"), ("guard", "mount")})
+            (command, option) for command in ("visible", "guard")
+            for option in ("obstacles", "see", "ignore", "clear", "within", "without")
+        } | {("guard", "over"), ("guard", "mount"), ("guard", "require")})
         self.usage_error("guard", "m.off", "-o", "a", "--output=b", says="more than once")
         self.usage_error("visible", "m.off", "--unseen", "--outside", "--from=2,2,2", "--from=3,3,3", says="one point")
         self.run_text("check", "m.off", "--quiet", "--quiet")
@@ -156,7 +178,7 @@ class Mistakes(support.Case):
         wrong = {
             "--method": ("pilq", "did you mean 'pilp'?"),
             "--visibility": ("gird", "did you mean 'grid'?"),
-            "--target": ("edges", "faces or vertices"),
+            "--target": ("edges", "faces, vertices or points"),
             "--faces": ("half", "vertices or whole"),
             "--candidates": ("medail", "did you mean 'medial'?"),
         }

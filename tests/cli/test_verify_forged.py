@@ -87,6 +87,29 @@ class Forged(support.Case):
         seen.update(lower_bound=count + 1, optimal=True, candidates=result["candidates"])
         self.refused(seen, "the lower bound")
 
+    def test_certificates_of_points(self):
+        self.run_text("sample", "horse", "--vertices", "500", "-o", "h.off")
+        prove = ["--effort", "quick", "--prove", "--certificate"]
+        self.guard(*prove, "faces.txt", model="h.off")
+        faces = self.read("g.json")
+        bound = self.guard("--target", "points", *prove, "points.txt", model="h.off")["lower_bound_everywhere"]
+        out, _ = self.run_text("verify", "h.off", "g.json", "points.txt", "--verbose")
+        self.assertIn(f"at least {bound} guards are needed to see every point of the boundary, wherever they stand", out)
+        out, _ = self.run_text("verify", "h.off", "g.json", "faces.txt", status=4)
+        self.assertRegex(out, "FAILED .*its targets are others")
+        self.write("f.json", faces)
+        out, _ = self.run_text("verify", "h.off", "f.json", "points.txt", status=4)
+        self.assertRegex(out, "FAILED .*its targets are others")
+        text = self.read("points.txt").decode()
+        head, tail = text.split("\nwitnesses ")
+        count, first, rest = tail.split("\n", 2)
+        for point, status in [(first + "9", 2), (first.split()[0] + " 1 1 1 1", 2), ("0 1 0 0", 2)]:
+            self.write("forged.txt", f"{head}\nwitnesses {count}\n{point}\n{rest}")
+            self.run_text("verify", "h.off", "g.json", "forged.txt", status=status)
+        self.write("forged.txt", text.replace(f"\nbound {bound}\n", f"\nbound {bound + 1}\n"))
+        out, _ = self.run_text("verify", "h.off", "g.json", "forged.txt", status=4)
+        self.assertRegex(out, "FAILED .*does not follow")
+
     def test_more_guards_than_the_part_needs(self):
         forged = self.guard("--method", "ilp")
         one = next(i for i, point in enumerate(forged["coverage"]["curve"], 1) if point[1] > 0.3)

@@ -8,6 +8,7 @@ import re
 import unittest
 
 import support
+import test_scenes
 
 PAGE = os.path.join(os.path.dirname(__file__), "..", "..", "docs", "verification.md")
 REFUSED = {2, 4}  # not readable; read, and found to be false
@@ -155,6 +156,22 @@ class Keys(support.Case):
             for key in {"area_bound", "area_bound_everywhere"} & set(coverage):
                 self.write("low.json", json.dumps({**known, "coverage": {**coverage, key: coverage["area"] / 2}}))
                 self.assertIn("within", self.run_text("verify", "octopus.off", "low.json", status=4)[0])
+        self.write("parts.off", support.TETRAHEDRON)
+        self.run_text("guard", "parts.off", "--patch", "0.25", "--range", "0.5", "--max-guards", "2", "-o", "g.json")
+        self.spoil("GUARDS.json", mutants, "g.json", ["parts.off", "g.json"])
+        self.write("stay.txt", "0.2 0.2 0.2 1 1 1\n")
+        self.write("zone.off", support.TETRAHEDRON)
+        self.run_text("guard", "parts.off", "--patch", "0.25", "--keep", "stay.txt", "--tilt", "-80,80",
+                      "--within", "zone.off", "--without", "0.5,0.5,0.5,1,1,1", "--require", "1=1,2", "--clear", "0",
+                      *"--fov 90,80 --resolution 100,100 --density 1 --unit mm -o g.json".split())
+        self.spoil("GUARDS.json", mutants, "g.json", ["parts.off", "g.json"])
+        self.write("apart.off", test_scenes.off(*(test_scenes.box((x, 0, 0), (x + 1, 1, 1)) for x in (0, 3))))
+        self.run_text("guard", "apart.off", "--order", "-o", "g.json")
+        self.spoil("GUARDS.json", mutants, "g.json", ["apart.off", "g.json"])
+        self.write("one.txt", "0.2 0.2 0.2\n")
+        self.run_text("guard", "parts.off", "--target", "points", "--range", "0.5", "--candidates", "one.txt", "-o",
+                      "g.json", "--no-refine")
+        self.spoil("GUARDS.json", mutants, "g.json", ["parts.off", "g.json"])
         self.all_met("GUARDS.json")
 
     def test_certificate(self):
@@ -184,6 +201,11 @@ class Keys(support.Case):
         self.spoil("MAP.json", mutants, "m.json", ["a.off", "b.off", "m.json"])
         self.run_text("map", "--solid", "a.off", "b.off", "-o", "m.vtu")
         self.spoil("MAP.vtu", vtu_mutants, "m.vtu", ["a.off", "b.off", "m.vtu"])
+        self.sample("sphere", 500, "c.off")
+        self.sample("star", 800, "d.off")
+        self.run_text("map", "--solid", "c.off", "d.off", "--connectivity", "a", "-o", "n.vtu")
+        self.spoil("MAP.vtu", lambda text: (m for m in vtu_mutants(text) if m[0] == "missed"), "n.vtu",
+                   ["c.off", "d.off", "n.vtu"])
         self.run_text("morph", "a.off", "b.off", "--frames", "3", "-o", "frames", "--report")
         self.spoil("morph.json", mutants, "frames/morph.json", ["a.off", "b.off", "frames"])
         self.all_met("MAP.json", "MAP.vtu", "morph.json")

@@ -214,6 +214,69 @@ static starg_status see_again(starg_context *context) {
     return status;
 }
 
+static starg_status patches(starg_context *context) {
+    starg_mesh *mesh = NULL;
+    starg_bits *seen = NULL;
+    uint32_t *missing = NULL;
+    size_t count = 0;
+    in.guards->options.visibility.patch = 0.25;
+    starg_status status =
+        starg_guards_patches(context, in.solid, in.guards, &mesh, &seen, &missing, &count);
+    in.guards->options.visibility.patch = STARG_PATCH_AUTO;
+    failing_result(status, mesh);
+    starg_mesh_free(mesh);
+    starg_bits_free(seen);
+    starg_patches_free(context, missing);
+    return status;
+}
+
+static starg_status audit(starg_context *context) {
+    starg_guards *out = NULL;
+    starg_visibility_options view;
+    starg_visibility_options_default(&view);
+    const starg_poses poses = {.points = in.guards->positions, .count = in.guards->count};
+    starg_status status = starg_guards_audit(context, in.solid, &poses, &view, &out);
+    failing_result(status, out);
+    starg_guards_free(context, out);
+    return status;
+}
+
+static starg_status patch_faces(starg_context *context) {
+    uint32_t *faces = NULL;
+    size_t count = 0;
+    starg_status status = starg_guards_patch_faces(context, in.solid, in.guards, &faces, &count);
+    failing_result(status, faces);
+    starg_patches_free(context, faces);
+    return status;
+}
+
+static starg_status face_groups(starg_context *context) {
+    starg_face_groups groups;
+    starg_status status = starg_face_groups_read(context, failing_input("named.obj"), &groups);
+    starg_face_groups_free(context, &groups);
+    return status;
+}
+
+static starg_status name_zones(starg_context *context) {
+    starg_guard_zone zone = {.face_count = 1};
+    starg_guards guards = {.zone_count = 1, .zones = &zone};
+    const char *file = "zone.off";
+    starg_status status = starg_guards_name_zones(context, &guards, &file);
+    starg_text_free(context, zone.file);
+    return status;
+}
+
+static starg_status needs(starg_context *context) {
+    starg_solid *scene = NULL;
+    const starg_face_need need = {.face = 0, .times = 2};
+    starg_status status =
+        starg_space_create(context, starg_solid_mesh(in.solid), NULL, 0, NULL, &scene);
+    if (status == STARG_OK)
+        status = starg_space_require(scene, &need, 1);
+    starg_solid_free(scene);
+    return status;
+}
+
 static starg_status scenes(starg_context *context) {
     FAILING_BY(starg_space_create, "outside", scene_of(context, false));
     FAILING_BY(starg_space_create, "soup", scene_of(context, true));
@@ -221,10 +284,20 @@ static starg_status scenes(starg_context *context) {
     FAILING_BY(starg_faces_read, "", weights_read(context, true));
     FAILING_BY(starg_weights_read, "", weights_read(context, false));
     FAILING_BY(starg_faces_named, "", faces_named(context));
+    FAILING_BY(starg_face_groups_read, "", face_groups(context));
     FAILING_BY(starg_guards_name_obstacles, "", name_obstacles(context));
     FAILING_BY(starg_unseen, "", unseen(context));
     FAILING_BY(starg_guards_scene, "", scene_again(context));
     FAILING_BY(starg_guards_see, "", see_again(context));
+    FAILING_BY(starg_guards_patches, "", patches(context));
+    FAILING_BY(starg_guards_audit, "", audit(context));
+    FAILING_BY(starg_guards_patch_faces, "", patch_faces(context));
+    FAILING_BY(starg_space_require, "", needs(context));
+    FAILING_BY(starg_guards_name_zones, "", name_zones(context));
+    FAILING(starg_guards_write_table, "", in.solid, in.guards, NULL, failing_output("t.csv"));
+    FAILING(starg_guards_write_summary, "", in.solid, in.guards, NULL, failing_output("s.csv"));
+    FAILING(starg_guards_write_curve, "", in.guards, true, failing_output("c.svg"));
+    FAILING(starg_guards_write_matrix, "", in.guards, failing_output("m.txt"));
     FAILING(starg_guards_write_poses, "csv", in.guards, true, failing_output("p.csv"));
     FAILING(starg_guards_write_poses, "json", in.guards, false, failing_output("p.json"));
     FAILING_BY(starg_poses_read, "", poses_read(context, false));

@@ -211,10 +211,12 @@ static starg_status map_overlay(starg_context *context) {
 static starg_status maps(starg_context *context) {
     double apart;
     static const uint32_t pairs[] = {0, 0, 2, 2, 4, 4};
-    const starg_map_options landmarks = {pairs, 3};
+    const starg_map_options landmarks = {.landmarks = pairs, .landmark_count = 3};
+    const starg_map_options solid = {.solid = true};
     MAP(starg_map_create, "same faces", in.cube, in.box, NULL);
     MAP(starg_map_create, "sphere", in.blob, in.other_blob, NULL);
     MAP(starg_map_create, "sphere, landmarks", in.blob, in.other_blob, &landmarks);
+    MAP(starg_map_create, "stars", in.blob, in.other_blob, &solid);
     FAILING_BY(starg_map_overlay, "", map_overlay(context));
     FAILING(starg_map_write, "", in.map, failing_output("m.json"));
     FAILING_TEXT(starg_map_write_memory, "", in.map);
@@ -326,11 +328,30 @@ static const starg_solid_map identity = {.vertex_count = 4,
                                          .times = time_of_key,
                                          .keys = corners};
 
+static starg_status solid_map_by_overlay(starg_context *context, const starg_mesh *a,
+                                         const starg_mesh *b) {
+    starg_map *surfaces = NULL;
+    starg_solid_map *map = NULL;
+    failing_pause();
+    test_ok(context, starg_map_create(context, a, b, NULL, &surfaces));
+    test_ok(context, starg_map_overlay(context, a, b, surfaces));
+    failing_resume();
+    starg_status status = starg_solid_map_overlay(context, a, b, surfaces, NULL, &map);
+    failing_result(status, map);
+    starg_solid_map_free(context, map);
+    starg_map_free(context, surfaces);
+    return status;
+}
+
 static starg_status solid_maps(starg_context *context) {
     static double values[] = {1, 2, 3};
     const starg_samples samples = {.count = 1, .width = 3, .points = inside, .values = values};
     SOLID_MAP(starg_solid_map_read_memory, "", solid_text.data, solid_text.size, "map.vtu");
     FAILING(starg_solid_map_write, "", &identity, failing_output("other.vtu"));
+    FAILING_BY(starg_solid_map_overlay, "cones",
+               solid_map_by_overlay(context, in.blob, in.other_blob));
+    starg_solid_map compared = identity;
+    FAILING(starg_solid_map_compare, "", in.cube, &compared);
     FAILING_MAKES(starg_verify_solid_map, "", starg_verdict, starg_verdict_free(context, out),
                   simplex, simplex, &identity);
     SAMPLES(starg_solid_map_carry, "", &identity, &samples, true);
@@ -353,25 +374,11 @@ static starg_status solid_map_of_morph(starg_context *context) {
     return status;
 }
 
-static starg_status solid_map_by_overlay(starg_context *context) {
-    starg_map *surfaces = NULL;
-    starg_solid_map *map = NULL;
-    failing_pause();
-    test_ok(context, starg_map_create(context, in.cube, in.box, NULL, &surfaces));
-    test_ok(context, starg_map_overlay(context, in.cube, in.box, surfaces));
-    failing_resume();
-    starg_status status = starg_solid_map_overlay(context, in.cube, in.box, surfaces, NULL, &map);
-    failing_result(status, map);
-    starg_solid_map_free(context, map);
-    starg_map_free(context, surfaces);
-    return status;
-}
-
 static starg_status by_tetgen(starg_context *context) {
     FAILING_BY(starg_morph_solids, "", morph_solids(context));
     MORPH(starg_morph_create, "solid", SOLID);
     SOLID_MAP(starg_solid_map_create, "", in.cube, starg_mesh_vertices(in.box), NULL);
-    FAILING_BY(starg_solid_map_overlay, "", solid_map_by_overlay(context));
+    FAILING_BY(starg_solid_map_overlay, "", solid_map_by_overlay(context, in.cube, in.box));
     SOLID_MAP(starg_solid_map_to, "ball", in.cube, STARG_SOLID_BALL, NULL);
     FAILING_BY(starg_morph_solid_map, "", solid_map_of_morph(context));
     return STARG_OK;

@@ -46,9 +46,12 @@ static void find_known(subject *s) {
     test_ok(s->context, verify_surface_create(s->context, s->mesh, &surface));
     s->known = (verify_facts){.surface = surface, .guards = s->guards};
     s->known.scale = verify_scale(surface);
+    s->known.inside = malloc(s->guards->count + 1);
+    assert_non_null(s->known.inside);
+    memset(s->known.inside, 1, s->guards->count);
     test_ok(s->context, verify_tree_create(surface, &s->known.tree));
     test_ok(s->context, verify_sight_create(surface, &sight));
-    starg_bits **rows[2] = {&s->known.vertices, &s->known.faces};
+    starg_bits **rows[2] = {&s->known.vertices, &s->known.patches};
     for (int k = 0; k < 2; k++)
         test_ok(s->context,
                 starg_bits_create(s->context, s->guards->count,
@@ -81,7 +84,8 @@ static subject prove_sample(const char *name, size_t vertices, uint64_t work) {
 
 static void subject_clear(subject *s) {
     starg_bits_free(s->known.vertices);
-    starg_bits_free(s->known.faces);
+    starg_bits_free(s->known.patches);
+    free(s->known.inside);
     verify_tree_free(s->known.tree);
     verify_surface_free((verify_surface *)(uintptr_t)s->known.surface);
     starg_text_free(s->context, s->text);
@@ -118,7 +122,7 @@ static bool is_in_cell(const starg_certificate_outline *o, const double p[3]) {
 static bool sees_share(const subject *s, const starg_certificate *read, size_t g) {
     const everywhere_node *node = read->node_count > 0 ? &read->nodes[0] : NULL;
     const starg_bits *rows =
-        read->target == STARG_TARGET_VERTICES ? s->known.vertices : s->known.faces;
+        read->target == STARG_TARGET_VERTICES ? s->known.vertices : s->known.patches;
     starg_uint128 seen = 0, all = 0;
     if (node == NULL || node->witness != UINT32_MAX) {
         for (size_t j = 0; j < read->witness_count; j++)
@@ -156,6 +160,7 @@ static void check_outline(const subject *s, const starg_certificate *read) {
 }
 
 static void check_right(const subject *s) {
+    bool of_points = s->guards->options.visibility.target == STARG_TARGET_POINTS;
     starg_certificate *read = NULL;
     starg_verdict *verdict = NULL;
     test_ok(s->context, starg_certificate_read_memory(s->context, s->text, s->size, "c", &read));
@@ -170,7 +175,9 @@ static void check_right(const subject *s) {
     assert_true(says(verdict, true, "wherever they stand"));
     for (size_t i = 0; i < verdict->not_checked_count; i++)
         assert_null(strstr(verdict->not_checked[i].text, "wherever"));
-    check_outline(s, read);
+    assert_true(!of_points || says(verdict, true, "to see every point of the boundary"));
+    if (!of_points)
+        check_outline(s, read);
     starg_verdict_free(s->context, verdict);
     starg_certificate_free(read);
 }
@@ -220,7 +227,7 @@ static void test_shared(void **state) {
 static void test_random_solids(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    size_t branched = 0, above = 0, rounds = test_rounds(8, 300);
+    size_t branched = 0, above = 0, rounds = test_rounds(4, 300);
     for (uint64_t item = 0; item < rounds; item++) {
         shape made = item % 4 == 0 ? shape_blob(2, item) : shape_heap(5, item);
         starg_mesh *mesh = test_mesh_of(context, &made);
@@ -632,7 +639,7 @@ enum { COPIES = 30 };
 static void test_rows(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    size_t proofs = 0, branched = 0, accepted = 0, rounds = test_rounds(300, 20000);
+    size_t proofs = 0, branched = 0, accepted = 0, rounds = test_rounds(150, 20000);
     for (uint64_t item = 0; item < rounds; item++) {
         starg_rng rng = starg_rng_make(31, 4, item);
         random_rows r;
@@ -649,7 +656,7 @@ static void test_rows(void **state) {
             proofs++;
             branched += record.nodes.count > 1;
         }
-        branch_record_free(context, &record);
+        branch_record_free(&record);
     }
     print_message("%zu proofs, %zu with branches; %zu of %zu damaged ones are harmless\n", proofs,
                   branched, accepted, COPIES * proofs);
@@ -668,7 +675,7 @@ static void find_prices(starg_context *context, const random_rows *r, whole_pric
         bound_round(&prices, &sets, whole);
         const odd_sets_question question = {r->list, prices.share, r->count, prices.price};
         test_ok(context, odd_sets_renew(context, &question, &sets, prices.odd, &added, &work));
-        prices_free(context, &prices);
+        prices_free(&prices);
     }
 }
 
@@ -676,7 +683,7 @@ static void test_odd_sets(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     size_t proofs = 0, odd = 0, accepted = 0;
-    for (uint64_t item = 0; item < test_rounds(300, 20000); item++) {
+    for (uint64_t item = 0; item < test_rounds(150, 20000); item++) {
         starg_rng rng = starg_rng_make(33, 4, item);
         random_rows r;
         whole_prices whole;
@@ -916,6 +923,207 @@ static void test_forged(void **state) {
     subject_free(&other);
 }
 
+/* ---- points ---- */
+
+static subject prove_points(starg_context *context, starg_solid *solid) {
+    starg_guard_options options = proving(200000);
+    options.visibility.target = STARG_TARGET_POINTS;
+    return prove(context, solid, &options);
+}
+
+/* The certificate with another first witness: `face` and what stands behind it. */
+static char *with_witness(const char *text, const char *witness) {
+    const char *at = strchr(strstr(text, "\nwitnesses ") + 1, '\n') + 1;
+    char old[64];
+    snprintf(old, sizeof old, "\n%.*s\n", (int)(strchr(at, '\n') - at), at);
+    return replaced(text, old, witness);
+}
+
+/* With other letters, or without the reason: each in turn, at most `most` of them. */
+static void forge_reasons(subject *s, size_t most) {
+    static const char letters[] = "nrspfeRSPFE";
+    const char *end = strstr(s->text, "\nnodes ");
+    size_t refused = 0, tried = 0, unread = 0, proven = s->guards->lower_bound_everywhere;
+    for (const char *at = strstr(s->text, "\ncells ") + 7; at < end && tried < most; at++) {
+        if (*at != ' ')
+            continue;
+        size_t begin = (size_t)(at - s->text), length = 1 + strcspn(at + 1, " \n");
+        size_t letter = begin + 1 + strspn(at + 1, "0123456789"), bound = 0;
+        char *text = strdup(s->text);
+        assert_non_null(text);
+        if (tried % 2 == 0)
+            text[letter] = letters[tried / 2 % (sizeof letters - 1)];
+        else
+            memmove(text + begin, text + begin + length, strlen(text + begin + length) + 1);
+        bool accepted = is_accepted(s, text, &bound, &unread);
+        assert_true(!accepted || bound <= proven);
+        refused += !accepted;
+        tried++;
+        free(text);
+    }
+    s->guards->lower_bound_everywhere = proven;
+    print_message("of %zu reasons that were changed or dropped %zu are refused\n", tried, refused);
+    assert_true(2 * refused > tried);
+}
+
+/* Its first witness elsewhere in its face or in another one: that is refused, or proves no more. */
+static void forge_witnesses(subject *s, size_t rounds) {
+    size_t refused = 0, unread = 0, proven = s->guards->lower_bound_everywhere;
+    for (size_t i = 0; i < rounds; i++) {
+        starg_rng rng = starg_rng_make(8, 4, i);
+        const char *at = strchr(strstr(s->text, "\nwitnesses ") + 1, '\n') + 1;
+        unsigned long face = strtoul(at, NULL, 10);
+        unsigned a = (unsigned)starg_rng_below(&rng, 17),
+                 b = (unsigned)starg_rng_below(&rng, 17 - a);
+        char witness[64];
+        size_t bound = 0;
+        if (i % 2 == 1)
+            face = (unsigned long)starg_rng_below(&rng, s->known.surface->face_count);
+        snprintf(witness, sizeof witness, "\n%lu %u %u %u 4\n", face, a, b, 16 - a - b);
+        char *text = with_witness(s->text, witness);
+        bool accepted = is_accepted(s, text, &bound, &unread);
+        assert_true(!accepted || bound <= proven);
+        refused += !accepted;
+        free(text);
+    }
+    s->guards->lower_bound_everywhere = proven;
+    print_message("of %zu witnesses that were moved %zu are refused\n", rounds, refused);
+    assert_true(refused > 0);
+}
+
+static void check_points(subject *s) {
+    char line[64], wanted[64];
+    size_t bound = s->guards->lower_bound_everywhere;
+    check_right(s);
+    assert_non_null(strstr(s->text, "starguard-certificate 5\n"));
+    check_unread(s, with_witness(s->text, "\n0 1 1 1 2\n"), "do not sum to 2");
+    check_unread(s, with_witness(s->text, "\n0 1 1 2\n"), "is expected");
+    check_unread(s, with_witness(s->text, "\n0 1 0 0 29\n"), "out of range");
+    check_unread(s, replaced(s->text, "target points", "target faces"), "\"points\"");
+    check_unread(s, replaced(s->text, "certificate 5", "certificate 4"), "\"faces\"");
+    check_refused(s, with_higher_price(s->text), "does not follow");
+    snprintf(line, sizeof line, "\nbound %zu\n", bound);
+    snprintf(wanted, sizeof wanted, "\nbound %zu\n", bound + 1);
+    check_refused(s, replaced(s->text, line, wanted), "does not follow");
+    /* faces and points have certificates of their own */
+    s->guards->options.visibility.target = STARG_TARGET_FACES;
+    check_refused(s, replaced(s->text, "range", "range"), "its targets are others");
+    s->guards->options.visibility.target = STARG_TARGET_POINTS;
+    forge_reasons(s, 100);
+    forge_witnesses(s, 60);
+    check_damaged(s, test_rounds(DAMAGED / 50, DAMAGED));
+    s->guards->lower_bound_everywhere = bound;
+}
+
+static void test_points(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    shape made = shape_columns();
+    subject columns = prove_points(context, test_solid_of(context, &made));
+    assert_true(columns.guards->lower_bound_everywhere > 1);
+    check_points(&columns);
+    shape_free(&made);
+    subject_free(&columns);
+    context = test_context(2);
+    subject horse = prove_points(context, test_sample(context, "horse", 500));
+    check_points(&horse);
+    subject_free(&horse);
+}
+
+/* Does a place in the solid see the point, past all faces? */
+static bool sees(const verify_surface *surface, const double p[3], uint32_t face,
+                 const verify_spot *point) {
+    const double *t[3];
+    bool on_surface;
+    verify_corners(surface, face, t);
+    if (verify_side(t[0], t[1], t[2], p) <= 0 ||
+        verify_winding(surface, NULL, surface->face_count, p, &on_surface) < 1 || on_surface)
+        return false;
+    for (size_t f = 0; f < surface->face_count; f++) {
+        verify_corners(surface, f, t);
+        if (verify_blocks_from(verify_side(t[0], t[1], t[2], p), p, point, t))
+            return false;
+    }
+    return true;
+}
+
+/* A box of a few sizes about a place in the solid's bounds, and a point between vertices. */
+static uint32_t make_question(const verify_surface *surface, starg_rng *rng, verify_box *box,
+                              uint32_t weight[3]) {
+    for (int k = 0; k < 3; k++) {
+        double extent = surface->upper[k] - surface->lower[k];
+        double a = surface->lower[k] + extent * starg_rng_unit(rng);
+        box->lower[k] = a;
+        box->upper[k] = a + extent * ldexp(1, -1 - (int)starg_rng_below(rng, 6));
+    }
+    int depth = 2 + (int)starg_rng_below(rng, 27);
+    uint32_t all = UINT32_C(1) << depth, unit = UINT32_C(1) << (VERIFY_UNIT_BITS - depth);
+    uint32_t first = 1 + (uint32_t)starg_rng_below(rng, all - 1);
+    uint32_t second = (uint32_t)starg_rng_below(rng, all - first + 1);
+    weight[0] = first * unit;
+    weight[1] = second * unit;
+    weight[2] = (all - first - second) * unit;
+    return (uint32_t)starg_rng_below(rng, surface->face_count);
+}
+
+/* Whatever is said to be hidden from a box is hidden from places in it, one by one. */
+static void test_hidden_points(void **state) {
+    (void)state;
+    static const char kinds[] = "npPeE";
+    starg_context *context = test_context(1);
+    shape made = shape_columns();
+    starg_mesh *mesh = test_mesh_of(context, &made);
+    verify_surface *surface = NULL;
+    verify_tree *tree = NULL;
+    verify_scene scene;
+    verify_watch *watch = NULL;
+    size_t hidden[5] = {0}, rounds = test_rounds(1500, 60000);
+    test_ok(context, verify_surface_create(context, mesh, &surface));
+    test_ok(context, verify_tree_create(surface, &tree));
+    test_ok(context, verify_scene_create(surface, tree, true, &scene));
+    test_ok(context, verify_watch_create(&scene, &watch));
+    for (size_t i = 0; i < rounds; i++) {
+        starg_rng rng = starg_rng_make(5, 77, i);
+        verify_box box;
+        uint32_t weight[3];
+        uint32_t face = make_question(surface, &rng, &box, weight);
+        const verify_mix mix = verify_mix_of(surface, face, weight);
+        const verify_spot point = verify_mix_spot(surface, &mix, verify_blur(surface));
+        verify_watch_box(watch, &box);
+        bool any = false;
+        for (size_t k = 0; k < 5; k++) {
+            bool clipped = kinds[k] < 'a', patch = kinds[k] == 'p' || kinds[k] == 'P', it = false;
+            char kind = clipped ? (char)(kinds[k] - 'A' + 'a') : kinds[k];
+            for (uint32_t seed = 0; seed < (patch ? surface->face_count : 1) && !it; seed++) {
+                const verify_reason reason = {0, UINT32_MAX, seed, kind, clipped};
+                it = verify_box_hides_point(watch, face, &point, INFINITY, &reason);
+            }
+            hidden[k] += it;
+            any = any || it;
+        }
+        for (int place = 0; place < 10 && any; place++) {
+            double p[3];
+            for (int k = 0; k < 3; k++)
+                p[k] = fmin(box.lower[k] + (box.upper[k] - box.lower[k]) *
+                                               (place < 8 ? place >> k & 1 : starg_rng_unit(&rng)),
+                            box.upper[k]);
+            if (sees(surface, p, face, &point))
+                fail_msg("round %zu: place %d sees what is hidden", i, place);
+        }
+    }
+    print_message("hidden by planes %zu, patches %zu and %zu, entries %zu and %zu\n", hidden[0],
+                  hidden[1], hidden[2], hidden[3], hidden[4]);
+    for (int k = 0; k < 5; k++)
+        assert_true(hidden[k] > 0);
+    verify_watch_free(watch);
+    verify_scene_free(&scene);
+    verify_tree_free(tree);
+    verify_surface_free(surface);
+    starg_mesh_free(mesh);
+    shape_free(&made);
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_samples),       cmocka_unit_test(test_shared),
@@ -925,6 +1133,8 @@ int main(void) {
         cmocka_unit_test(test_rows),          cmocka_unit_test(test_false_proofs),
         cmocka_unit_test(test_odd_sets),      cmocka_unit_test(test_one_odd_set),
         cmocka_unit_test(test_too_close),     cmocka_unit_test(test_forged),
+        cmocka_unit_test(test_points),        cmocka_unit_test(test_hidden_points),
     };
+
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

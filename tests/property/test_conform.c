@@ -87,7 +87,7 @@ static size_t conform(const shape *s, size_t wanted, size_t *lost) {
         assert_true(i == 0 || (r->lost >= results[i - 1].lost && r->lost > 0));
     }
     for (size_t i = 0; i < CONFORM_RESULTS; i++)
-        conformed_free(context, &results[i]);
+        conformed_free(&results[i]);
     free(points);
     starg_solid_free(solid);
     test_context_free(context);

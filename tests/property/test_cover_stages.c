@@ -221,7 +221,7 @@ static void check_dual(cover_run *run, starg_rng *rng, cover_instance *instance)
         check_fixing(run, instance, &dual, least, most);
 
     cover_state_free(&best);
-    cover_dual_free(instance, &dual);
+    cover_dual_free(&dual);
 }
 
 /* A full cover from all rows in random order, without redundant ones. */
@@ -292,7 +292,7 @@ static void check_relax(cover_run *run, starg_rng *rng, cover_instance *instance
     int64_t value = cover_dual_value(instance, relaxation.multipliers, reduced);
     assert_true(cover_dual_rows(value) <= least);
     assert_true(fabs((double)value / (double)COVER_ONE - sum) < 1e-3); /* strong duality */
-    cover_relaxation_free(instance, &relaxation);
+    cover_relaxation_free(&relaxation);
 }
 
 static void check_ilp(cover_run *run, starg_rng *rng, cover_instance *instance) {
@@ -439,7 +439,7 @@ static void check_weight_bound(cover_run *run, starg_rng *rng, cover_instance *i
             cover_search(run, instance, &bound, 0, instance->total, &found, &exhausted));
     assert_true(exhausted && found.weight == most && found.count <= rows);
     cover_state_free(&found);
-    cover_weight_bound_free(instance, &bound);
+    cover_weight_bound_free(&bound);
 }
 
 /* Weights for the columns of a wide instance: equal, or of all magnitudes up to the limit of the
@@ -478,7 +478,7 @@ static void many_columns(void **state) {
             assert_true(bound.least <= cover_oracle_fewest(best, instance.rows, goal));
             assert_true(bound.least >= before);
             before = bound.least;
-            cover_weight_bound_free(&instance, &bound);
+            cover_weight_bound_free(&bound);
         }
         cover_instance_free(&instance);
     }
@@ -526,7 +526,7 @@ static void wide_rows(void **state) {
         test_ok(context, cover_weight_bound_relax(&run, &instance, false, 0, &bound));
         check_scores(&instance, &bound);
         assert_true(bound.most >= heaviest(&instance, 1));
-        cover_weight_bound_free(&instance, &bound);
+        cover_weight_bound_free(&bound);
         cover_instance_free(&instance);
         starg_bits_free(bits);
     }

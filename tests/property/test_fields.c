@@ -446,8 +446,8 @@ static void check_count(starg_context *context, const single *one, uint64_t valu
 static void check_real(starg_context *context, const single *one, double value) {
     const starg_field *f = &one->field;
     double place = 0;
-    if (!isfinite(value) || value == f->standard)
-        return;
+    if (!isfinite(value) || value == f->standard || starg_field_real_word(f, value) != NULL)
+        return; /* or a value that stands for something */
     bool set = starg_field_set_real(f, &place, value);
     agree(context, one, json_real(value), set, &value);
 }

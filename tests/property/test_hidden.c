@@ -227,7 +227,7 @@ static void check_setting(setting *s, const char *name, size_t boxes, bool latti
 
 static void test_lattices(void **state) {
     (void)state;
-    size_t boxes = test_rounds(400, 8000);
+    size_t boxes = test_rounds(200, 8000);
     setting room = setting_of_shape(shape_room()), cavity = setting_of_shape(shape_cavity());
     setting columns = setting_of_shape(shape_columns());
     check_setting(&room, "room", boxes, true);
@@ -237,7 +237,7 @@ static void test_lattices(void **state) {
 
 static void test_curved(void **state) {
     (void)state;
-    size_t boxes = test_rounds(100, 4000);
+    size_t boxes = test_rounds(50, 4000);
     setting blob = setting_of_shape(shape_blob(2, 5));
     check_setting(&blob, "blob", 2 * boxes, false);
     const char *const names[] = {"gallery", "horse", "octopus"};
@@ -255,7 +255,7 @@ static void test_not_embedded(void **state) {
     for (int i = 0; i < OVERLAPS; i++) {
         setting s = setting_of_shape(shape_overlap(i));
         assert_false(s.scene->embedded);
-        check_setting(&s, "intersecting shells", test_rounds(100, 2000), false);
+        check_setting(&s, "intersecting shells", test_rounds(50, 2000), false);
     }
 }
 
@@ -267,7 +267,7 @@ static void test_scales(void **state) {
         shape made = shape_columns();
         shape_place(&made, scales[i], offsets[i]);
         setting s = setting_of_shape(made);
-        check_setting(&s, "columns, scaled", test_rounds(40, 800), false);
+        check_setting(&s, "columns, scaled", test_rounds(20, 800), false);
     }
 }
 

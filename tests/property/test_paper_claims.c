@@ -170,12 +170,12 @@ static void place_guard(world *w, starg_rng *rng) {
 }
 
 static void drop_guard(world *w) {
-    view_free(&w->state, &w->guard);
-    view_free(&w->state, &w->looking);
+    view_free(&w->guard);
+    view_free(&w->looking);
 }
 
 static void world_free(world *w) {
-    tet_rings_free(w->state.context, &w->state.rings);
+    tet_rings_free(&w->state.rings);
     tet_sight_free(w->state.context, &w->state.sight);
     starg_tetmesh_free(w->state.mesh);
     free(w->all.tetrahedra);
@@ -358,7 +358,7 @@ static void test_homes(void **state) {
                 assert_int_equal(dependency_predecessor(&w.state, &w.guard, w.guard.home, k),
                                  PAPER_NONE);
             tried[i % 4]++;
-            view_free(&w.state, &w.guard);
+            view_free(&w.guard);
         }
         world_free(&w);
     }

@@ -549,6 +549,7 @@ static starg_status guard_scene(const scene *s, const view *v, bool ilp, starg_g
     options.method = ilp ? STARG_GUARD_ILP : STARG_GUARD_PILP;
     options.visibility = v->options;
     options.visibility.directions = options.visibility.ups = NULL;
+    options.visibility.patch = STARG_PATCH_OFF; /* parts of faces: test_patches */
     return starg_guard(s->context, s->solid, &options, out);
 }
 

@@ -177,7 +177,7 @@ static void check_solid(starg_context *context, const starg_solid *solid,
 static void test_random_solids(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    size_t solids = 0, rounds = test_rounds(12, 200);
+    size_t solids = 0, rounds = test_rounds(6, 200);
     for (uint64_t item = 0; item < rounds; item++) {
         shape s = item % 3 == 0 ? shape_blob(2, item) : shape_heap(4, item);
         starg_mesh *mesh = test_mesh_of(context, &s);
@@ -708,7 +708,7 @@ static void choose_poorly(const guard_problem *problem, uint64_t seed, guard_poo
     test_ok(context, choose_candidates(pool, &problem->weights, &how, &cover));
     test_ok(context, selection_of_cover(context, cover, &(guard_selection){0}, 0, selection));
     starg_cover_free(cover);
-    candidates_free(context, &points);
+    candidates_free(&points);
 }
 
 /* The bound for candidates is one for those of the end, of which the search closes its rounds three
@@ -739,9 +739,9 @@ static void test_last_candidates(void **state) {
         uint64_t *seen = union_of(pool.rows, pool.rows->rows);
         assert_false(covers(pool.rows, seen, selection.lower_bound - 1));
         free(seen);
-        selection_free(context, &selection);
+        selection_free(&selection);
         pool_free(&pool);
-        column_weights_free(context, &problem.weights);
+        column_weights_free(&problem.weights);
         starg_solid_free(solid);
     }
     assert_true(fewer > 0);

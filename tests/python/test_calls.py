@@ -96,6 +96,14 @@ class Interruption(Case):
         self.assertLess(self.interrupt(long_work), 10 * SLOWNESS)
         self.assertEqual(len(starguard.guard((VERTICES, FACES))), 1)
 
+    def test_enough(self):
+        """A search ends with its best result once the callback says so."""
+        model = starguard.sample("horse", vertices=5000)
+        guards = starguard.guard(model, effort="best", progress=lambda stage, _: "enough" if stage == "search" else None)
+        self.assertTrue(guards.time_limited)
+        self.assertEqual(guards.step_guards[0], len(guards))
+        self.assertFalse(starguard.guard(model, effort=1000).time_limited)
+
     def test_ctrl_c_with_progress(self):
         seen = []
         taken = self.interrupt(lambda: long_work(progress=lambda *report: seen.append(report)))

@@ -40,7 +40,7 @@ def random_value(field):
     if field.kind == lib.STARG_FIELD_TEXT:
         return random.choice(["a", "b/c"])
     if field.kind == lib.STARG_FIELD_NUMBERS:
-        return tuple(random.uniform(1, 100) for _ in range(row.length))
+        return tuple(random.uniform(max(row.low, -100), min(row.high, 100)) for _ in range(row.length))
     return random.randint(row.least, row.most)
 
 

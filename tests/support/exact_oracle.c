@@ -91,6 +91,22 @@ static int determinant_sign(const vector *a, const vector *b, const vector *c) {
     return sign;
 }
 
+/* ---- points between vertices ---- */
+
+void oracle_mix_coordinate(const oracle_mix *mix, int k, mpq_ptr out) {
+    mpq_t t;
+    mpq_init(t);
+    mpq_set_ui(out, 0, 1);
+    for (int i = 0; i < 3; i++) {
+        mpq_set_d(t, mix->corner[i][k]);
+        mpz_mul_si(mpq_numref(t), mpq_numref(t), (long)mix->weight[i]);
+        mpq_canonicalize(t);
+        mpq_add(out, out, t);
+    }
+    mpq_div_2exp(out, out, ORACLE_DEPTH);
+    mpq_clear(t);
+}
+
 /* ---- predicates ---- */
 
 int oracle_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
@@ -613,7 +629,17 @@ static bool solvable(linear_system *s) {
 typedef struct simplex {
     const double *corner[4];
     int dimension, first;
+    const oracle_mix *mixed[4]; /* in place of the corner, where not NULL */
 } simplex;
+
+/* out = coordinate k of a corner */
+static void coordinate_of(mpq_t out, const simplex *shape, int corner, int k) {
+    const oracle_mix *mix = shape->mixed[corner];
+    if (mix == NULL)
+        mpq_set_d(out, shape->corner[corner][k]);
+    else
+        oracle_mix_coordinate(mix, k, out);
+}
 
 /* Adds the inequalities of a simplex; `open` requires a sum below one, which excludes the face
  * opposite corner 0. */
@@ -630,11 +656,15 @@ static void add_simplex(linear_system *s, const simplex *shape, bool open) {
 static void add_coordinate(row *r, const simplex *shape, int k, int sign) {
     mpq_t base, t;
     mpq_inits(base, t, (mpq_ptr)NULL);
-    mpq_set_d(base, sign * shape->corner[0][k]);
+    coordinate_of(base, shape, 0, k);
+    if (sign < 0)
+        mpq_neg(base, base);
     mpq_add(r->k[VARIABLES], r->k[VARIABLES], base);
     for (int i = 0; i < shape->dimension; i++) {
         mpq_ptr out = r->k[shape->first + i];
-        mpq_set_d(t, sign * shape->corner[i + 1][k]);
+        coordinate_of(t, shape, i + 1, k);
+        if (sign < 0)
+            mpq_neg(t, t);
         mpq_sub(t, t, base);
         mpq_add(out, out, t);
     }
@@ -669,26 +699,37 @@ bool oracle_segment_meets_triangle(const double p[3], const double q[3], const d
                                    const double b[3], const double c[3]) {
     if (same_point(p, q))
         return false;
-    simplex segment = {{p, q}, 1, 0}, triangle = {{a, b, c}, 2, 1};
+    simplex segment = {{p, q}, 1, 0, {NULL}}, triangle = {{a, b, c}, 2, 1, {NULL}};
     return shapes_meet(&segment, true, &triangle);
 }
 
 bool oracle_point_on_triangle(const double p[3], const double a[3], const double b[3],
                               const double c[3]) {
-    simplex point = {{p}, 0, 0}, triangle = {{a, b, c}, 2, 0};
+    simplex point = {{p}, 0, 0, {NULL}}, triangle = {{a, b, c}, 2, 0, {NULL}};
     return shapes_meet(&point, false, &triangle);
 }
 
 bool oracle_segments_meet(const double a[3], const double b[3], const double c[3],
                           const double d[3]) {
-    simplex first = {{a, b}, 1, 0}, second = {{c, d}, 1, 1};
+    simplex first = {{a, b}, 1, 0, {NULL}}, second = {{c, d}, 1, 1, {NULL}};
     return shapes_meet(&first, false, &second);
 }
 
 bool oracle_tetrahedron_meets_triangle(const double p[3], const double *const face[3],
                                        const double *const t[3]) {
-    simplex tetrahedron = {{p, face[0], face[1], face[2]}, 3, 0};
-    simplex triangle = {{t[0], t[1], t[2]}, 2, 3};
+    simplex tetrahedron = {{p, face[0], face[1], face[2]}, 3, 0, {NULL}};
+    simplex triangle = {{t[0], t[1], t[2]}, 2, 3, {NULL}};
+    return shapes_meet(&tetrahedron, true, &triangle);
+}
+
+bool oracle_mix_hidden(const double p[3], const oracle_mix *q, const double *const t[3]) {
+    simplex segment = {{p, NULL}, 1, 0, {NULL, q}}, triangle = {{t[0], t[1], t[2]}, 2, 1, {NULL}};
+    return shapes_meet(&segment, true, &triangle);
+}
+
+bool oracle_mixes_entered(const double p[3], const oracle_mix part[3], const double *const t[3]) {
+    simplex tetrahedron = {{p}, 3, 0, {NULL, &part[0], &part[1], &part[2]}};
+    simplex triangle = {{t[0], t[1], t[2]}, 2, 3, {NULL}};
     return shapes_meet(&tetrahedron, true, &triangle);
 }
 
@@ -765,7 +806,8 @@ static bool meet_off_segment(const simplex *s, const simplex *t, const double a[
 }
 
 bool oracle_triangles_contact(const double *const s[3], const double *const t[3], int shared) {
-    simplex first = {{s[0], s[1], s[2]}, 2, 0}, second = {{t[0], t[1], t[2]}, 2, 2};
+    simplex first = {{s[0], s[1], s[2]}, 2, 0, {NULL}};
+    simplex second = {{t[0], t[1], t[2]}, 2, 2, {NULL}};
     if (shared == 0)
         return shapes_meet(&first, false, &second);
     if (shared == 1 || (shared == 2 && same_point(s[0], s[1])))
@@ -840,7 +882,7 @@ static crossing cross_triangle(const double p[3], const vector *d, const double 
 /* Does the closed ray from p along d meet the triangle, in whose plane p lies? */
 static bool ray_meets_flat(const double p[3], const double d[3], const double *const t[3]) {
     linear_system s = {0};
-    simplex triangle = {{t[0], t[1], t[2]}, 2, 1};
+    simplex triangle = {{t[0], t[1], t[2]}, 2, 1, {NULL}};
     add_simplex(&s, &triangle, false);
     mpq_set_ui(new_row(&s, AT_LEAST_ZERO)->k[0], 1, 1);
     mpq_t x;

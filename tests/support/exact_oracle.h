@@ -5,6 +5,7 @@
 #ifndef TESTS_EXACT_ORACLE_H
 #define TESTS_EXACT_ORACLE_H
 
+#include <gmp.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -41,6 +42,22 @@ bool oracle_triangles_contact(const double *const s[3], const double *const t[3]
 /* Does the closed triangle t have a point in the tetrahedron (p, face) off the face? */
 bool oracle_tetrahedron_meets_triangle(const double p[3], const double *const face[3],
                                        const double *const t[3]);
+
+/* A point between vertices: their sum with whole weights whose sum is 2^ORACLE_DEPTH, by that. */
+enum { ORACLE_DEPTH = 28 };
+
+typedef struct oracle_mix {
+    const double *corner[3];
+    int64_t weight[3];
+} oracle_mix;
+
+void oracle_mix_coordinate(const oracle_mix *mix, int k, mpq_ptr out);
+
+/* Does [p, q), where q is not p, meet the closed triangle t? */
+bool oracle_mix_hidden(const double p[3], const oracle_mix *q, const double *const t[3]);
+
+/* Does t have a point in the tetrahedron of p and the part off the part? */
+bool oracle_mixes_entered(const double p[3], const oracle_mix part[3], const double *const t[3]);
 
 /* Do the open half-spaces of the points x with orient3d(a, b, c, x) = 1 have a common point (in the
  * closed box, unless lower is NULL)? `corners` are 3 per half-space. */

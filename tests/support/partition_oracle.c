@@ -319,7 +319,7 @@ partition grown_sample(starg_context *context, const char *name, size_t target) 
     test_ok(context, grow_regions(context, mesh, NULL, 0, &grown));
     test_ok(context,
             partition_create(context, mesh, grown.labels, grown.guards.data, grown.count, &p));
-    grown_regions_free(context, &grown);
+    grown_regions_free(&grown);
     starg_tetmesh_free(mesh);
     return p;
 }

@@ -72,6 +72,10 @@ size_t test_rounds(size_t usual, size_t thorough) {
     return rounds > usual ? rounds : usual;
 }
 
+size_t test_step(void) {
+    return getenv("STARGUARD_LONG") == NULL ? 3 : 1;
+}
+
 void test_ok(starg_context *context, starg_status status) {
     if (status != STARG_OK)
         print_error("%s\n", starg_context_error(context)->message);

@@ -36,6 +36,9 @@ const char *test_shared_data(void);
  * everything some five times as slow, get a quarter of `usual`. */
 size_t test_rounds(size_t usual, size_t thorough);
 
+/* Step through a family of models: 1 with STARGUARD_LONG, else 3. */
+size_t test_step(void);
+
 /* Asserts that a status is STARG_OK; prints the context's message otherwise. */
 void test_ok(starg_context *context, starg_status status);
 

@@ -81,7 +81,7 @@ static void test_prices_meet_their_cover(void **state) {
                 assert_true(prices.price[j] == 0);
         }
         assert_true(fabs(cover - prices.sum) < 2e-3);
-        prices_free(context, &prices);
+        prices_free(&prices);
     }
     test_context_free(context);
 }
@@ -110,7 +110,7 @@ static void test_bounds_against_enumeration(void **state) {
             assert_true(proven == (most < least));
             branched += proven && most >= bound;
         }
-        prices_free(context, &prices);
+        prices_free(&prices);
     }
     assert_true(branched > 5);
     test_context_free(context);
@@ -179,7 +179,7 @@ static void test_odd_sets(void **state) {
             const odd_sets_question question = {p.list, prices.share, p.count, prices.price};
             test_ok(context, odd_sets_renew(context, &question, sets, prices.odd, &added, &work));
             check_violated(&p, &prices, sets, sets->count - added);
-            prices_free(context, &prices);
+            prices_free(&prices);
         }
     }
     print_message("bounds raised %zu times, %zu times to the optimum\n", raised, sharp);
@@ -236,10 +236,10 @@ static void test_three(void **state) {
     const odd_sets_question question = {p.list, prices.share, 3, prices.price};
     test_ok(context, odd_sets_renew(context, &question, sets, prices.odd, &added, &work));
     assert_int_equal(added, 1);
-    prices_free(context, &prices);
+    prices_free(&prices);
     test_ok(context, prices_find(context, p.list, 3, &p.wanted, sets, &prices));
     assert_true(fabs(prices.sum - 2) < 2e-3);
-    prices_free(context, &prices);
+    prices_free(&prices);
     free(sets);
     test_context_free(context);
 }
@@ -267,7 +267,7 @@ static void test_corrupted_row_is_noticed(void **state) {
             assert_false(proven);
             tried++;
         }
-        prices_free(context, &prices);
+        prices_free(&prices);
     }
     assert_true(tried > 20);
     test_context_free(context);

@@ -270,7 +270,7 @@ static void test_segments_in_shafts_meet_them(void **state) {
         }
         if (inside)
             continue;
-        shaft_make(&shaft, v, &box);
+        shaft_make(&shaft, v, 0, &box);
         bool meets = false;
         for (int j = 0; j <= 16 && !meets; j++) {
             double x[3];
@@ -381,7 +381,7 @@ static void check_lattice(setting *s, const char *name, size_t boxes) {
 
 static void test_lattices(void **state) {
     (void)state;
-    size_t boxes = test_rounds(60, 3000);
+    size_t boxes = test_rounds(30, 3000);
     setting room = setting_of_shape(shape_room()), cavity = setting_of_shape(shape_cavity());
     setting columns = setting_of_shape(shape_columns());
     check_lattice(&room, "room", boxes);
@@ -391,7 +391,7 @@ static void test_lattices(void **state) {
 
 static void test_small_solids(void **state) {
     (void)state;
-    size_t boxes = test_rounds(50, 4000);
+    size_t boxes = test_rounds(25, 4000);
     setting room = setting_of_shape(shape_room()), cavity = setting_of_shape(shape_cavity());
     setting columns = setting_of_shape(shape_columns());
     check_solid(&room, "room", boxes);
@@ -420,7 +420,7 @@ static void count_kinds(const setting *s, size_t boxes, size_t kinds[BOX_KINDS])
  * intersections the start of a segment or the entry into a surface proves something. */
 static void test_intersecting_shells(void **state) {
     (void)state;
-    size_t kinds[BOX_KINDS] = {0}, boxes = test_rounds(40, 2000);
+    size_t kinds[BOX_KINDS] = {0}, boxes = test_rounds(20, 2000);
     for (int i = 0; i < OVERLAPS; i++) {
         setting s = setting_of_shape(shape_overlap(i));
         assert_false(starg_solid_check(s.solid)->embedded);
@@ -464,7 +464,7 @@ static void test_scales(void **state) {
         shape made = shape_columns();
         shape_place(&made, scales[i], offsets[i]);
         setting s = setting_of_shape(made);
-        check_solid(&s, "columns, scaled", test_rounds(12, 500));
+        check_solid(&s, "columns, scaled", test_rounds(6, 500));
     }
 }
 
@@ -499,7 +499,7 @@ static void test_trim(void **state) {
     setting settings[] = {setting_of_shape(shape_room()), setting_of_shape(shape_cavity()),
                           setting_of_shape(shape_columns()), setting_of_shape(shape_blob(2, 5))};
     double cut_off = 0;
-    size_t rounds = test_rounds(400, 20000);
+    size_t rounds = test_rounds(200, 20000);
     for (size_t i = 0; i < 4; i++) {
         for (size_t item = 0; item < rounds; item++) {
             starg_rng rng = starg_rng_make(41, i, item);

@@ -10,7 +10,7 @@
 #include "models.h"
 #include "partition_oracle.h"
 #include "star/strict/partition/partition.h"
-#include "star/strict/search/split_plane.h"
+#include "star/strict/search/search.h"
 #include "star/strict/start/start.h"
 #include "tetrahedra.h"
 

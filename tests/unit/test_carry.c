@@ -104,10 +104,10 @@ static void check_carried(starg_context *context, const char *name, double cover
     if (coverage == 1 && redundancy == 1)
         assert_int_equal(fewest(context, solid, options, &carried),
                          fewest(context, solid, options, &all));
-    column_weights_free(context, &weights);
+    column_weights_free(&weights);
     starg_bits_free(rows);
-    candidates_free(context, &all);
-    candidates_free(context, &carried);
+    candidates_free(&all);
+    candidates_free(&carried);
     starg_solid_free(solid);
 }
 

@@ -169,7 +169,7 @@ static void test_saves(void **state) {
     check(mesh, image, out);
     print_message("%zu regions, %zu pieces\n", grown.count, out[0]->piece_count);
     assert_true(3 * out[0]->piece_count < 2 * grown.count);
-    grown_regions_free(context, &grown);
+    grown_regions_free(&grown);
     free_both(context, out);
     starg_tetmesh_free(mesh);
     starg_tetmesh_free(image);
@@ -312,7 +312,7 @@ static size_t check_planes(starg_context *context, const starg_tetmesh *mesh,
         assert_memory_equal(own[0]->tetrahedra, own[1]->tetrahedra,
                             4 * own[0]->count * sizeof *own[0]->tetrahedra);
     size_t count = parts.count;
-    grown_regions_free(context, &parts);
+    grown_regions_free(&parts);
     starg_tetmesh_free(own[0]);
     starg_tetmesh_free(own[1]);
     return count;
@@ -353,7 +353,7 @@ static void test_planes_save(void **state) {
         if (cut[i]->mesh->count > mesh->count)
             check_divided(context, i == 0 ? mesh : image, cut[i]->mesh);
     }
-    grown_regions_free(context, &grown);
+    grown_regions_free(&grown);
     free_both(context, whole);
     free_both(context, cut);
     starg_tetmesh_free(mesh);

@@ -10,8 +10,7 @@
 
 #include "partition_oracle.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/search/covering.h"
-#include "star/strict/search/crossings.h"
+#include "star/strict/search/search.h"
 
 enum { TRIANGLES = 12 };
 
@@ -72,7 +71,7 @@ done:
 static void scene_free(starg_context *context, scene *s) {
     STARG_ARRAY_FREE(context, &s->task.own);
     STARG_ARRAY_FREE(context, &s->task.others);
-    region_free(context, &s->r);
+    region_free(&s->r);
 }
 
 static const double *corner_of(const region *r, uint32_t triangle, int k) {
@@ -99,14 +98,14 @@ static bool is_on_side(const region *r, const partition_plane *plane, uint32_t t
 }
 
 /* Own triangles are in a term, the others above a plane of each, guards on their sides of all. */
-static void check_border(const scene *s, const border_plan *plan) {
+static void check_border(const scene *s, const cut_plan *plan) {
     bool in_term[TRIANGLES] = {false};
-    assert_true(plan->count > 0 && plan->ends[plan->count - 1] == BORDER_ENDS_PART);
+    assert_true(plan->count > 0 && plan->ends[plan->count - 1] == CUT_ENDS_PART);
     for (int first = 0; first < plan->count;) {
         int end = first;
-        while (plan->ends[end] == BORDER_GOES_ON)
+        while (plan->ends[end] == CUT_GOES_ON)
             end++;
-        assert_true(end + 1 == plan->count || plan->ends[end] == BORDER_ENDS_TERM);
+        assert_true(end + 1 == plan->count || plan->ends[end] == CUT_ENDS_TERM);
         for (uint32_t t = 0; t < TRIANGLES; t++) {
             bool below = true, above = false;
             for (int i = first; i <= end; i++) {
@@ -134,7 +133,7 @@ static void test_borders(void **state) {
     for (uint64_t seed = 0; seed < 400; seed++) {
         starg_rng rng = starg_rng_make(seed, 95, 0);
         scene s = random_scene(context, seed, 2 + seed % 2, 0.2 * (double)(seed % 5));
-        border_plan plan = {.count = 0};
+        cut_plan plan = {.count = 0};
         size_t crossings;
         bool found;
         s.task.r = &s.r;
@@ -273,17 +272,17 @@ static size_t choose(const partition *p, starg_rng *rng, size_t wanted, uint32_t
 
 /* A first term that holds nothing changes nothing. */
 static void check_empty_term(const partition *before, const uint32_t *pieces, size_t count,
-                             const border_plan *plan, bool done, region_scratch *scratch) {
-    border_plan longer = {
-        .count = plan->count + 1, .planes = {plan->planes[0]}, .ends = {BORDER_ENDS_TERM}};
+                             const cut_plan *plan, bool done, region_scratch *scratch) {
+    cut_plan longer = {
+        .count = plan->count + 1, .planes = {plan->planes[0]}, .ends = {CUT_ENDS_TERM}};
     apply_effect effect;
-    if (plan->count == BORDER_PLANES_MOST)
+    if (plan->count == CUT_PLANES_MOST)
         return;
     partition p = partition_oracle_copy(before);
     longer.planes[0].offset = -8;
     memcpy(longer.planes + 1, plan->planes, (size_t)plan->count * sizeof *plan->planes);
     memcpy(longer.ends + 1, plan->ends, (size_t)plan->count * sizeof *plan->ends);
-    test_ok(p.context, apply_borders(&p, pieces, count, &longer, 4e-6, NULL, scratch, &effect));
+    test_ok(p.context, apply_cuts(&p, pieces, count, &longer, 4e-6, NULL, scratch, &effect));
     assert_int_equal(effect.done, done);
     partition_free(&p);
 }
@@ -297,7 +296,7 @@ static size_t cut_some(partition *p, size_t wanted, uint64_t seed, int *planes) 
         starg_rng rng = starg_rng_make(seed, 96, trial);
         uint32_t pieces[APPLY_MOST];
         double starts[APPLY_MOST][3];
-        border_plan plan;
+        cut_plan plan;
         apply_effect effect;
         bool found;
         size_t count = choose(p, &rng, wanted, pieces);
@@ -311,9 +310,9 @@ static size_t cut_some(partition *p, size_t wanted, uint64_t seed, int *planes) 
         if (!found)
             continue;
         partition before = partition_oracle_copy(p);
-        test_ok(p->context, apply_borders(p, pieces, count, &plan, 1, NULL, &scratch, &effect));
+        test_ok(p->context, apply_cuts(p, pieces, count, &plan, 1, NULL, &scratch, &effect));
         assert_true(!effect.done && partition_oracle_same(p, &before));
-        test_ok(p->context, apply_borders(p, pieces, count, &plan, 4e-6, NULL, &scratch, &effect));
+        test_ok(p->context, apply_cuts(p, pieces, count, &plan, 4e-6, NULL, &scratch, &effect));
         if (effect.done)
             assert_int_equal(p->pieces.count + 1, before.pieces.count);
         else
@@ -327,7 +326,7 @@ static size_t cut_some(partition *p, size_t wanted, uint64_t seed, int *planes) 
     partition_oracle_check_guards(p);
     partition_oracle_check_surface(&first, p);
     partition_free(&first);
-    region_free(p->context, &r);
+    region_free(&r);
     region_scratch_free(&scratch);
     return done;
 }

@@ -8,7 +8,7 @@
 
 #include "partition_oracle.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/search/eliminate.h"
+#include "star/strict/search/search.h"
 
 enum { AROUND_MOST = 400 };
 
@@ -137,7 +137,7 @@ static void test_fans_stay_closed(void **state) {
         test_ok(context, partition_build_index(&p));
         partition_oracle_check(&p);
         partition_oracle_check_surface(&first, &p);
-        fan_plan_free(context, &plan);
+        fan_plan_free(&plan);
         partition_free(&p);
     }
     partition_free(&first);
@@ -189,7 +189,7 @@ static size_t eliminate_all(partition *p, size_t size, size_t kept, uint64_t see
         check_plan(p, &task, &plan);
         partition before = partition_oracle_copy(p);
         test_ok(p->context, apply_fan(p, &plan, MARGIN, &scratch, &effect));
-        fan_plan_free(p->context, &plan);
+        fan_plan_free(&plan);
         if (!effect.done)
             assert_true(partition_oracle_same(p, &before));
         else

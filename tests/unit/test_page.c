@@ -429,7 +429,7 @@ static void pieces_are_enclosed(void **state) {
         starg_piece_surfaces surfaces;
         test_ok(context, starg_piece_surfaces_create(context, &mesh, &surfaces));
         check_surfaces(&mesh, &surfaces);
-        starg_piece_surfaces_free(context, &surfaces);
+        starg_piece_surfaces_free(&surfaces);
         free(labels);
         free(vertices);
         free(corners);
@@ -452,7 +452,7 @@ static void wrong_pieces(void **state) {
                               .tetrahedra = corners,
                               .labels = &label};
     test_ok(context, starg_piece_surfaces_create(context, &mesh, &s));
-    starg_piece_surfaces_free(context, &s);
+    starg_piece_surfaces_free(&s);
     static const int32_t labels[] = {-1, 1, INT32_MAX, INT32_MIN};
     for (size_t i = 0; i < 4; i++) {
         label = labels[i];

@@ -261,7 +261,7 @@ static void test_smoothing(void **state) {
         test_ok(context, smooth_borders(&s));
         check_mesh(context, before, s.mesh);
         tet_sight_free(context, &s.sight);
-        tet_rings_free(context, &s.rings);
+        tet_rings_free(&s.rings);
         test_ok(context, decomposition_finish(context, STARG_DECOMPOSE_PAPER, s.mesh, s.labels,
                                               guards, 2, &b));
         assert_true(b->visible_vertices >= a->visible_vertices);

@@ -13,6 +13,7 @@
 #include "star/strict/partition/apply.h"
 #include "star/strict/partition/partition.h"
 #include "star/strict/search/improve.h"
+#include "star/strict/search/search.h"
 #include "starguard/sample.h"
 #include "tetrahedra.h"
 
@@ -93,7 +94,7 @@ static void test_create(void **state) {
 static void test_create_from_surface(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    for (size_t i = 0; i < starg_sample_count(); i++) {
+    for (size_t i = 0; i < starg_sample_count(); i += test_step()) {
         if (starg_sample_at(i)->scene)
             continue;
         starg_solid *solid = test_sample(context, starg_sample_at(i)->name, 500);
@@ -875,7 +876,7 @@ static void test_plans(void **state) {
         partition p = partition_oracle_copy(&first);
         for (int trial = 0; trial < 60 && p.pieces.count > 2; trial++) {
             uint32_t pieces[APPLY_MOST];
-            repartition_plan plan = {.cuts = 0};
+            cut_plan plan = {.count = 0};
             apply_effect effect;
             size_t count = choose(&p, &rng, pieces);
             if (count < 2)
@@ -883,9 +884,10 @@ static void test_plans(void **state) {
             bool found = trial % 3 == 0, same = starg_rng_below(&rng, 4) == 0;
             int parts = count == 2 || same ? 2 : (int)count - 1;
             if (found) {
-                plan.cuts = parts - 1;
-                for (int i = 0; i < plan.cuts; i++)
-                    plan.planes[i] = random_plane_across(&p, pieces[i], &rng);
+                plan.count = parts - 1;
+                for (int i = 0; i < plan.count; i++)
+                    plan.planes[i] = random_plane_across(&p, pieces[i], &rng),
+                    plan.ends[i] = CUT_ENDS_PART;
             } else {
                 const repartition_options options = {1e-5, 24, 16, same};
                 test_ok(context, region_gather(&p, pieces, count, &scratch, &r));
@@ -894,19 +896,19 @@ static void test_plans(void **state) {
             }
             if (!found)
                 continue;
-            assert_int_equal(plan.cuts, parts - 1);
+            assert_int_equal(plan.count, parts - 1);
             partition before = partition_oracle_copy(&p);
             /* first with a worth that does not grow */
             test_ok(context,
-                    apply_plan(&p, pieces, count, &plan, 4e-6, never_more, &scratch, &effect));
+                    apply_cuts(&p, pieces, count, &plan, 4e-6, never_more, &scratch, &effect));
             assert_false(effect.done);
             assert_true(partition_oracle_same(&before, &p));
             uneven++;
             /* then with more room than possible */
-            test_ok(context, apply_plan(&p, pieces, count, &plan, 1, NULL, &scratch, &effect));
+            test_ok(context, apply_cuts(&p, pieces, count, &plan, 1, NULL, &scratch, &effect));
             assert_false(effect.done);
             assert_true(partition_oracle_same(&before, &p));
-            test_ok(context, apply_plan(&p, pieces, count, &plan, 4e-6, NULL, &scratch, &effect));
+            test_ok(context, apply_cuts(&p, pieces, count, &plan, 4e-6, NULL, &scratch, &effect));
             if (effect.done)
                 check_applied(&before, &p, pieces, count, parts, &effect);
             else
@@ -920,7 +922,7 @@ static void test_plans(void **state) {
         partition_free(&p);
     }
     assert_true(done[0] > 20 && done[1] > 60 && refused > 30 && uneven > 100);
-    region_free(context, &r);
+    region_free(&r);
     region_scratch_free(&scratch);
     test_context_free(context);
 }
@@ -966,11 +968,12 @@ static void test_near_guards(void **state) {
             uint32_t pieces[APPLY_MOST];
             apply_effect effect;
             choose(&p, &rng, pieces);
-            const repartition_plan plan = {.cuts = 1,
-                                           .planes = {random_plane_across(&p, pieces[0], &rng)}};
+            const cut_plan plan = {.count = 1,
+                                   .ends = {CUT_ENDS_PART},
+                                   .planes = {random_plane_across(&p, pieces[0], &rng)}};
             for (uint32_t i = 0; i < p.pieces.count; i++)
                 move_guard(&p, i, &rng);
-            test_ok(context, apply_plan(&p, pieces, 2, &plan, 4e-6, NULL, &scratch, &effect));
+            test_ok(context, apply_cuts(&p, pieces, 2, &plan, 4e-6, NULL, &scratch, &effect));
             for (uint32_t i = 0; i < p.pieces.count; i++)
                 assert_true(sees_all(&p, i, p.pieces.data[i].guard));
             done += effect.done;
@@ -1028,11 +1031,12 @@ static bool run_rationed(size_t ration) {
     starg_rng rng = starg_rng_make(1, 80, 0);
     uint32_t pieces[APPLY_MOST];
     size_t count = choose(&p, &rng, pieces);
-    const repartition_plan plan = {.cuts = 1, .planes = {random_plane_across(&p, pieces[0], &rng)}};
+    const cut_plan plan = {
+        .count = 1, .ends = {CUT_ENDS_PART}, .planes = {random_plane_across(&p, pieces[0], &rng)}};
     apply_effect effect = {.done = false};
     bool done = false;
     left = ration;
-    starg_status status = apply_plan(&p, pieces, count, &plan, 4e-6, NULL, &scratch, &effect);
+    starg_status status = apply_cuts(&p, pieces, count, &plan, 4e-6, NULL, &scratch, &effect);
     if (status == STARG_OK)
         status = merge_coplanar(&p);
     if (status == STARG_OK)

@@ -141,6 +141,7 @@ static void test_compare_cone(void **state) {
 
 static void check_plane(point_family family, points x) {
     const verify_view view = {.range = INFINITY,
+                              .depth = INFINITY,
                               .framed = true,
                               .planes = {{x[2][0], x[2][1], x[2][2]},
                                          {x[2][0], x[2][1], x[2][2]},
@@ -193,7 +194,7 @@ static void check_incidence(point_family family, points x) {
         }
         const verify_view view = {.steepest = cosines[i]};
         bool inner = oracle_orient3d(x[0], x[1], x[2], x[3]) > 0;
-        if (inner && cosines[i] > 0 && verify_faces(&view, x[3], t) != all)
+        if (inner && cosines[i] > 0 && verify_faces(&view, x[3], t, t) != all)
             refute("verify_faces", family, x, all, !all);
     }
 }

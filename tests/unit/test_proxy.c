@@ -70,7 +70,7 @@ static void test_embedding(void **state) {
     test_context_free(context);
 }
 
-static void test_step(void **state) {
+static void test_default_step(void **state) {
     (void)state;
     assert_int_equal(starg_guard_default_step(3000, 5000), 10000);
     assert_int_equal(starg_guard_default_step(45000, 5000), 10000);
@@ -83,6 +83,6 @@ static void test_step(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_choice),
                                        cmocka_unit_test(test_embedding),
-                                       cmocka_unit_test(test_step)};
+                                       cmocka_unit_test(test_default_step)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,7 +10,7 @@
 #include "geometry/linear_program.h"
 #include "partition_oracle.h"
 #include "star/strict/partition/partition.h"
-#include "star/strict/search/scan.h"
+#include "star/strict/partition/scan.h"
 
 enum { UNION_MOST = 5, TURNS = 20 };
 
@@ -75,7 +75,7 @@ static setting make(uint64_t seed) {
 }
 
 static void release(setting *s) {
-    region_free(s->context, &s->r);
+    region_free(&s->r);
     region_scratch_free(&s->scratch);
     partition_free(&s->p);
     test_context_free(s->context);
@@ -438,7 +438,7 @@ static size_t check_some(setting *s, starg_rng *rng) {
     assert_true(part_radius > whole_radius - 1e-8);
     test_ok(s->context, region_gather(&s->p, s->pieces, s->count, &s->scratch, &s->r));
     check_rows(s);
-    region_free(s->context, &part);
+    region_free(&part);
     return fewer;
 }
 
@@ -487,7 +487,7 @@ static size_t check_clip(setting *s, starg_rng *rng) {
 done:
     test_ok(s->context, status);
     partition_free(&copy);
-    region_free(s->context, &above);
+    region_free(&above);
     return sliced;
 }
 

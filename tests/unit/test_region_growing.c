@@ -113,8 +113,8 @@ static void test_random(void **state) {
         assert_same(mesh, &one, &three);
         sets += one.count;
         tetrahedra += mesh->count;
-        grown_regions_free(context, &one);
-        grown_regions_free(many, &three);
+        grown_regions_free(&one);
+        grown_regions_free(&three);
         starg_tetmesh_free(mesh);
     }
     assert_true(sets > 40);
@@ -132,7 +132,7 @@ static void test_samples(void **state) {
         starg_tetmesh *mesh = sample_tetmesh(context, names[i], 1500);
         grown_regions c = grow(context, mesh, NULL, 0);
         assert_true(c.count > 1);
-        grown_regions_free(context, &c);
+        grown_regions_free(&c);
         starg_tetmesh_free(mesh);
     }
     test_context_free(context);
@@ -148,13 +148,13 @@ static void test_whole(void **state) {
     starg_tetmesh *mesh = sample_tetmesh(context, "sphere", 1000);
     grown_regions c = grow(context, mesh, NULL, 0);
     assert_int_equal(c.count, 1);
-    grown_regions_free(context, &c);
+    grown_regions_free(&c);
     starg_tetmesh_free(mesh);
     test_ok(context, starg_tetmesh_create(context, vertices, 9, tetrahedra, 3, NULL, &mesh));
     c = grow(context, mesh, NULL, 0);
     assert_int_equal(c.count, 2);
     assert_int_equal(c.labels[0], c.labels[1]);
-    grown_regions_free(context, &c);
+    grown_regions_free(&c);
     starg_tetmesh_free(mesh);
     test_context_free(context);
 }
@@ -184,9 +184,9 @@ static void test_hints(void **state) {
         assert_same(mesh, &one, &three);
         other += one.count != plain.count ||
                  memcmp(one.guards.data, plain.guards.data, 24 * one.count) != 0;
-        grown_regions_free(context, &plain);
-        grown_regions_free(context, &one);
-        grown_regions_free(many, &three);
+        grown_regions_free(&plain);
+        grown_regions_free(&one);
+        grown_regions_free(&three);
         starg_tetmesh_free(mesh);
     }
     assert_true(other > 6); /* the hints are used */
@@ -223,12 +223,12 @@ static void test_again(void **state) {
         }
         different += memcmp(first.labels, c.labels, mesh->count * sizeof *c.labels) != 0;
         if (round > 1)
-            grown_regions_free(context, &former);
+            grown_regions_free(&former);
         former = c;
     }
     assert_true(different > 6); /* of 12 */
-    grown_regions_free(context, &first);
-    grown_regions_free(context, &former);
+    grown_regions_free(&first);
+    grown_regions_free(&former);
     starg_tetmesh_free(mesh);
     test_context_free(context);
 }
@@ -286,7 +286,7 @@ static void test_memory(void **state) {
         status = grow_regions(context, mesh, NULL, 0, &c);
         if (status != STARG_OK)
             assert_int_equal(status, STARG_ERROR_MEMORY);
-        grown_regions_free(context, &c);
+        grown_regions_free(&c);
         starg_tetmesh_free(mesh);
         test_context_free(context);
     }

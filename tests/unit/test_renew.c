@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "partition_oracle.h"
-#include "star/strict/search/renew.h"
+#include "star/strict/search/improve.h"
 
 static renew_options options_of(uint64_t round, improve_tallies *tallies) {
     return (renew_options){.trials = 600, .work = UINT64_MAX, .round = round, .tallies = tallies};

@@ -166,7 +166,7 @@ static void laplacian_energy(void **state) {
         }
         assert_true(fabs(sum) <= 1e-12 * size);
     }
-    laplacian_free(context, &l);
+    laplacian_free(&l);
     starg_mesh_free(mesh);
     test_context_free(context);
 }

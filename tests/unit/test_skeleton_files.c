@@ -116,7 +116,7 @@ static void trees(void **state) {
     solid = test_sample(context, "torus", 800);
     test_ok(context, starg_skeleton_create(context, solid, NULL, &made));
     assert_int_equal(starg_skeleton_write(context, made, path, STARG_SKELETON_AUTO),
-                     STARG_ERROR_ARGUMENT);
+                     STARG_ERROR_MESH);
     assert_non_null(strstr(starg_context_error(context)->message, "1 loop, and SWC"));
     assert_int_equal(access(path, F_OK), -1);
     starg_skeleton_free(context, made);

@@ -105,8 +105,64 @@ static void check_shapes(point_family family, points x) {
     for (int i = 0; i < 3; i++)
         if (oracle_segment_meets_triangle(x[0], face[i], t[0], t[1], t[2]))
             return;
-    if (verify_enters(x[0], face, t) != oracle_tetrahedron_meets_triangle(x[0], face, t))
+    const verify_spot part[3] = {verify_plain(face[0]), verify_plain(face[1]),
+                                 verify_plain(face[2])};
+    if (verify_enters(x[0], face, part, t) != oracle_tetrahedron_meets_triangle(x[0], face, t))
         refute("verify_enters", family, x);
+}
+
+/* Points between vertices, some of which are corners of what may hide them, rounded as the doubles
+ * of parts are. */
+static void check_spots(point_family family, points x) {
+    uint64_t bits;
+    memcpy(&bits, x[0], sizeof bits);
+    starg_rng rng = starg_rng_make(9, (uint64_t)family, bits);
+    const double *t[3] = {x[2], x[3], x[4]}, *face[3] = {x[1], x[5], x[6]};
+    oracle_mix mix[3];
+    double at[3][3], largest = 0;
+    verify_spot part[3];
+    if (starg_rng_below(&rng, 2) == 0)
+        face[1] = x[3];
+    for (int i = 0; i < 7; i++)
+        for (int k = 0; k < 3; k++)
+            largest = fmax(largest, fabs(x[i][k]));
+    for (int i = 0; i < 3; i++) { /* weights of halvings: those before, and midpoints */
+        part[i] = (verify_spot){.at = at[i], .blur = 0x1p-50 * largest + 0x1p-1070};
+        for (int k = 0; k < 3; k++) {
+            mix[i].corner[k] = part[i].corner[k] = face[k];
+            mix[i].weight[k] = i == k ? (int64_t)VERIFY_UNIT : 0;
+        }
+    }
+    for (int halvings = 0; halvings < 8; halvings++) {
+        size_t from = (size_t)starg_rng_below(&rng, 3), to = (from + 1) % 3;
+        for (int k = 0; k < 3; k++)
+            mix[to].weight[k] = (mix[from].weight[k] + mix[to].weight[k]) / 2;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            part[i].weight[k] = (double)mix[i].weight[k];
+            at[i][k] =
+                ((double)mix[i].weight[0] * face[0][k] + (double)mix[i].weight[1] * face[1][k] +
+                 (double)mix[i].weight[2] * face[2][k]) /
+                VERIFY_UNIT;
+        }
+    if (oracle_point_on_triangle(x[0], x[2], x[3], x[4]) ||
+        oracle_orient3d(face[0], face[1], face[2], x[0]) <= 0)
+        return;
+    bool hidden = false;
+    for (int i = 0; i < 3; i++) {
+        bool meets = oracle_mix_hidden(x[0], &mix[i], t);
+        hidden = hidden || meets;
+        if (verify_blocks_from(verify_side(t[0], t[1], t[2], x[0]), x[0], &part[i], t) != meets)
+            refute("verify_blocks_from", family, x);
+    }
+    if (!hidden && verify_enters(x[0], face, part, t) != oracle_mixes_entered(x[0], mix, t))
+        refute("verify_enters", family, x);
+}
+
+static void test_spots(void **state) {
+    (void)state;
+    for_all(check_spots);
 }
 
 static void test_shapes(void **state) {
@@ -196,8 +252,8 @@ static model make_model(int which) {
         return two_cubes("cubes side by side, one inside out", 3.5, 0, 1, 0);
     case 9:
         return two_cubes("cubes that cross, one inside out", 2.25, 1, 1, 0);
-    case 10: /* half of the inner one's faces are in the wall */
-        return two_cubes("cubes that overlap in their faces", 2, 0, 1, 0);
+    case 10: /* half of the inner one's faces are in the wall: a hollow, flush with sides */
+        return two_cubes("cubes that overlap in their faces", 2, 0, 0, 1);
     default:
         m = same("tiny room", shape_room());
         shape_place(&m.given, TINY, 0);
@@ -967,6 +1023,7 @@ int main(void) {
         cmocka_unit_test(test_exact_sum),
         cmocka_unit_test(test_signs),
         cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_spots),
         cmocka_unit_test(test_cross),
         cmocka_unit_test(test_turning_and_winding),
         cmocka_unit_test(test_sight),

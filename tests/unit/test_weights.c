@@ -35,10 +35,10 @@ static void test_sizes(void **state) {
         test_ok(context, column_weights_create(context, &small, STARG_TARGET_FACES, &other));
         assert_memory_equal(other.weights, plain.weights, faces * sizeof *plain.weights);
         assert_memory_equal(other.areas, plain.areas, faces * sizeof *plain.areas);
-        column_weights_free(context, &other);
+        column_weights_free(&other);
         starg_mesh_free(sized);
     }
-    column_weights_free(context, &plain);
+    column_weights_free(&plain);
     starg_mesh_free(mesh);
     test_context_free(context);
 }

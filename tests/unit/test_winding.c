@@ -61,7 +61,7 @@ static void check_shape(starg_context *context, const shape *s, size_t faces, do
             p[k] = scale * (8 * starg_rng_unit(&rng) - 4);
         assert_true(fabs(winding_number(&field, p) - brute_number(s, faces, p)) < 0.03);
     }
-    winding_free(context, &field);
+    winding_free(&field);
     bvh_free(tree);
 }
 

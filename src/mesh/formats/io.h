@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Shared by the mesh readers and writers: sources with places for messages, the builder that
  * readers fill, and the functions of each format. */
-#ifndef STARG_MESH_FORMATS_IO_H
-#define STARG_MESH_FORMATS_IO_H
+#pragma once
 
-#include <stdbool.h>
 #include <stdio.h>
 
-#include "core/context.h"
 #include "core/file.h"
-#include "core/memory.h"
-#include "core/private.h"
 #include "mesh/mesh.h"
 
 #define STARG_MESH_FILE "mesh file" /* stage in messages */
@@ -58,6 +53,11 @@ typedef struct starg_face_values {
     double current;           /* of the next face */
     STARG_ARRAY(double) data; /* by triangle so far */
     char others[160];         /* names in the file, for messages */
+    /* If groups are collected in place of one name, `current` is the number of the group of the
+     * next face, from 1 on; 0: none. */
+    bool collects;
+    size_t group_count;
+    STARG_ARRAY(char) names; /* of the groups, each ended by a zero byte */
 } starg_face_values;
 
 /* A mesh under construction. Every vertex and corner is checked on arrival, so that errors name
@@ -92,6 +92,10 @@ bool starg_values_want_property(starg_face_values *values, const char *name, siz
 /* Notes a name of the file for messages. */
 void starg_values_note(starg_face_values *values, const char *name, size_t length);
 
+/* The number of a group that is collected, from 1 on. Errors: MEMORY. */
+starg_status starg_values_collect(starg_context *context, starg_face_values *values,
+                                  const char *name, size_t length, double *number);
+
 /* Takes the value of a wanted property for the next face; before the first one, `current` is 0. */
 void starg_values_take(starg_face_values *values, double value);
 
@@ -114,6 +118,14 @@ bool starg_polygon_fan(const double *vertices, const uint32_t *corners, size_t c
 starg_status starg_polygon_clip(starg_context *context, const double *vertices,
                                 const uint32_t *corners, size_t count, uint32_t *triangles);
 
+/* Is it a scene that another program has to read? */
+bool starg_import_recognized(const char *bytes, size_t size, const char *name);
+/* What that program makes of it: a PLY. Errors: FORMAT, READ, MEMORY, CANCELLED. */
+starg_status starg_import_read(starg_context *context, const char *path, size_t file_size,
+                               char **bytes, size_t *size);
+/* Reads a file for starg_mesh_read_with; of a scene that is a PLY. */
+starg_status starg_mesh_bytes(starg_context *context, const char *path, char **bytes, size_t *size);
+
 /* starg_mesh_read_memory that also finds values of faces; NULL: none are wanted. */
 starg_status starg_mesh_read_with(starg_context *context, const void *bytes, size_t size,
                                   const char *name, starg_face_values *values, starg_mesh **out);
@@ -124,10 +136,12 @@ bool starg_off_matches(const starg_source *source);
 bool starg_obj_matches(const starg_source *source);
 bool starg_ply_matches(const starg_source *source);
 bool starg_stl_matches(const starg_source *source);
+bool starg_vtk_matches(const starg_source *source);
 starg_status starg_off_read(starg_mesh_builder *builder);
 starg_status starg_obj_read(starg_mesh_builder *builder);
 starg_status starg_ply_read(starg_mesh_builder *builder);
 starg_status starg_stl_read(starg_mesh_builder *builder);
+starg_status starg_vtk_read(starg_mesh_builder *builder);
 
 /* What a file holds beside the mesh, as far as its format can. */
 typedef struct starg_mesh_extras {
@@ -146,5 +160,3 @@ void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colo
 
 /* True if `name` ends with `extension`, ignoring case. */
 bool starg_has_extension(const char *name, const char *extension);
-
-#endif

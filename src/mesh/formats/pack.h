@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers as little-endian bytes. */
-#ifndef STARG_MESH_FORMATS_PACK_H
-#define STARG_MESH_FORMATS_PACK_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -23,5 +22,3 @@ static inline void pack_f64(unsigned char *bytes, double value) {
     pack_u32(bytes, (uint32_t)bits);
     pack_u32(bytes + 4, (uint32_t)(bits >> 32));
 }
-
-#endif

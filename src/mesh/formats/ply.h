@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Shared by the two halves of the PLY reader: the header's declarations. */
-#ifndef STARG_MESH_FORMATS_PLY_H
-#define STARG_MESH_FORMATS_PLY_H
+#pragma once
 
 #include "mesh/formats/scan.h"
 
@@ -22,10 +21,21 @@ typedef enum ply_type {
 /* Meaning of a property. PLY_X, PLY_Y, PLY_Z are 0, 1, 2. */
 typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_OTHER } ply_role;
 
+/* What a number of a face names: "comment group 3 Floor" names faces with group 3. */
+typedef enum ply_naming { PLY_NAMELESS, PLY_GROUP, PLY_MATERIAL } ply_naming;
+
+/* A name that the builder asks for. */
+typedef struct ply_name {
+    ply_naming naming;
+    int64_t number;
+    double collected; /* its number among the groups that are collected, from 1 on; else 0 */
+} ply_name;
+
 typedef struct ply_property {
     ply_role role;
     bool list;
     bool wanted;         /* the values of faces that the builder asks for */
+    ply_naming naming;   /* its values are numbers of names in comments   */
     ply_type count_type; /* for lists */
     ply_type type;
 } ply_property;
@@ -34,6 +44,7 @@ typedef enum ply_kind { PLY_VERTICES, PLY_FACES, PLY_OTHERS } ply_kind;
 
 typedef struct ply_element {
     ply_kind kind;
+    bool strips; /* its lists are strips of triangles, -1 between them */
     size_t count;
     size_t first, properties; /* range in the array of all properties */
     size_t line;
@@ -50,6 +61,7 @@ typedef struct ply_reader {
     size_t first_extra;
     STARG_ARRAY(ply_element) elements;
     STARG_ARRAY(ply_property) properties;
+    STARG_ARRAY(ply_name) names;
 } ply_reader;
 
 /* Size of a value in a binary file. */
@@ -62,5 +74,3 @@ const ply_element *starg_ply_find(const ply_reader *ply, ply_kind kind);
  * header declares vertices with x, y, z, faces with a list of indices, and no more items than the
  * rest of the source can hold. Errors: FORMAT, MEMORY. */
 starg_status starg_ply_read_header(ply_reader *ply);
-
-#endif

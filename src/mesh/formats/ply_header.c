@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Header of a PLY file: declares the encoding, the elements and their properties. */
-#include <string.h>
 
 #include "mesh/formats/ply.h"
 
@@ -37,9 +36,7 @@ static starg_status header_word(ply_reader *ply, const char *what, starg_word *w
 static starg_status read_format(ply_reader *ply) {
     static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
     starg_word word;
-    starg_status status = header_word(ply, "the encoding", &word);
-    if (status != STARG_OK)
-        return status;
+    TRY(header_word(ply, "the encoding", &word));
     for (int i = 0; i < 3; i++) {
         if (starg_word_is(word, names[i])) {
             ply->encoding = (ply_encoding)i;
@@ -54,33 +51,34 @@ static starg_status read_format(ply_reader *ply) {
 }
 
 static starg_status read_element(ply_reader *ply) {
-    starg_status status = STARG_OK;
     starg_word name, word;
     int64_t count;
-    STARG_TRY(header_word(ply, "the name of the element", &name));
-    STARG_TRY(header_word(ply, "the count of the element", &word));
-    STARG_TRY(starg_word_integer(&ply->scan, word, "the count of the element", &count));
+    TRY(header_word(ply, "the name of the element", &name));
+    TRY(header_word(ply, "the count of the element", &word));
+    TRY(starg_word_integer(&ply->scan, word, "the count of the element", &count));
     if (count < 0)
         return fail_header(ply, "the count of the element is negative");
+    bool strips = starg_word_is(name, "tristrips");
+    bool faces = strips || starg_word_is(name, "face");
+    if (strips && (count == 0 || starg_ply_find(ply, PLY_FACES) != NULL))
+        faces = false; /* the others hold the faces */
     ply_element element = {.kind = starg_word_is(name, "vertex") ? PLY_VERTICES
-                                   : starg_word_is(name, "face") ? PLY_FACES
+                                   : faces                       ? PLY_FACES
                                                                  : PLY_OTHERS,
+                           .strips = strips,
                            .count = (size_t)count,
                            .first = ply->properties.count,
                            .line = name.line};
     for (size_t i = 0; i < ply->elements.count; i++)
         if (element.kind != PLY_OTHERS && ply->elements.data[i].kind == element.kind)
             return fail_header(ply, "the element is declared twice");
-    STARG_PUSH(ply->source->context, STARG_MESH_FILE, &ply->elements, element);
-done:
-    return status;
+    PUSH(ply->source->context, STARG_MESH_FILE, &ply->elements, element);
+    return STARG_OK;
 }
 
 static starg_status read_type(ply_reader *ply, ply_type *out) {
     starg_word word;
-    starg_status status = header_word(ply, "the type of the property", &word);
-    if (status != STARG_OK)
-        return status;
+    TRY(header_word(ply, "the type of the property", &word));
     for (int i = 0; i < PLY_TYPES; i++) {
         if (starg_word_is(word, type_infos[i].name) ||
             starg_word_is(word, type_infos[i].other_name)) {
@@ -117,8 +115,38 @@ static unsigned look_of(starg_word name) {
     return 0;
 }
 
+static ply_naming naming_of(starg_word word) {
+    return starg_word_is(word, "group")      ? PLY_GROUP
+           : starg_word_is(word, "material") ? PLY_MATERIAL
+                                             : PLY_NAMELESS;
+}
+
+/* Notes the name in a comment "group NUMBER NAME" or "material NUMBER NAME"; others mean nothing.
+ */
+static starg_status read_comment(ply_reader *ply) {
+    starg_face_values *values = ply->builder->values;
+    starg_word kind, number, word;
+    ply_name name = {0};
+    if (values == NULL || !starg_scan_word_here(&ply->scan, &kind) ||
+        naming_of(kind) == PLY_NAMELESS || !starg_scan_word_here(&ply->scan, &number) ||
+        !starg_parse_integer(number.text, number.length, &name.number) ||
+        !starg_scan_word_here(&ply->scan, &word))
+        return STARG_OK;
+    name.naming = naming_of(kind);
+    const char *text = word.text, *end = text + word.length;
+    while (starg_scan_word_here(&ply->scan, &word))
+        end = word.text + word.length;
+    starg_values_note(values, text, (size_t)(end - text));
+    if (values->collects && name.naming == PLY_GROUP)
+        TRY(starg_values_collect(ply->source->context, values, text, (size_t)(end - text),
+                                 &name.collected));
+    if (name.collected > 0 ||
+        (!values->collects && starg_values_want(values, text, (size_t)(end - text))))
+        PUSH(ply->source->context, STARG_MESH_FILE, &ply->names, name);
+    return STARG_OK;
+}
+
 static starg_status read_property(ply_reader *ply) {
-    starg_status status = STARG_OK;
     starg_word word;
     ply_property property = {0};
     if (ply->elements.count == 0)
@@ -128,28 +156,29 @@ static starg_status read_property(ply_reader *ply) {
     property.list = starg_scan_word_here(&ahead, &word) && starg_word_is(word, "list");
     if (property.list) {
         ply->scan = ahead;
-        STARG_TRY(read_type(ply, &property.count_type));
+        TRY(read_type(ply, &property.count_type));
         if (property.count_type >= PLY_FLOAT32)
             return fail_header(ply, "the size of a list must have an integer type");
     }
-    STARG_TRY(read_type(ply, &property.type));
-    STARG_TRY(header_word(ply, "the name of the property", &word));
+    TRY(read_type(ply, &property.type));
+    TRY(header_word(ply, "the name of the property", &word));
     property.role = find_role(element->kind, property.list, word);
     if (element->kind == PLY_VERTICES || element->kind == PLY_FACES)
         ply->builder->left_out |= look_of(word);
     starg_face_values *values = element->kind == PLY_FACES ? ply->builder->values : NULL;
     if (values != NULL && !property.list) {
+        property.naming = naming_of(word);
         starg_values_note(values, word.text, word.length);
-        property.wanted = starg_values_want_property(values, word.text, word.length);
+        property.wanted =
+            !values->collects && starg_values_want_property(values, word.text, word.length);
     }
     for (size_t i = 0; i < element->properties; i++)
         if (property.role != PLY_OTHER &&
             ply->properties.data[element->first + i].role == property.role)
             return fail_header(ply, "the property is declared twice");
-    STARG_PUSH(ply->source->context, STARG_MESH_FILE, &ply->properties, property);
+    PUSH(ply->source->context, STARG_MESH_FILE, &ply->properties, property);
     element->properties++;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Skips the line end of "end_header". A lone CR is a line end only if it also ends the first line:
@@ -174,32 +203,32 @@ static bool is_remark(starg_word word) {
 }
 
 static starg_status read_lines(ply_reader *ply) {
-    starg_status status = STARG_OK;
     starg_word word;
-    STARG_TRY(starg_scan_expect(&ply->scan, "the word ply", &word));
+    TRY(starg_scan_expect(&ply->scan, "the word ply", &word));
     if (!starg_word_is(word, "ply"))
         return fail_header(ply, "a PLY file must begin with the line 'ply'");
     for (;;) {
         starg_scan_next_line(&ply->scan);
-        STARG_TRY(starg_scan_expect(&ply->scan, "a line of the header or end_header", &word));
+        TRY(starg_scan_expect(&ply->scan, "a line of the header or end_header", &word));
         if (starg_word_is(word, "end_header"))
             break;
         if (starg_word_is(word, "format"))
-            STARG_TRY(read_format(ply));
+            TRY(read_format(ply));
         else if (starg_word_is(word, "element"))
-            STARG_TRY(read_element(ply));
+            TRY(read_element(ply));
         else if (starg_word_is(word, "property"))
-            STARG_TRY(read_property(ply));
+            TRY(read_property(ply));
+        else if (starg_word_is(word, "comment"))
+            TRY(read_comment(ply));
         else if (!is_remark(word))
             return starg_source_fail(ply->source, starg_at_line(word.line),
                                      "'%s' is not a keyword of a PLY header",
                                      starg_word_excerpt(word).text);
     }
-    STARG_TRY(pass_header_end(ply));
+    TRY(pass_header_end(ply));
     if (!ply->has_encoding)
         return fail_header(ply, "the header has no format line");
-done:
-    return status;
+    return STARG_OK;
 }
 
 const ply_element *starg_ply_find(const ply_reader *ply, ply_kind kind) {

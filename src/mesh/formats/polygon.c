@@ -169,9 +169,6 @@ starg_status starg_polygon_clip(starg_context *context, const double *vertices,
         i = next;
     }
 done:
-    starg_release(context, ring.before);
-    starg_release(context, ring.after);
-    starg_release(context, ring.outward);
-    starg_release(context, ring.ear);
+    RELEASE(ring.before, ring.after, ring.outward, ring.ear);
     return status;
 }

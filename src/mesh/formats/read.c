@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reads a mesh of any format, recognized by content, or by file name if the content is
  * ambiguous. */
-#include <string.h>
 #include <strings.h>
 
-#include "core/file.h"
 #include "mesh/formats/io.h"
 
 static const struct format {
@@ -12,9 +10,8 @@ static const struct format {
     bool (*matches)(const starg_source *source);
     starg_status (*read)(starg_mesh_builder *builder);
 } formats[] = {
-    {".ply", starg_ply_matches, starg_ply_read},
-    {".stl", starg_stl_matches, starg_stl_read},
-    {".off", starg_off_matches, starg_off_read},
+    {".ply", starg_ply_matches, starg_ply_read}, {".vtk", starg_vtk_matches, starg_vtk_read},
+    {".stl", starg_stl_matches, starg_stl_read}, {".off", starg_off_matches, starg_off_read},
     {".obj", starg_obj_matches, starg_obj_read},
 };
 
@@ -41,9 +38,14 @@ static starg_status detect(const starg_source *source, const char *name,
             return STARG_OK;
         }
     }
-    return starg_source_fail(source, starg_at_file(),
-                             "unknown format; use OFF, OBJ, PLY or STL, to which Blender, MeshLab "
-                             "or 'assimp export FILE MODEL.ply' convert others");
+    if (starg_import_recognized(source->bytes, source->size, name))
+        return starg_source_fail(source, starg_at_file(),
+                                 "a scene (glTF, 3MF, COLLADA, FBX, X3D, IFC) is read from a file, "
+                                 "not from memory or standard input");
+    return starg_source_fail(
+        source, starg_at_file(),
+        "unknown format; use OFF, OBJ, PLY, STL or VTK, to which Blender, MeshLab "
+        "or 'assimp export FILE MODEL.ply' convert others");
 }
 
 /* Skips a byte order mark. */
@@ -64,26 +66,21 @@ void starg_source_shorten(const char *name, char *shown, size_t size) {
 
 starg_status starg_mesh_read_with(starg_context *context, const void *bytes, size_t size,
                                   const char *name, starg_face_values *values, starg_mesh **out) {
-    starg_status status = STARG_OK;
     char shown[256];
     starg_source_shorten(name, shown, sizeof shown);
     starg_source source = {context, shown, bytes, size};
+    SCOPED_BY(starg_builder_free)
     starg_mesh_builder builder = {.source = &source, .values = values};
-    starg_c_locale locale = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     const struct format *format = NULL;
     *out = NULL;
-    starg_progress_begin(context, "read");
+    IN_STAGE(context, "read");
     pass_byte_order_mark(&source);
-    STARG_TRY(starg_check_cancel(context, STARG_MESH_FILE));
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(detect(&source, name, &format));
-    STARG_TRY(format->read(&builder));
-    STARG_TRY(starg_builder_finish(&builder, out));
-done:
-    starg_c_locale_leave(&locale);
-    starg_builder_free(&builder);
-    starg_progress_end(context);
-    return status;
+    TRY(starg_check_cancel(context, STARG_MESH_FILE));
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(detect(&source, name, &format));
+    TRY(format->read(&builder));
+    return starg_builder_finish(&builder, out);
 }
 
 starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, size_t size,
@@ -92,14 +89,10 @@ starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, s
 }
 
 starg_status starg_mesh_read(starg_context *context, const char *path, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    char *bytes = NULL;
+    SCOPED char *bytes = NULL;
     size_t size = 0;
     *out = NULL;
-    STARG_TRY(starg_file_read(context, STARG_MESH_FILE, path, &bytes, &size));
+    TRY(starg_mesh_bytes(context, path, &bytes, &size));
     const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
-    STARG_TRY(starg_mesh_read_memory(context, bytes, size, name, out));
-done:
-    starg_release(context, bytes);
-    return status;
+    return starg_mesh_read_memory(context, bytes, size, name, out);
 }

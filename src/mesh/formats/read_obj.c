@@ -27,7 +27,6 @@ static starg_scan scan_lines(const starg_source *source) {
 /* x y z, optionally followed by a weight or a colour. */
 static starg_status read_vertex(starg_scan *scan, starg_mesh_builder *builder) {
     enum { MOST_EXTRAS = 5 };
-    starg_status status = STARG_OK;
     starg_place place = starg_at_line(scan->line);
     double point[3];
     for (int k = 0; k < 3; k++) {
@@ -36,16 +35,14 @@ static starg_status read_vertex(starg_scan *scan, starg_mesh_builder *builder) {
             return starg_source_fail(scan->source, place,
                                      "a vertex has %d coordinate%s; it needs 3", k,
                                      k == 1 ? "" : "s");
-        STARG_TRY(starg_word_real(scan, word, "a coordinate of a vertex", &point[k]));
+        TRY(starg_word_real(scan, word, "a coordinate of a vertex", &point[k]));
     }
-    STARG_TRY(starg_builder_vertex(builder, point, place));
+    TRY(starg_builder_vertex(builder, point, place));
     starg_scan ahead = *scan;
     starg_word more[2];
     if (starg_scan_word_here(&ahead, &more[0]) && starg_scan_word_here(&ahead, &more[1]))
         builder->left_out |= STARG_MESH_COLORS; /* one number is a weight */
-    STARG_TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "a weight or a colour"));
-done:
-    return status;
+    return starg_scan_extra_numbers(scan, MOST_EXTRAS, "a weight or a colour");
 }
 
 /* Parses v, v/t, v//n or v/t/n; t and n must be numbers. */
@@ -89,7 +86,6 @@ static starg_status resolve(starg_scan *scan, int64_t given, size_t before,
 
 /* Reads the corners of a face that follows `before` vertices. */
 static starg_status read_face(starg_scan *scan, size_t before, starg_mesh_builder *builder) {
-    starg_status status = STARG_OK;
     starg_place place = starg_at_line(scan->line);
     starg_word word;
     while (starg_scan_word_here(scan, &word)) {
@@ -99,30 +95,26 @@ static starg_status read_face(starg_scan *scan, size_t before, starg_mesh_builde
                                      "'%s' is not a corner of a face, which is v, v/t, v//n or "
                                      "v/t/n in whole numbers",
                                      starg_word_excerpt(word).text);
-        STARG_TRY(resolve(scan, vertex, before, builder, &vertex));
-        STARG_TRY(starg_builder_corner(builder, vertex, starg_at_line(word.line)));
+        TRY(resolve(scan, vertex, before, builder, &vertex));
+        TRY(starg_builder_corner(builder, vertex, starg_at_line(word.line)));
     }
-    STARG_TRY(starg_builder_face(builder, place));
-done:
-    return status;
+    return starg_builder_face(builder, place);
 }
 
 static starg_status read_vertices(starg_mesh_builder *builder) {
-    starg_status status = STARG_OK;
     starg_scan scan = scan_lines(builder->source);
     starg_word word;
     while (starg_scan_word(&scan, &word)) {
         if (starg_word_is(word, "v"))
-            STARG_TRY(read_vertex(&scan, builder));
+            TRY(read_vertex(&scan, builder));
         else if (starg_word_is(word, "vt"))
             builder->left_out |= STARG_MESH_TEXTURE;
         else if (starg_word_is(word, "usemtl"))
             builder->left_out |= STARG_MESH_COLORS;
         starg_scan_next_line(&scan);
-        STARG_TRY(starg_builder_tick(builder, (size_t)(scan.at - scan.source->bytes) / 2));
+        TRY(starg_builder_tick(builder, (size_t)(scan.at - scan.source->bytes) / 2));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Which of group, object and material have a wanted name at this line? A group may have several,
@@ -153,30 +145,55 @@ static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *
     values->current = held[GROUP] || held[OBJECT] || held[MATERIAL];
 }
 
-static starg_status read_faces(starg_mesh_builder *builder) {
+/* The same where groups are collected: a face is in its group, of these the last, or else in its
+ * object, or in its material. */
+static starg_status collect_names(starg_scan *scan, starg_word keyword, starg_context *context,
+                                  starg_face_values *values, double held[KEYWORDS]) {
+    static const char *const keywords[KEYWORDS] = {"g", "o", "usemtl"};
     starg_status status = STARG_OK;
-    starg_scan scan = scan_lines(builder->source);
-    starg_word word;
-    size_t before = 0;
-    bool held[KEYWORDS] = {false};
-    while (starg_scan_word(&scan, &word)) {
-        before += starg_word_is(word, "v");
-        if (builder->values != NULL)
-            take_names(&scan, word, builder->values, held);
-        if (starg_word_is(word, "f"))
-            STARG_TRY(read_face(&scan, before, builder));
-        starg_scan_next_line(&scan);
-        size_t done = (size_t)(scan.at - scan.source->bytes);
-        STARG_TRY(starg_builder_tick(builder, (scan.source->size + done) / 2));
+    for (int k = 0; k < KEYWORDS; k++) {
+        starg_word name;
+        if (!starg_word_is(keyword, keywords[k]))
+            continue;
+        const char *begin = NULL, *end = NULL;
+        while (starg_scan_word_here(scan, &name)) {
+            begin = begin != NULL ? begin : name.text;
+            end = name.text + name.length;
+        }
+        held[k] = 0;
+        if (begin != NULL)
+            STARG_TRY(
+                starg_values_collect(context, values, begin, (size_t)(end - begin), &held[k]));
     }
+    values->current = held[GROUP] > 0    ? held[GROUP]
+                      : held[OBJECT] > 0 ? held[OBJECT]
+                                         : held[MATERIAL];
 done:
     return status;
 }
 
+static starg_status read_faces(starg_mesh_builder *builder) {
+    starg_scan scan = scan_lines(builder->source);
+    starg_word word;
+    size_t before = 0;
+    bool held[KEYWORDS] = {false};
+    double groups[KEYWORDS] = {0};
+    while (starg_scan_word(&scan, &word)) {
+        before += starg_word_is(word, "v");
+        if (builder->values != NULL && builder->values->collects)
+            TRY(collect_names(&scan, word, builder->source->context, builder->values, groups));
+        else if (builder->values != NULL)
+            take_names(&scan, word, builder->values, held);
+        if (starg_word_is(word, "f"))
+            TRY(read_face(&scan, before, builder));
+        starg_scan_next_line(&scan);
+        size_t done = (size_t)(scan.at - scan.source->bytes);
+        TRY(starg_builder_tick(builder, (scan.source->size + done) / 2));
+    }
+    return STARG_OK;
+}
+
 starg_status starg_obj_read(starg_mesh_builder *builder) {
-    starg_status status = STARG_OK;
-    STARG_TRY(read_vertices(builder));
-    STARG_TRY(read_faces(builder));
-done:
-    return status;
+    TRY(read_vertices(builder));
+    return read_faces(builder);
 }

@@ -2,7 +2,6 @@
 /* Geomview OFF: a keyword, the counts of vertices, faces and edges, the vertices, the faces.
  * Letters before OFF declare further vertex data, which ends with the line, as do face colours.
  * Otherwise line breaks are free. */
-#include <string.h>
 
 #include "mesh/formats/scan.h"
 
@@ -47,9 +46,7 @@ bool starg_off_matches(const starg_source *source) {
 /* Reads the keyword and leaves the scanner after its last letter. */
 static starg_status read_keyword(starg_scan *scan, off_header *header) {
     starg_word word;
-    starg_status status = starg_scan_expect(scan, "the keyword OFF", &word);
-    if (status != STARG_OK)
-        return status;
+    TRY(starg_scan_expect(scan, "the keyword OFF", &word));
     starg_place place = starg_at_line(word.line);
     if (!parse_keyword(word, header))
         return starg_source_fail(
@@ -87,12 +84,11 @@ static starg_status pass_edge_count(starg_scan *scan) {
 
 /* Rejects counts that the rest of the file cannot hold, before allocating. */
 static starg_status read_counts(starg_scan *scan, size_t *vertices, size_t *faces) {
-    starg_status status = STARG_OK;
     int64_t v, f;
-    STARG_TRY(starg_scan_integer(scan, "the vertex count", &v));
-    STARG_TRY(starg_scan_integer(scan, "the face count", &f));
+    TRY(starg_scan_integer(scan, "the vertex count", &v));
+    TRY(starg_scan_integer(scan, "the face count", &f));
     size_t line = scan->line;
-    STARG_TRY(pass_edge_count(scan));
+    TRY(pass_edge_count(scan));
     enum { VERTEX_BYTES = 6, FACE_BYTES = 8 }; /* "0 0 0\n", "3 0 0 0\n" */
     int64_t left = (int64_t)(scan->end - scan->at) + 1;
     if (v < 0 || f < 0 || v > left / VERTEX_BYTES || f > left / FACE_BYTES)
@@ -103,50 +99,58 @@ static starg_status read_counts(starg_scan *scan, size_t *vertices, size_t *face
             (long long)v, (long long)f, (long long)left - 1);
     *vertices = (size_t)v;
     *faces = (size_t)f;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_vertices(starg_scan *scan, const off_header *header, size_t count,
                                   starg_mesh_builder *builder) {
     enum { MOST_EXTRAS = 11 }; /* normal 3, colour 4, texture 4 */
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++) {
         double point[3];
         for (int k = 0; k < 3; k++)
-            STARG_TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
-        STARG_TRY(starg_builder_vertex(builder, point, starg_at_line(scan->line)));
+            TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
+        TRY(starg_builder_vertex(builder, point, starg_at_line(scan->line)));
         if (header->vertex_extras)
-            STARG_TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "an attribute of a vertex"));
-        STARG_TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
+            TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "an attribute of a vertex"));
+        TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_faces(starg_scan *scan, size_t count, starg_mesh_builder *builder) {
     enum { MOST_COLORS = 4 };
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++) {
         int64_t corners, vertex;
-        STARG_TRY(starg_scan_integer(scan, "the number of corners of a face", &corners));
+        TRY(starg_scan_integer(scan, "the number of corners of a face", &corners));
         starg_place place = starg_at_line(scan->line);
         for (int64_t k = 0; k < corners; k++) {
-            STARG_TRY(starg_scan_integer(scan, "a vertex index", &vertex));
-            STARG_TRY(starg_builder_corner(builder, vertex, starg_at_line(scan->line)));
+            TRY(starg_scan_integer(scan, "a vertex index", &vertex));
+            TRY(starg_builder_corner(builder, vertex, starg_at_line(scan->line)));
         }
-        STARG_TRY(starg_builder_face(builder, place));
+        TRY(starg_builder_face(builder, place));
         starg_scan ahead = *scan;
         starg_word word;
         if (starg_scan_word_here(&ahead, &word))
             builder->left_out |= STARG_MESH_COLORS;
-        STARG_TRY(starg_scan_extra_numbers(scan, MOST_COLORS, "the colour of a face"));
-        STARG_TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
+        TRY(starg_scan_extra_numbers(scan, MOST_COLORS, "the colour of a face"));
+        TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
+/* Reads what follows the counts into an empty builder. */
+static starg_status read_data(starg_scan *scan, const off_header *header, size_t vertices,
+                              size_t faces, starg_mesh_builder *builder) {
+    builder->vertices.count = builder->faces.count = builder->corners.count = 0;
+    TRY(starg_builder_reserve(builder, vertices, faces));
+    TRY(read_vertices(scan, header, vertices, builder));
+    TRY(read_faces(scan, faces, builder));
+    return starg_scan_end(scan, "the counts in the header are too small");
+}
+
+/* Some programs write colours or normals of vertices that the keyword does not declare: if the file
+ * makes no sense without them, what follows a position on its line is passed over. If that fails
+ * too, the first error is reported. */
 starg_status starg_off_read(starg_mesh_builder *builder) {
     starg_status status = STARG_OK;
     starg_scan scan = starg_scan_make(builder->source);
@@ -156,11 +160,19 @@ starg_status starg_off_read(starg_mesh_builder *builder) {
     builder->left_out =
         (header.color ? STARG_MESH_COLORS : 0) | (header.texture ? STARG_MESH_TEXTURE : 0);
     STARG_TRY(read_counts(&scan, &vertices, &faces));
-    STARG_TRY(starg_builder_reserve(builder, vertices, faces));
-    STARG_TRY(read_vertices(&scan, &header, vertices, builder));
-    STARG_TRY(read_faces(&scan, faces, builder));
-    STARG_TRY(starg_scan_end(&scan, "the counts in the header are too small, or vertices have "
-                                    "numbers that the keyword does not declare (COFF, NOFF)"));
+    const starg_scan begin = scan;
+    status = read_data(&scan, &header, vertices, faces, builder);
+    if (status != STARG_ERROR_FORMAT || header.vertex_extras)
+        goto done;
+    off_header other = header;
+    other.vertex_extras = true;
+    scan = begin;
+    status = read_data(&scan, &other, vertices, faces, builder);
+    builder->left_out |= status == STARG_OK ? STARG_MESH_COLORS : 0;
+    if (status != STARG_ERROR_FORMAT)
+        goto done;
+    scan = begin;
+    status = read_data(&scan, &header, vertices, faces, builder);
 done:
     return status;
 }

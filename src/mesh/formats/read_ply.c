@@ -7,7 +7,6 @@
  * Text is read value by value, ignoring line breaks. Some programs write more values per item than
  * declared: if that makes reading fail, it is repeated line by line. */
 #include <math.h>
-#include <string.h>
 
 #include "mesh/formats/ply.h"
 
@@ -67,9 +66,7 @@ static int64_t integer_of(ply_type type, uint64_t bits) {
 static starg_status read_real(ply_reader *ply, ply_type type, const char *what, double *value) {
     if (ply->encoding == PLY_TEXT)
         return starg_scan_real(&ply->scan, what, value);
-    starg_status status = need(ply, starg_ply_type_size(type));
-    if (status != STARG_OK)
-        return status;
+    TRY(need(ply, starg_ply_type_size(type)));
     uint64_t bits = take_bits(ply, starg_ply_type_size(type));
     *value = type >= PLY_FLOAT32 ? float_of(type, bits) : (double)integer_of(type, bits);
     return STARG_OK;
@@ -98,26 +95,23 @@ static starg_status read_integer(ply_reader *ply, ply_type type, const char *wha
 }
 
 static starg_status skip_values(ply_reader *ply, ply_type type, uint64_t count) {
-    starg_status status = STARG_OK;
     if (ply->encoding == PLY_TEXT) {
         starg_word word;
         for (uint64_t i = 0; i < count; i++)
-            STARG_TRY(starg_scan_expect(&ply->scan, "the value of a property", &word));
+            TRY(starg_scan_expect(&ply->scan, "the value of a property", &word));
         return STARG_OK;
     }
     size_t left = (size_t)(ply->scan.end - ply->scan.at);
     if (count > left / starg_ply_type_size(type))
         return need(ply, left + 1);
     ply->scan.at += count * starg_ply_type_size(type);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_list(ply_reader *ply, const ply_property *property, bool skip) {
-    starg_status status = STARG_OK;
     int64_t count, vertex;
     starg_place before = place_of(ply);
-    STARG_TRY(read_integer(ply, property->count_type, "the size of a list", &count));
+    TRY(read_integer(ply, property->count_type, "the size of a list", &count));
     if (count < 0)
         return starg_source_fail(ply->source, place_since(ply, before),
                                  "the size of a list is negative");
@@ -125,50 +119,85 @@ static starg_status read_list(ply_reader *ply, const ply_property *property, boo
         return skip_values(ply, property->type, (uint64_t)count);
     for (int64_t i = 0; i < count; i++) {
         before = place_of(ply);
-        STARG_TRY(read_integer(ply, property->type, "a vertex index", &vertex));
-        STARG_TRY(starg_builder_corner(ply->builder, vertex, place_since(ply, before)));
+        TRY(read_integer(ply, property->type, "a vertex index", &vertex));
+        TRY(starg_builder_corner(ply->builder, vertex, place_since(ply, before)));
     }
-done:
-    return status;
+    return STARG_OK;
+}
+
+/* Reads a strip: each vertex makes a triangle with the two before it, of alternating sides; -1
+ * begins anew. Triangles that repeat a corner only turn the strip. */
+static starg_status read_strip(ply_reader *ply, const ply_property *property) {
+    int64_t count, vertex, former[2] = {-1, -1};
+    size_t length = 0;
+    TRY(read_integer(ply, property->count_type, "the size of a list", &count));
+    for (int64_t i = 0; i < count; i++) {
+        starg_place before = place_of(ply);
+        TRY(read_integer(ply, property->type, "a vertex index", &vertex));
+        starg_place place = place_since(ply, before);
+        bool distinct = vertex != former[0] && vertex != former[1] && former[0] != former[1];
+        if (vertex != -1 && length >= 2 && distinct) {
+            TRY(starg_builder_corner(ply->builder, former[length % 2], place));
+            TRY(starg_builder_corner(ply->builder, former[1 - length % 2], place));
+            TRY(starg_builder_corner(ply->builder, vertex, place));
+            TRY(starg_builder_face(ply->builder, place));
+        }
+        length = vertex == -1 ? 0 : length + 1;
+        former[0] = former[1];
+        former[1] = vertex;
+    }
+    return STARG_OK;
+}
+
+/* The value of a face with this number: 0 if no name with it is wanted. */
+static double value_of(const ply_reader *ply, ply_naming naming, double number) {
+    for (size_t i = 0; i < ply->names.count; i++) {
+        const ply_name *name = &ply->names.data[i];
+        if (name->naming == naming && (double)name->number == number)
+            return name->collected > 0 ? name->collected : 1;
+    }
+    return 0;
 }
 
 /* Reads one item of an element; ignores its values if `skip`. */
 static starg_status read_item(ply_reader *ply, const ply_element *element, bool skip) {
-    starg_status status = STARG_OK;
     starg_place before = place_of(ply);
     double point[3] = {0, 0, 0}, value;
     if (ply->builder->values != NULL)
         ply->builder->values->current = 0;
     for (size_t i = 0; i < element->properties; i++) {
         const ply_property *property = &ply->properties.data[element->first + i];
-        if (property->list)
-            STARG_TRY(read_list(ply, property, skip));
+        if (property->role == PLY_CORNERS && element->strips && !skip)
+            TRY(read_strip(ply, property));
+        else if (property->list)
+            TRY(read_list(ply, property, skip));
         else if (property->role <= PLY_Z)
-            STARG_TRY(
-                read_real(ply, property->type, "a coordinate of a vertex", &point[property->role]));
-        else if (property->wanted) {
-            STARG_TRY(read_real(ply, property->type, "the value of a property", &value));
+            TRY(read_real(ply, property->type, "a coordinate of a vertex", &point[property->role]));
+        else if (property->naming != PLY_NAMELESS && ply->names.count > 0) {
+            TRY(read_real(ply, property->type, "the value of a property", &value));
+            value = value_of(ply, property->naming, value);
+            if (value > 0)
+                ply->builder->values->current = value;
+        } else if (property->wanted) {
+            TRY(read_real(ply, property->type, "the value of a property", &value));
             starg_values_take(ply->builder->values, value);
         } else
-            STARG_TRY(skip_values(ply, property->type, 1));
+            TRY(skip_values(ply, property->type, 1));
     }
     starg_place place = place_since(ply, before);
     if (element->kind == PLY_VERTICES)
-        STARG_TRY(starg_builder_vertex(ply->builder, point, place));
-    if (element->kind == PLY_FACES && !skip)
-        STARG_TRY(starg_builder_face(ply->builder, place));
-    STARG_TRY(starg_builder_tick(ply->builder, (size_t)(ply->scan.at - ply->source->bytes)));
-done:
-    return status;
+        TRY(starg_builder_vertex(ply->builder, point, place));
+    if (element->kind == PLY_FACES && !element->strips && !skip)
+        TRY(starg_builder_face(ply->builder, place));
+    return starg_builder_tick(ply->builder, (size_t)(ply->scan.at - ply->source->bytes));
 }
 
 /* Reads one item on a line of its own. */
 static starg_status read_line(ply_reader *ply, const ply_element *element, bool skip) {
-    starg_status status = STARG_OK;
     starg_scan ahead = ply->scan;
     starg_word word;
-    STARG_TRY(starg_scan_expect(&ahead, "the value of a property", &word));
-    STARG_TRY(read_item(ply, element, skip));
+    TRY(starg_scan_expect(&ahead, "the value of a property", &word));
+    TRY(read_item(ply, element, skip));
     if (ply->scan.line != word.line)
         return starg_source_fail(ply->source, starg_at_line(word.line), "the line is too short");
     if (starg_scan_word_here(&ply->scan, &word)) {
@@ -176,8 +205,7 @@ static starg_status read_line(ply_reader *ply, const ply_element *element, bool 
             ply->first_extra = word.line;
         starg_scan_next_line(&ply->scan);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_items(ply_reader *ply, const ply_element *element, bool skip) {
@@ -204,7 +232,6 @@ static starg_status check_end(ply_reader *ply) {
 }
 
 static starg_status read_data(ply_reader *ply) {
-    starg_status status = STARG_OK;
     const ply_element *faces = starg_ply_find(ply, PLY_FACES),
                       *vertices = starg_ply_find(ply, PLY_VERTICES);
     bool late = faces < vertices;
@@ -213,15 +240,14 @@ static starg_status read_data(ply_reader *ply) {
         const ply_element *element = &ply->elements.data[i];
         if (element == faces)
             begin_of_faces = ply->scan;
-        STARG_TRY(read_items(ply, element, late && element == faces));
+        TRY(read_items(ply, element, late && element == faces));
     }
-    STARG_TRY(check_end(ply));
+    TRY(check_end(ply));
     if (late) {
         ply->scan = begin_of_faces;
-        STARG_TRY(read_items(ply, faces, false));
+        TRY(read_items(ply, faces, false));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Reads the data from its beginning into an empty builder. */
@@ -262,7 +288,6 @@ starg_status starg_ply_read(starg_mesh_builder *builder) {
                                     starg_ply_find(&ply, PLY_FACES)->count));
     STARG_TRY(read_either_way(&ply));
 done:
-    STARG_ARRAY_FREE(builder->source->context, &ply.elements);
-    STARG_ARRAY_FREE(builder->source->context, &ply.properties);
+    RELEASE(ply.elements.data, ply.properties.data, ply.names.data);
     return status;
 }

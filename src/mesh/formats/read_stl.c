@@ -4,7 +4,6 @@
  *
  * Many binary files start with "solid", so a size that matches the triangle count is tested first,
  * then whether the header contains a zero byte, which text never does. */
-#include <string.h>
 #include <strings.h>
 
 #include "mesh/formats/scan.h"
@@ -66,63 +65,56 @@ static starg_status expect_keyword(starg_scan *scan, const char *keyword) {
 /* After "facet": normal, outer loop, three points, endloop, endfacet. Normals of zero-area facets
  * are written in many ways, so their numbers may be anything. */
 static starg_status read_facet(starg_scan *scan, starg_weld *weld) {
-    starg_status status = STARG_OK;
     starg_place place = starg_at_line(scan->line);
     starg_word ignored;
     double point[3];
-    STARG_TRY(expect_keyword(scan, "normal"));
+    TRY(expect_keyword(scan, "normal"));
     for (int k = 0; k < 3; k++)
-        STARG_TRY(starg_scan_expect(scan, "a coordinate of a normal", &ignored));
-    STARG_TRY(expect_keyword(scan, "outer"));
-    STARG_TRY(expect_keyword(scan, "loop"));
+        TRY(starg_scan_expect(scan, "a coordinate of a normal", &ignored));
+    TRY(expect_keyword(scan, "outer"));
+    TRY(expect_keyword(scan, "loop"));
     for (int corner = 0; corner < 3; corner++) {
-        STARG_TRY(expect_keyword(scan, "vertex"));
+        TRY(expect_keyword(scan, "vertex"));
         for (int k = 0; k < 3; k++)
-            STARG_TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
-        STARG_TRY(add_corner(weld, point, starg_at_line(scan->line)));
+            TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
+        TRY(add_corner(weld, point, starg_at_line(scan->line)));
     }
-    STARG_TRY(expect_keyword(scan, "endloop"));
-    STARG_TRY(expect_keyword(scan, "endfacet"));
-    STARG_TRY(starg_builder_face(weld->builder, place));
-    STARG_TRY(starg_builder_tick(weld->builder, (size_t)(scan->at - scan->source->bytes)));
-done:
-    return status;
+    TRY(expect_keyword(scan, "endloop"));
+    TRY(expect_keyword(scan, "endfacet"));
+    TRY(starg_builder_face(weld->builder, place));
+    return starg_builder_tick(weld->builder, (size_t)(scan->at - scan->source->bytes));
 }
 
 /* Reads facets up to "endsolid"; after either keyword the rest of the line is a name. */
 static starg_status read_solid(starg_scan *scan, starg_weld *weld) {
-    starg_status status = STARG_OK;
     starg_word word;
-    STARG_TRY(expect_keyword(scan, "solid"));
+    TRY(expect_keyword(scan, "solid"));
     starg_scan_next_line(scan);
     for (;;) {
-        STARG_TRY(starg_scan_expect(scan, "facet or endsolid", &word));
+        TRY(starg_scan_expect(scan, "facet or endsolid", &word));
         if (keyword_is(word, "endsolid"))
             break;
         if (!keyword_is(word, "facet"))
             return starg_source_fail(scan->source, starg_at_line(word.line),
                                      "found '%s' instead of 'facet' or 'endsolid'",
                                      starg_word_excerpt(word).text);
-        STARG_TRY(read_facet(scan, weld));
+        TRY(read_facet(scan, weld));
     }
     starg_scan_next_line(scan);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Reads all solids of the text. */
 static starg_status read_text(const starg_source *source, starg_weld *weld) {
-    starg_status status = STARG_OK;
     starg_scan scan = starg_scan_make(source);
     starg_scan ahead;
     starg_word word;
     scan.comments = false; /* STL has none, and names may contain any character */
     do {
-        STARG_TRY(read_solid(&scan, weld));
+        TRY(read_solid(&scan, weld));
         ahead = scan;
     } while (starg_scan_word(&ahead, &word));
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Bytes after the triangles are ignored. */
@@ -148,8 +140,7 @@ static starg_status check_size(const starg_source *source) {
 
 static starg_status read_binary(const starg_source *source, starg_weld *weld) {
     enum { NORMAL = 12, POINT = 12, COORDINATE = 4 };
-    starg_status status = STARG_OK;
-    STARG_TRY(check_size(source));
+    TRY(check_size(source));
     for (size_t at = HEADER; at < announced_size(source); at += RECORD) {
         for (size_t corner = 0; corner < 3; corner++) {
             double point[3];
@@ -160,13 +151,12 @@ static starg_status read_binary(const starg_source *source, starg_weld *weld) {
                 memcpy(&value, &bits, sizeof value);
                 point[k] = (double)value;
             }
-            STARG_TRY(add_corner(weld, point, starg_at_byte(begin)));
+            TRY(add_corner(weld, point, starg_at_byte(begin)));
         }
-        STARG_TRY(starg_builder_face(weld->builder, starg_at_byte(at)));
-        STARG_TRY(starg_builder_tick(weld->builder, at));
+        TRY(starg_builder_face(weld->builder, starg_at_byte(at)));
+        TRY(starg_builder_tick(weld->builder, at));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_stl_read(starg_mesh_builder *builder) {

@@ -4,7 +4,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 starg_scan starg_scan_make(const starg_source *source) {
     return (starg_scan){.source = source,
@@ -118,9 +117,7 @@ starg_status starg_scan_extra_numbers(starg_scan *scan, size_t limit, const char
     starg_word word;
     for (size_t count = 0; starg_scan_word_here(scan, &word); count++) {
         double ignored;
-        starg_status status = starg_word_real(scan, word, what, &ignored);
-        if (status != STARG_OK)
-            return status;
+        TRY(starg_word_real(scan, word, what, &ignored));
         if (count == limit)
             return starg_source_fail(scan->source, starg_at_line(word.line),
                                      "more than %zu numbers where %s is expected", limit, what);

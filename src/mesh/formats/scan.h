@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scanner for text in memory: words between blanks, with their lines. Callers can restrict a read
  * to the current line. Lines end with LF, CR LF or CR. */
-#ifndef STARG_MESH_FORMATS_SCAN_H
-#define STARG_MESH_FORMATS_SCAN_H
+#pragma once
 
 #include "mesh/formats/io.h"
 
@@ -61,5 +60,3 @@ bool starg_parse_real(const char *text, size_t length, double *value);
 
 /* A decimal integer that fills the text and fits. */
 bool starg_parse_integer(const char *text, size_t length, int64_t *value);
-
-#endif

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a mesh of any format; the file gets its name once it is complete. */
 #include <math.h>
-#include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "mesh/formats/io.h"
 #include "mesh/single.h"
 
@@ -64,8 +61,7 @@ static starg_status check_single(starg_context *context, const starg_mesh *mesh,
 static starg_status move_to_origin(starg_context *context, const starg_mesh *mesh,
                                    const double origin[3], starg_mesh_extras *extras,
                                    starg_mesh **moved) {
-    starg_status status = STARG_OK;
-    double *back = NULL;
+    SCOPED double *back = NULL;
     const single_place place = {.stage = STARG_MESH_FILE,
                                 .what = "the mesh",
                                 .how = "about this origin",
@@ -76,46 +72,38 @@ static starg_status move_to_origin(starg_context *context, const starg_mesh *mes
         if (!(fabs(origin[k]) < STARG_COORDINATE_LIMIT))
             return starg_fail(context, STARG_ERROR_ARGUMENT, STARG_MESH_FILE,
                               "the origin must be finite and below 1e100");
-    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
-                                mesh->face_count, moved));
-    STARG_NEW(context, STARG_MESH_FILE, back, 3 * mesh->vertex_count);
+    TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
+                          mesh->face_count, moved));
+    NEW(context, STARG_MESH_FILE, back, 3 * mesh->vertex_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
         (*moved)->vertices[i] -= origin[i % 3];
         back[i] = (*moved)->vertices[i] + origin[i % 3];
     }
-    STARG_TRY(single_compare(context, mesh, back, &place));
+    TRY(single_compare(context, mesh, back, &place));
     snprintf(extras->note, sizeof extras->note, "origin %.17g %.17g %.17g", origin[0], origin[1],
              origin[2]);
-done:
-    starg_release(context, back);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh, const char *path,
                               const starg_mesh_write_options *options) {
-    starg_status status = STARG_OK;
     starg_mesh_write_options defaults;
     starg_mesh_write_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
     starg_mesh_format format = options->format;
-    starg_output output = {0};
-    starg_c_locale locale = {0};
-    starg_mesh *moved = NULL;
+    SCOPED_BY(starg_output_discard) starg_output output = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
+    SCOPED_BY(starg_mesh_drop) starg_mesh *moved = NULL;
     starg_mesh_extras extras = {.colors = options->face_colors};
-    STARG_TRY(choose_format(context, path, &format));
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(move_to_origin(context, mesh, options->origin, &extras, &moved));
+    TRY(choose_format(context, path, &format));
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(move_to_origin(context, mesh, options->origin, &extras, &moved));
     mesh = moved != NULL ? moved : mesh;
     if (format == STARG_MESH_STL_BINARY)
-        STARG_TRY(check_single(context, mesh, path));
-    STARG_TRY(starg_output_open(context, STARG_MESH_FILE, path, &output));
+        TRY(check_single(context, mesh, path));
+    TRY(starg_output_open(context, STARG_MESH_FILE, path, &output));
     writers[format](output.stream, mesh, &extras);
-    STARG_TRY(starg_check_cancel(context, STARG_MESH_FILE));
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_output_discard(&output);
-    starg_mesh_free(moved);
-    starg_c_locale_leave(&locale);
-    return status;
+    TRY(starg_check_cancel(context, STARG_MESH_FILE));
+    return starg_output_commit(&output);
 }

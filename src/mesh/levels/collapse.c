@@ -14,11 +14,7 @@
  * of its points is enough. The component's volume shows whether it turns inside out. */
 #include "mesh/levels/collapse.h"
 
-#include <math.h>
-
 #include "geometry/predicates.h"
-#include "geometry/vec3.h"
-#include "mesh/topology.h"
 
 /* Cosine of the largest rotation of a normal. */
 static const double LARGEST_TURN = 0.2;

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Decides whether an edge of a surface can be collapsed to a point. */
-#ifndef STARG_MESH_LEVELS_COLLAPSE_H
-#define STARG_MESH_LEVELS_COLLAPSE_H
-
-#include <stdbool.h>
+#pragma once
 
 #include "geometry/vec3.h"
-#include "mesh/levels/surface.h"
 #include "mesh/repair/dynamic_bvh.h"
 
 /* Quadric error metrics [Garland, Heckbert 1997]: weighted sum of squared distances to planes and
@@ -106,5 +102,3 @@ bool collapse_keeps_shape(const mesh_surface *surface, const collapse_star *star
  * unchanged. */
 bool collapse_keeps_embedding(mesh_surface *surface, const dynamic_bvh *tree,
                               const collapse_star *star, const double position[3]);
-
-#endif

@@ -3,8 +3,6 @@
  * the levels are half of a binary heap's. */
 #include "mesh/levels/heap.h"
 
-#include "core/memory.h"
-
 enum { CHILDREN = 4 };
 
 starg_status heap_create(starg_context *context, size_t items, mesh_heap **out) {
@@ -27,9 +25,7 @@ done:
 void heap_free(mesh_heap *heap) {
     if (heap == NULL)
         return;
-    starg_release(heap->context, heap->entries);
-    starg_release(heap->context, heap->slot);
-    starg_release(heap->context, heap);
+    RELEASE(heap->entries, heap->slot, heap);
 }
 
 static bool before(heap_entry a, heap_entry b) {

@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Priority queue over the items 0 to n - 1 with mutable keys. */
-#ifndef STARG_MESH_LEVELS_HEAP_H
-#define STARG_MESH_LEVELS_HEAP_H
+#pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "core/context.h"
-#include "core/private.h"
+#include "core/memory.h"
 
 typedef struct heap_entry {
     double key;
@@ -28,6 +22,7 @@ typedef struct mesh_heap {
 starg_status heap_create(starg_context *context, size_t items, mesh_heap **out)
     STARG_PRIVATE(heap_create);
 void heap_free(mesh_heap *heap) STARG_PRIVATE(heap_free);
+STARG_DROP(heap, mesh_heap)
 
 /* Inserts an item or changes its key; keys are not NaN. O(log n). */
 void heap_set(mesh_heap *heap, uint32_t item, double key) STARG_PRIVATE(heap_set);
@@ -39,5 +34,3 @@ bool heap_pop(mesh_heap *heap, uint32_t *item) STARG_PRIVATE(heap_pop);
 static inline bool heap_contains(const mesh_heap *heap, uint32_t item) {
     return heap->slot[item] != HEAP_NONE;
 }
-
-#endif

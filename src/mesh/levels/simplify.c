@@ -20,10 +20,6 @@
  * log n), 5 to 15 us a collapse, mostly for nearby faces. */
 #include "starguard/simplify.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/memory.h"
 #include "mesh/levels/collapse.h"
 #include "mesh/levels/heap.h"
 
@@ -220,45 +216,39 @@ static starg_status look_up(simplifier *s, size_t target) {
 
 /* Collapses edges until `target` vertices are left or nothing more can be gained. */
 static starg_status reduce(simplifier *s, size_t target) {
-    starg_status status = STARG_OK;
     uint32_t edge;
-    starg_progress_begin(s->context, "simplify");
+    IN_STAGE(s->context, "simplify");
     while (s->surface->vertices_left > target) {
         if (s->handled++ % CHECK_INTERVAL == 0)
-            STARG_TRY(look_up(s, target));
+            TRY(look_up(s, target));
         if (!next_edge(s, &edge))
             break;
-        STARG_TRY(try_collapse(s, edge));
+        TRY(try_collapse(s, edge));
     }
-done:
-    starg_progress_end(s->context);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- start and result ---- */
 
 static starg_status begin(simplifier *s, starg_context *context, const starg_mesh *mesh,
                           const starg_simplify_options *options) {
-    starg_status status = STARG_OK;
     s->context = context;
-    STARG_TRY(surface_create(context, mesh, &s->surface));
-    STARG_TRY(heap_create(context, s->surface->edge_count, &s->queue));
-    STARG_NEW_ZERO(context, "simplify", s->quadrics, mesh->vertex_count);
-    STARG_NEW(context, "simplify", s->attempt, s->surface->edge_count);
+    TRY(surface_create(context, mesh, &s->surface));
+    TRY(heap_create(context, s->surface->edge_count, &s->queue));
+    NEW_ZERO(context, "simplify", s->quadrics, mesh->vertex_count);
+    NEW(context, "simplify", s->attempt, s->surface->edge_count);
     if (options == NULL || !options->allow_intersections)
-        STARG_TRY(dynamic_bvh_create(context, s->surface, &s->tree));
+        TRY(dynamic_bvh_create(context, s->surface, &s->tree));
     make_quadrics(s);
     enter_all(s);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void end(simplifier *s) {
     surface_free(s->surface);
     dynamic_bvh_free(s->tree);
     heap_free(s->queue);
-    starg_release(s->context, s->quadrics);
-    starg_release(s->context, s->attempt);
+    RELEASE(s->quadrics, s->attempt);
 }
 
 /* Makes a mesh of the current surface, and maps each input vertex to its vertex there. */
@@ -285,8 +275,7 @@ static starg_status snapshot(const mesh_surface *surface, uint32_t *number, star
                                surface->faces_left, out));
 done:
     if (status != STARG_OK) {
-        starg_release(context, vertices);
-        starg_release(context, faces);
+        RELEASE(vertices, faces);
     }
     return status;
 }
@@ -437,6 +426,5 @@ void starg_levels_free(starg_context *context, starg_levels *levels) {
         starg_mesh_free(levels->levels[i].mesh);
         starg_release(context, levels->levels[i].vertex_map);
     }
-    starg_release(context, levels->levels);
-    starg_release(context, levels);
+    RELEASE(levels->levels, levels);
 }

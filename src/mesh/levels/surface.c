@@ -3,12 +3,7 @@
  * component volumes. Cost: O(degree of the removed vertex). */
 #include "mesh/levels/surface.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/topology.h"
 
 static starg_status fail_edge(starg_context *context, uint32_t a, uint32_t b, const char *what) {
     const uint64_t ends[2] = {a, b};
@@ -74,9 +69,8 @@ static void find_used(mesh_surface *s) {
 
 /* Measured from a corner of each component, so that small distant ones do not lose digits. */
 static starg_status measure_volumes(mesh_surface *s) {
-    starg_status status = STARG_OK;
-    uint32_t *origin = NULL;
-    STARG_NEW(s->context, "simplify", origin, s->component_count);
+    SCOPED uint32_t *origin = NULL;
+    NEW(s->context, "simplify", origin, s->component_count);
     memset(origin, 0xff, s->component_count * sizeof *origin);
     for (size_t f = 0; f < s->face_count; f++) {
         const uint32_t *corner = surface_face(s, f), c = s->component[f];
@@ -87,9 +81,7 @@ static starg_status measure_volumes(mesh_surface *s) {
             surface_difference(s, surface_at(s, corner[k]), surface_at(s, origin[c]), p[k]);
         s->volume[c] += vec3_triple(p[0], p[1], p[2]);
     }
-done:
-    starg_release(s->context, origin);
-    return status;
+    return STARG_OK;
 }
 
 /* Limited so that the scale and its inverse are finite. */
@@ -100,46 +92,39 @@ static double scale_of(const starg_mesh *mesh) {
 
 /* Takes the components from the topology. */
 static starg_status fill(mesh_surface *s, const starg_mesh *mesh, mesh_topology *topology) {
-    starg_status status = STARG_OK;
     starg_context *context = s->context;
     s->vertex_count = mesh->vertex_count;
     s->face_count = s->faces_left = mesh->face_count;
     s->edge_count = 3 * mesh->face_count / 2; /* two of an edge that four faces share */
     s->component_count = topology->component_count;
     s->scale = scale_of(mesh);
-    STARG_NEW(context, "simplify", s->vertices, 3 * s->vertex_count);
-    STARG_TRY(halfedges_create(topology, mesh, "simplify", &s->mesh));
-    STARG_NEW(context, "simplify", s->edge, 3 * s->face_count);
-    STARG_NEW(context, "simplify", s->halfedge, s->edge_count);
-    STARG_NEW(context, "simplify", s->merged, s->vertex_count);
-    STARG_NEW_ZERO(context, "simplify", s->volume, s->component_count);
+    NEW(context, "simplify", s->vertices, 3 * s->vertex_count);
+    TRY(halfedges_create(topology, mesh, "simplify", &s->mesh));
+    NEW(context, "simplify", s->edge, 3 * s->face_count);
+    NEW(context, "simplify", s->halfedge, s->edge_count);
+    NEW(context, "simplify", s->merged, s->vertex_count);
+    NEW_ZERO(context, "simplify", s->volume, s->component_count);
     memcpy(s->vertices, mesh->vertices, 3 * s->vertex_count * sizeof *s->vertices);
     s->component = topology->component;
     topology->component = NULL;
     number_edges(s);
     find_used(s);
-    STARG_TRY(check_fans(s));
-    STARG_TRY(measure_volumes(s));
-done:
-    return status;
+    TRY(check_fans(s));
+    return measure_volumes(s);
 }
 
 starg_status surface_create(starg_context *context, const starg_mesh *mesh, mesh_surface **out) {
-    starg_status status = STARG_OK;
-    mesh_surface *surface = NULL;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(surface_drop) mesh_surface *surface = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     *out = NULL;
-    STARG_TRY(wings_create(context, mesh, &topology));
-    STARG_TRY(check_edges(context, mesh, topology));
-    STARG_NEW_ZERO(context, "simplify", surface, 1);
+    TRY(wings_create(context, mesh, &topology));
+    TRY(check_edges(context, mesh, topology));
+    NEW_ZERO(context, "simplify", surface, 1);
     surface->context = context;
-    STARG_TRY(fill(surface, mesh, topology));
+    TRY(fill(surface, mesh, topology));
     *out = surface;
     surface = NULL;
-done:
-    topology_free(topology);
-    surface_free(surface);
-    return status;
+    return STARG_OK;
 }
 
 void surface_free(mesh_surface *surface) {
@@ -147,12 +132,8 @@ void surface_free(mesh_surface *surface) {
         return;
     starg_release(surface->context, surface->vertices);
     halfedges_free(&surface->mesh);
-    starg_release(surface->context, surface->edge);
-    starg_release(surface->context, surface->halfedge);
-    starg_release(surface->context, surface->merged);
-    starg_release(surface->context, surface->component);
-    starg_release(surface->context, surface->volume);
-    starg_release(surface->context, surface);
+    RELEASE(surface->edge, surface->halfedge, surface->merged, surface->component, surface->volume,
+            surface);
 }
 
 /* Change of the volume in a collapse: the star of either end, as seen from the new position. */

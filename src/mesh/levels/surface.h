@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Closed surface under edge collapses: halfedges with the positions, edge numbers and component
  * data that simplification needs. */
-#ifndef STARG_MESH_LEVELS_SURFACE_H
-#define STARG_MESH_LEVELS_SURFACE_H
-
-#include <stdbool.h>
+#pragma once
 
 #include "mesh/halfedges.h"
 
@@ -28,6 +25,7 @@ typedef struct mesh_surface {
  * indices), MEMORY. */
 starg_status surface_create(starg_context *context, const starg_mesh *mesh, mesh_surface **out);
 void surface_free(mesh_surface *surface);
+STARG_DROP(surface, mesh_surface)
 
 /* Collapses an edge that satisfies the link condition (see collapse.h): merges the vertex at the
  * end of the halfedge into the one at its start, which moves to `position`. */
@@ -48,5 +46,3 @@ static inline void surface_difference(const mesh_surface *surface, const double 
     for (int k = 0; k < 3; k++)
         out[k] = (a[k] - b[k]) * surface->scale;
 }
-
-#endif

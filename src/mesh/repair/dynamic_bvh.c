@@ -7,8 +7,6 @@
 
 #include <math.h>
 
-#include "core/memory.h"
-
 enum { STACK_SIZE = 128 };
 
 /* The box of a leaf whose faces are all dead: meets none. */
@@ -16,22 +14,19 @@ static const bvh_box NOWHERE = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INF
 
 static void clear(dynamic_bvh *n) {
     bvh_free(n->tree);
-    starg_release(n->context, n->corners);
-    starg_release(n->context, n->face);
-    starg_release(n->context, n->parent);
+    RELEASE(n->corners, n->face, n->parent);
     n->tree = NULL;
     n->corners = n->face = n->parent = NULL;
 }
 
 /* Lists the living faces. */
 static starg_status list_faces(dynamic_bvh *n, uint32_t **listed) {
-    starg_status status = STARG_OK;
     const mesh_surface *surface = n->surface;
     size_t count = 0;
     for (uint32_t f = 0; f < surface->face_count; f++)
         count += halfedges_face_lives(&surface->mesh, f);
-    STARG_NEW(n->context, "simplify", n->corners, 3 * count);
-    STARG_NEW(n->context, "simplify", *listed, count);
+    NEW(n->context, "simplify", n->corners, 3 * count);
+    NEW(n->context, "simplify", *listed, count);
     n->listed = 0;
     for (uint32_t f = 0; f < surface->face_count; f++) {
         if (!halfedges_face_lives(&surface->mesh, f))
@@ -40,8 +35,7 @@ static starg_status list_faces(dynamic_bvh *n, uint32_t **listed) {
             n->corners[3 * n->listed + k] = surface_face(surface, f)[k];
         (*listed)[n->listed++] = f;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_leaf(const dynamic_bvh *n, const bvh_node *node) {
@@ -61,18 +55,15 @@ static void link_nodes(dynamic_bvh *n) {
 }
 
 static starg_status build(dynamic_bvh *n) {
-    starg_status status = STARG_OK;
-    uint32_t *listed = NULL;
-    STARG_TRY(list_faces(n, &listed));
-    STARG_TRY(bvh_create(n->context, n->surface->vertices, n->corners, n->listed, &n->tree));
-    STARG_NEW(n->context, "simplify", n->face, n->listed);
-    STARG_NEW(n->context, "simplify", n->parent, n->tree->node_count);
+    SCOPED uint32_t *listed = NULL;
+    TRY(list_faces(n, &listed));
+    TRY(bvh_create(n->context, n->surface->vertices, n->corners, n->listed, &n->tree));
+    NEW(n->context, "simplify", n->face, n->listed);
+    NEW(n->context, "simplify", n->parent, n->tree->node_count);
     for (size_t rank = 0; rank < n->listed; rank++)
         n->face[rank] = listed[n->tree->order[rank]];
     link_nodes(n);
-done:
-    starg_release(n->context, listed);
-    return status;
+    return STARG_OK;
 }
 
 starg_status dynamic_bvh_create(starg_context *context, const mesh_surface *surface,
@@ -96,8 +87,7 @@ void dynamic_bvh_free(dynamic_bvh *tree) {
     if (tree == NULL)
         return;
     clear(tree);
-    starg_release(tree->context, tree->leaf);
-    starg_release(tree->context, tree);
+    RELEASE(tree->leaf, tree);
 }
 
 /* Extends a box to contain another; false if it already did. */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Dynamic bounding volume hierarchy over the faces of a changing surface. */
-#ifndef STARG_MESH_REPAIR_DYNAMIC_BVH_H
-#define STARG_MESH_REPAIR_DYNAMIC_BVH_H
+#pragma once
 
 #include "geometry/bvh.h"
 #include "mesh/levels/surface.h"
@@ -44,5 +43,3 @@ static inline bvh_box dynamic_bvh_face_box(const mesh_surface *surface, const ui
     }
     return box;
 }
-
-#endif

@@ -9,70 +9,11 @@
  *
  * Without a union, overlapping components stay and are counted in intersections_after; the winding
  * number defines one solid from them. */
-#include <math.h>
 
+#include "mesh/repair/repair.h"
 #include "core/fields.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
-#include "mesh/repair/repair.h"
-#include "mesh/union/union.h"
-
-/* Replaces a self-intersecting surface by the boundary of what it encloses (mesh/union). Kept faces
- * come first, in order, then the parts of the others. The result may touch itself along edges or at
- * vertices and must then be split. */
-
-/* Appends new vertices after the existing ones. */
-static starg_status take_vertices(repair_state *state, const union_surface *result) {
-    starg_status status = STARG_OK;
-    for (size_t v = repair_vertex_count(state); v < result->vertices.count / 3; v++) {
-        uint32_t vertex;
-        STARG_TRY(repair_add_vertex(state, result->vertices.data + 3 * v, REPAIR_NEW, &vertex));
-    }
-done:
-    return status;
-}
-
-static starg_status take_faces(repair_state *state, const union_surface *result) {
-    starg_status status = STARG_OK;
-    size_t before = repair_face_count(state);
-    uint8_t *cut = NULL;
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, cut, before);
-    for (size_t f = 0; f < before; f++)
-        state->flags.data[f] |= REPAIR_GONE;
-    for (size_t f = 0; f < union_face_count(result); f++) {
-        uint32_t origin = result->origin.data[f];
-        const uint32_t *corner = result->faces.data + 3 * f;
-        if (result->flags.data[f] & UNION_PART) {
-            state->report.faces_cut += !cut[origin];
-            cut[origin] = 1;
-            STARG_TRY(repair_add_face(state, corner[0], corner[1], corner[2], REPAIR_ADDED));
-        } else {
-            state->flags.data[origin] &= (uint8_t)~REPAIR_GONE;
-            memcpy(repair_face(state, origin), corner, 3 * sizeof *corner);
-        }
-    }
-    repair_compact(state);
-done:
-    starg_release(state->context, cut);
-    return status;
-}
-
-/* Replaces the surface by the boundary of what it encloses. Requires a closed surface with oriented
- * shells; leaves non-manifold edges and vertices to repair_split. */
-static starg_status repair_unite(repair_state *state) {
-    starg_status status = STARG_OK;
-    union_surface result = {.context = state->context};
-    union_report report;
-    starg_mesh view = repair_view(state);
-    STARG_TRY(union_of_mesh(state->context, &view, &result, &report));
-    STARG_TRY(take_vertices(state, &result));
-    STARG_TRY(take_faces(state, &result));
-    state->report.union_rounds = report.rounds;
-    state->report.rounding = report.moved;
-done:
-    union_surface_free(&result);
-    return status;
-}
 
 static const starg_field OPTIONS[] = {
     {.key = "merge_distance",
@@ -99,6 +40,15 @@ static const starg_field OPTIONS[] = {
      .initial = 10,
      .value = "N",
      .help = "Number of attempts to resolve self-intersections."},
+    {.key = "max_change",
+     .option = "max-change",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_repair_options, max_change),
+     .high = 1e6,
+     .standard = 0.01,
+     .value = "F",
+     .help = "Refuse a result whose volume differs by more than this fraction from that of the "
+             "model, where that is closed. Unions may lose what lies within others."},
     {.key = "union",
      .option = "union",
      .kind = STARG_FIELD_FLAG,
@@ -136,49 +86,68 @@ static bool needs_nothing(const starg_check *check, const starg_repair_options *
 /* Combinatorial stages. Coincident vertices are merged only if the surface is broken or a distance
  * is given: a valid surface may touch itself. */
 static starg_status mend_surface(repair_state *state, const starg_check *before) {
-    starg_status status = STARG_OK;
     bool sound = before->closed && before->manifold;
     if (!sound || state->options.merge_distance > 0)
-        STARG_TRY(repair_weld(state));
+        TRY(repair_conform(state));
+    TRY(repair_measure(state, &state->report.closed_before, &state->report.enclosed_before));
     repair_drop_repeated(state);
-    STARG_TRY(repair_drop_duplicates(state));
-    STARG_TRY(repair_drop_fins(state));
-    STARG_TRY(repair_orient(state));
-    STARG_TRY(repair_split(state));
-    STARG_TRY(repair_degenerate(state));
-    STARG_TRY(repair_split(state)); /* dropping faces may leave two fans at a vertex */
-done:
-    return status;
+    TRY(repair_drop_duplicates(state));
+    TRY(repair_drop_fins(state));
+    TRY(repair_orient(state));
+    TRY(repair_split(state));
+    TRY(repair_degenerate(state));
+    TRY(repair_split(state)); /* dropping faces may leave two fans at a vertex */
+    return STARG_OK;
+}
+
+/* A surface that is closed once what touches is joined has its volume; stages up to
+ * here are not to change it, unless asked. Those that follow resolve intersections, where it means
+ * little. */
+static starg_status compare_volumes(repair_state *state) {
+    starg_repair_report *r = &state->report;
+    bool closed;
+    TRY(repair_measure(state, &closed, &r->enclosed_after));
+    /* of a surface whose faces all stand twice, front and back, nothing can be said */
+    r->closed_before = r->closed_before && r->enclosed_before > 1e-9 * r->enclosed_after;
+    if (!r->closed_before || state->options.unite)
+        return STARG_OK;
+    double change = fabs(r->enclosed_after - r->enclosed_before);
+    if (!(change > state->options.max_change * r->enclosed_before) || !closed)
+        return STARG_OK;
+    return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
+                      "the shells enclosed a volume of %.6g before, and %.6g after repair; "
+                      "--max-change %.2g accepts that",
+                      r->enclosed_before, r->enclosed_after,
+                      fmin(1e6, 1.01 * change / r->enclosed_before));
+    return STARG_OK;
 }
 
 /* From an oriented manifold to the boundary of a solid. */
 static starg_status close_surface(repair_state *state) {
-    starg_status status = STARG_OK;
-    STARG_TRY(repair_fill_holes(state));
-    STARG_TRY(repair_degenerate(
+    TRY(repair_fill_holes(state));
+    TRY(repair_degenerate(
         state)); /* filling loops with collinear corners can make zero-area faces */
-    STARG_TRY(repair_drop_flat(state));
+    TRY(repair_drop_flat(state));
+    TRY(compare_volumes(state));
     if (!state->options.unite) {
-        STARG_TRY(repair_untangle(state));
-        STARG_TRY(repair_drop_flat(state)); /* cutting out may have closed a pocket */
+        TRY(repair_untangle(state));
+        TRY(repair_drop_flat(state)); /* cutting out may have closed a pocket */
     }
-    STARG_TRY(repair_drop_isolated(state));
-    STARG_TRY(repair_turn_shells(state));
+    TRY(repair_drop_isolated(state));
+    TRY(repair_turn_shells(state));
     if (state->options.unite) {
-        STARG_TRY(repair_unite(state));
-        STARG_TRY(repair_split(state));
-        STARG_TRY(repair_drop_isolated(state));
+        TRY(repair_unite(state));
+        TRY(repair_split(state));
+        TRY(repair_drop_isolated(state));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status describe_vertices(repair_state *state) {
-    starg_status status = STARG_OK;
     starg_repair_report *report = &state->report;
     size_t different = 0;
-    uint8_t *seen = NULL;
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, seen, state->input->vertex_count);
+    SCOPED uint8_t *seen = NULL;
+    NEW_ZERO(state->context, REPAIR_STAGE, seen, state->input->vertex_count);
     for (size_t v = 0; v < repair_vertex_count(state); v++) {
         uint32_t origin = state->origin.data[v];
         if (origin == REPAIR_NEW) {
@@ -194,9 +163,7 @@ static starg_status describe_vertices(repair_state *state) {
         seen[origin] = 1;
     }
     report->vertices_dropped = state->input->vertex_count - different - report->vertices_merged;
-done:
-    starg_release(state->context, seen);
-    return status;
+    return STARG_OK;
 }
 
 static void describe_faces(repair_state *state) {
@@ -215,6 +182,13 @@ static starg_status fail_empty(repair_state *state) {
     if (state->input->face_count == 0)
         return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
                           "the mesh has no faces: there is nothing to repair");
+    double distance;
+    TRY(repair_suggest(state, &distance));
+    if (distance > 0)
+        return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
+                          "nothing is left that encloses volume, since faces do not meet; "
+                          "--merge-distance %.0e closes the surface",
+                          distance);
     return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
                       "nothing is left that encloses volume: of %zu faces, %zu belong to one-sided "
                       "surfaces (such as a Moebius strip), and %zu components are flat",
@@ -297,7 +271,11 @@ starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
     if (!needs_nothing(before, options)) {
         STARG_TRY(mend_surface(&state, before));
         STARG_TRY(close_surface(&state));
-    }
+    } else
+        STARG_TRY(
+            repair_measure(&state, &state.report.closed_before, &state.report.enclosed_before));
+    bool closed;
+    STARG_TRY(repair_measure(&state, &closed, &state.report.enclosed_after));
     STARG_TRY(finish(&state, before, out));
     *report = state.report;
 done:

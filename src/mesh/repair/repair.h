@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Repair stages, in the order of starg_mesh_repair. Each works on the result of the stages before
  * it. Errors of all: MEMORY, CANCELLED. */
-#ifndef STARG_MESH_REPAIR_REPAIR_H
-#define STARG_MESH_REPAIR_REPAIR_H
+#pragma once
 
-#include "core/memory.h"
 #include "geometry/bvh.h"
-#include "mesh/mesh.h"
 #include "mesh/topology.h"
 #include "starguard/repair.h"
 
@@ -21,7 +18,8 @@
 enum {
     REPAIR_TURNED = 1, /* reversed relative to the input */
     REPAIR_ADDED = 2,  /* not in the input */
-    REPAIR_GONE = 4    /* repair_compact removes it */
+    REPAIR_GONE = 4,   /* repair_compact removes it */
+    REPAIR_FILLED = 8  /* fills a hole */
 };
 
 typedef struct repair_state {
@@ -88,7 +86,7 @@ typedef struct repair_stars {
 } repair_stars;
 
 starg_status repair_stars_create(const repair_state *state, repair_stars *stars);
-void repair_stars_free(const repair_state *state, repair_stars *stars);
+void repair_stars_free(repair_stars *stars);
 
 /* A set of 64-bit keys other than UINT64_MAX. */
 typedef struct repair_keys {
@@ -149,8 +147,22 @@ typedef struct fill_job {
 starg_status repair_fill(const fill_job *job, const uint32_t *loop, size_t count,
                          fill_list *triangles, size_t *faults, bool *possible);
 
-/* Merges vertices at equal positions or within the merge distance. */
-starg_status repair_weld(repair_state *state);
+/* Makes shared what touches, within rounding or the merge distance: vertices, edges, faces in one
+ * plane. */
+starg_status repair_conform(repair_state *state);
+
+/* A merge distance, as a fraction of the diagonal, that leaves the input without open edges; 0 if
+ * none is found, or the mesh is large. Errors: MEMORY, CANCELLED, TIME. */
+starg_status repair_suggest(const repair_state *state, double *distance);
+
+/* The sum over parts connected by edges of the volume that each encloses, in whatever way it is
+ * turned; *closed is false if there are edges that bound more faces of one direction than of the
+ * other. Errors: MEMORY. */
+starg_status repair_measure(const repair_state *state, bool *closed, double *enclosed);
+
+/* Replaces the surface by the boundary of what it encloses. Requires a closed surface with oriented
+ * shells; leaves edges of more faces, and vertices of several fans, to repair_split. */
+starg_status repair_unite(repair_state *state);
 
 /* Drops faces that use a vertex twice. */
 void repair_drop_repeated(repair_state *state);
@@ -177,10 +189,9 @@ starg_status repair_fill_holes(repair_state *state);
 /* Drops components that enclose no volume. */
 starg_status repair_drop_flat(repair_state *state);
 
-/* Reverses closed shells where necessary so that faces point out of the solid. */
+/* Reverses closed shells where necessary so that faces point out of the solid; not what was an open
+ * sheet, closed by faces of a good part of its area. */
 starg_status repair_turn_shells(repair_state *state);
 
 /* Resolves local intersections within a component. Requires a closed, oriented manifold mesh. */
 starg_status repair_untangle(repair_state *state);
-
-#endif

@@ -157,18 +157,16 @@ static starg_status mend_once(repair_state *state, bool *changed) {
     repair_compact(state);
 done:
     topology_free(f.topology);
-    repair_stars_free(state, &f.stars);
+    repair_stars_free(&f.stars);
     starg_release(state->context, f.touched);
     return status;
 }
 
 starg_status repair_degenerate(repair_state *state) {
-    starg_status status = STARG_OK;
     bool changed = true;
     for (int round = 0; round < MAX_ROUNDS && changed; round++) {
-        STARG_TRY(mend_once(state, &changed));
-        STARG_TRY(starg_check_cancel(state->context, REPAIR_STAGE));
+        TRY(mend_once(state, &changed));
+        TRY(starg_check_cancel(state->context, REPAIR_STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Drops what the boundary of a solid cannot contain: faces with repeated corners, duplicate faces,
  * fins, and components without volume. */
-#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
@@ -53,10 +52,9 @@ static int compare_keys(const void *left, const void *right) {
 /* Keeps the first face of each set with equal corners. Marks it in `sheet` if both orientations
  * occurred: such a layer bounds nothing by itself. */
 static starg_status keep_first(repair_state *state, uint8_t *sheet) {
-    starg_status status = STARG_OK;
     size_t count = repair_face_count(state), kept = 0;
-    face_key *keys = NULL;
-    STARG_NEW(state->context, REPAIR_STAGE, keys, count);
+    SCOPED face_key *keys = NULL;
+    NEW(state->context, REPAIR_STAGE, keys, count);
     for (uint32_t f = 0; f < count; f++)
         keys[f] = make_key(state, f);
     qsort(keys, count, sizeof *keys, compare_keys);
@@ -73,9 +71,7 @@ static starg_status keep_first(repair_state *state, uint8_t *sheet) {
         if (!(state->flags.data[f] & REPAIR_GONE))
             sheet[kept++] = sheet[f];
     repair_compact(state);
-done:
-    starg_release(state->context, keys);
-    return status;
+    return STARG_OK;
 }
 
 /* Joins adjacent sheet faces into patches and lets the edges on a patch's border vote: for dropping
@@ -97,30 +93,24 @@ static void vote_on_sheets(const mesh_topology *topology, const uint8_t *sheet, 
 }
 
 starg_status repair_drop_duplicates(repair_state *state) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    uint8_t *sheet = NULL;
-    uint32_t *patch = NULL;
-    int64_t *votes = NULL;
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, sheet, repair_face_count(state));
-    STARG_TRY(keep_first(state, sheet));
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED uint8_t *sheet = NULL;
+    SCOPED uint32_t *patch = NULL;
+    SCOPED int64_t *votes = NULL;
+    NEW_ZERO(state->context, REPAIR_STAGE, sheet, repair_face_count(state));
+    TRY(keep_first(state, sheet));
     size_t count = repair_face_count(state);
-    STARG_NEW(state->context, REPAIR_STAGE, patch, count);
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, votes, count);
+    NEW(state->context, REPAIR_STAGE, patch, count);
+    NEW_ZERO(state->context, REPAIR_STAGE, votes, count);
     starg_mesh view = repair_view(state);
-    STARG_TRY(topology_create(state->context, &view, &topology));
+    TRY(topology_create(state->context, &view, &topology));
     sets_make(patch, count);
     vote_on_sheets(topology, sheet, patch, votes);
     for (uint32_t f = 0; f < count; f++)
         if (sheet[f] && votes[sets_find(patch, f)] > 0)
             state->flags.data[f] |= REPAIR_GONE;
     repair_compact(state);
-done:
-    topology_free(topology);
-    starg_release(state->context, sheet);
-    starg_release(state->context, patch);
-    starg_release(state->context, votes);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- fins ---- */
@@ -200,17 +190,17 @@ static void file_members(uint32_t *patch, size_t count, size_t *start, uint32_t 
 }
 
 starg_status repair_drop_fins(repair_state *state) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    size_t count = repair_face_count(state), *start = NULL;
-    uint32_t *patch = NULL, *members = NULL;
-    fin *fins = NULL;
-    STARG_NEW(state->context, REPAIR_STAGE, patch, count);
-    STARG_NEW(state->context, REPAIR_STAGE, members, count);
-    STARG_NEW(state->context, REPAIR_STAGE, fins, count);
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, start, count);
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    size_t count = repair_face_count(state);
+    SCOPED size_t *start = NULL;
+    SCOPED uint32_t *patch = NULL, *members = NULL;
+    SCOPED fin *fins = NULL;
+    NEW(state->context, REPAIR_STAGE, patch, count);
+    NEW(state->context, REPAIR_STAGE, members, count);
+    NEW(state->context, REPAIR_STAGE, fins, count);
+    NEW_ZERO(state->context, REPAIR_STAGE, start, count);
     starg_mesh view = repair_view(state);
-    STARG_TRY(topology_create(state->context, &view, &topology));
+    TRY(topology_create(state->context, &view, &topology));
     size_t fin_count = list_fins(topology, patch, fins);
     file_members(patch, count, start, members);
     for (size_t i = 0; i < fin_count; i++) {
@@ -221,13 +211,7 @@ starg_status repair_drop_fins(repair_state *state) {
             state->flags.data[own[k]] |= REPAIR_GONE;
     }
     repair_compact(state);
-done:
-    topology_free(topology);
-    starg_release(state->context, patch);
-    starg_release(state->context, members);
-    starg_release(state->context, fins);
-    starg_release(state->context, start);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- components without volume ---- */
@@ -276,12 +260,11 @@ static bool is_flat(const extent *own) {
 }
 
 starg_status repair_drop_flat(repair_state *state) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    extent *extents = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED extent *extents = NULL;
     starg_mesh view = repair_view(state);
-    STARG_TRY(topology_create(state->context, &view, &topology));
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, extents, topology->component_count);
+    TRY(topology_create(state->context, &view, &topology));
+    NEW_ZERO(state->context, REPAIR_STAGE, extents, topology->component_count);
     measure_boxes(&view, topology, extents);
     measure_faces(&view, topology, extents);
     for (size_t c = 0; c < topology->component_count; c++)
@@ -290,8 +273,44 @@ starg_status repair_drop_flat(repair_state *state) {
         if (is_flat(&extents[topology->component[f]]))
             state->flags.data[f] |= REPAIR_GONE;
     repair_compact(state);
-done:
-    topology_free(topology);
-    starg_release(state->context, extents);
-    return status;
+    return STARG_OK;
+}
+
+/* ---- enclosed volume ---- */
+
+/* Does each edge bound as many faces of one direction as of the other? */
+static bool is_balanced(const mesh_topology *topology, const starg_mesh *view) {
+    for (uint32_t h = 0; h < 3 * view->face_count; h++) {
+        long sum = 0;
+        uint32_t o = h;
+        do {
+            sum += view->faces[o] == view->faces[h] ? 1 : -1;
+            o = topology->ring[o];
+        } while (o != h);
+        if (sum != 0)
+            return false;
+    }
+    return true;
+}
+
+starg_status repair_measure(const repair_state *state, bool *closed, double *enclosed) {
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED double *volume = NULL;
+    double sum = 0;
+    starg_mesh view = repair_view(state);
+    *enclosed = 0;
+    TRY(topology_create(state->context, &view, &topology));
+    *closed = view.face_count > 0 && is_balanced(topology, &view);
+    NEW_ZERO(state->context, REPAIR_STAGE, volume, topology->component_count);
+    int exponent = starg_mesh_exponent(&view);
+    for (size_t f = 0; f < view.face_count && *closed; f++) {
+        double p[3][3];
+        for (size_t k = 0; k < 3; k++)
+            starg_mesh_scaled_corner(&view, f, k, exponent, p[k]);
+        volume[topology->component[f]] += vec3_triple(p[0], p[1], p[2]) / 6;
+    }
+    for (size_t c = 0; c < topology->component_count; c++)
+        sum += fabs(volume[c]);
+    *enclosed = ldexp(sum, 3 * exponent);
+    return STARG_OK;
 }

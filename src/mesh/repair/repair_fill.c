@@ -9,7 +9,6 @@
 #include "mesh/repair/repair.h"
 
 #include "geometry/vec3.h"
-#include "mesh/topology.h"
 
 enum { LIMIT = 192, ATTEMPTS = 6 };
 
@@ -116,27 +115,24 @@ static bool is_fault(const table *t, const uint32_t *places, size_t own) {
 
 /* Bans the faulty triangles of the solution; returns their number. */
 static starg_status ban_faults(table *t, const uint32_t *places, size_t *faults) {
-    starg_status status = STARG_OK;
     *faults = 0;
     for (size_t i = 0; i < t->count - 2; i++) {
         if (!is_fault(t, places, i))
             continue;
         const uint32_t *p = places + 3 * i;
-        STARG_TRY(repair_keys_add(t->job->state->context, &t->bans, triple_key(p[0], p[1], p[2])));
+        TRY(repair_keys_add(t->job->state->context, &t->bans, triple_key(p[0], p[1], p[2])));
         ++*faults;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Solves repeatedly; `best` keeps the places of the triangles with the fewest faults. */
 static starg_status attempt(table *t, uint32_t *best, size_t *faults, bool *possible) {
-    starg_status status = STARG_OK;
     starg_context *context = t->job->state->context;
     size_t n = t->count;
-    uint32_t *stack = NULL, *places = NULL;
-    STARG_NEW(context, REPAIR_STAGE, stack, 2 * n + 4);
-    STARG_NEW(context, REPAIR_STAGE, places, 3 * (n - 2));
+    SCOPED uint32_t *stack = NULL, *places = NULL;
+    NEW(context, REPAIR_STAGE, stack, 2 * n + 4);
+    NEW(context, REPAIR_STAGE, places, 3 * (n - 2));
     *faults = SIZE_MAX;
     for (int i = 0; i<ATTEMPTS && * faults> 0; i++) {
         size_t found;
@@ -145,16 +141,13 @@ static starg_status attempt(table *t, uint32_t *best, size_t *faults, bool *poss
         if (!*possible)
             break;
         trace(t, stack, places);
-        STARG_TRY(ban_faults(t, places, &found));
+        TRY(ban_faults(t, places, &found));
         if (found < *faults) {
             *faults = found;
             memcpy(best, places, 3 * (n - 2) * sizeof *best);
         }
     }
-done:
-    starg_release(context, stack);
-    starg_release(context, places);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status fill_small(const fill_job *job, const uint32_t *loop, size_t count,
@@ -171,11 +164,7 @@ static starg_status fill_small(const fill_job *job, const uint32_t *loop, size_t
     for (size_t i = 0; *possible && i < 3 * (count - 2); i++)
         STARG_PUSH(context, REPAIR_STAGE, triangles, loop[best[i]]);
 done:
-    starg_release(context, t.area);
-    starg_release(context, t.bad);
-    starg_release(context, t.apex);
-    starg_release(context, t.bans.slots);
-    starg_release(context, best);
+    RELEASE(t.area, t.bad, t.apex, t.bans.slots, best);
     return status;
 }
 
@@ -197,12 +186,12 @@ static size_t pick_places(const fill_job *job, const uint32_t *loop, size_t coun
 
 static starg_status fill_large(const fill_job *job, const uint32_t *loop, size_t count,
                                fill_list *triangles, size_t *faults, bool *possible) {
-    starg_status status = STARG_OK;
     starg_context *context = job->state->context;
-    size_t *places = NULL, before = triangles->count;
-    uint32_t *coarse = NULL;
-    STARG_NEW(context, REPAIR_STAGE, places, count + 1);
-    STARG_NEW(context, REPAIR_STAGE, coarse, count + 1);
+    SCOPED size_t *places = NULL;
+    size_t before = triangles->count;
+    SCOPED uint32_t *coarse = NULL;
+    NEW(context, REPAIR_STAGE, places, count + 1);
+    NEW(context, REPAIR_STAGE, coarse, count + 1);
     size_t picked = pick_places(job, loop, count, places);
     for (size_t i = 0; i < picked; i++)
         coarse[i] = loop[places[i]];
@@ -210,19 +199,16 @@ static starg_status fill_large(const fill_job *job, const uint32_t *loop, size_t
                 (places[picked - 1] - places[picked - 2] == 1 ||
                  !job->taken(job->user, coarse[picked - 2], coarse[picked - 1]));
     if (*possible)
-        STARG_TRY(fill_small(job, coarse, picked, triangles, faults, possible));
+        TRY(fill_small(job, coarse, picked, triangles, faults, possible));
     for (size_t i = 0; *possible && i + 1 < picked; i++) {
         size_t length = places[i + 1] - places[i] + 1, more = 0;
         if (length > 2)
-            STARG_TRY(repair_fill(job, loop + places[i], length, triangles, &more, possible));
+            TRY(repair_fill(job, loop + places[i], length, triangles, &more, possible));
         *faults += more;
     }
     if (!*possible)
         triangles->count = before;
-done:
-    starg_release(context, places);
-    starg_release(context, coarse);
-    return status;
+    return STARG_OK;
 }
 
 starg_status repair_fill(const fill_job *job, const uint32_t *loop, size_t count,

@@ -27,36 +27,31 @@ static bool edge_is_taken(const void *user, uint32_t a, uint32_t b) {
 }
 
 static starg_status add_edges(filler *f, const uint32_t corner[3]) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
-        STARG_TRY(repair_keys_add(f->state->context, &f->edges,
-                                  repair_edge_key(corner[k], corner[(k + 1) % 3])));
-done:
-    return status;
+        TRY(repair_keys_add(f->state->context, &f->edges,
+                            repair_edge_key(corner[k], corner[(k + 1) % 3])));
+    return STARG_OK;
 }
 
 static starg_status find_open_edges(filler *f) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     starg_mesh view = repair_view(f->state);
-    STARG_TRY(topology_create(f->state->context, &view, &topology));
-    STARG_NEW(f->state->context, REPAIR_STAGE, f->out, view.vertex_count);
-    STARG_NEW(f->state->context, REPAIR_STAGE, f->end, view.vertex_count);
-    STARG_NEW(f->state->context, REPAIR_STAGE, f->alias, view.vertex_count);
+    TRY(topology_create(f->state->context, &view, &topology));
+    NEW(f->state->context, REPAIR_STAGE, f->out, view.vertex_count);
+    NEW(f->state->context, REPAIR_STAGE, f->end, view.vertex_count);
+    NEW(f->state->context, REPAIR_STAGE, f->alias, view.vertex_count);
     for (size_t v = 0; v < view.vertex_count; v++)
         f->out[v] = TOPOLOGY_NONE;
     sets_make(f->alias, view.vertex_count);
     for (uint32_t h = 0; h < 3 * view.face_count; h++) {
         if (h % 3 == 0)
-            STARG_TRY(add_edges(f, view.faces + h));
+            TRY(add_edges(f, view.faces + h));
         if (topology->ring[h] != h)
             continue;
         f->out[view.faces[h]] = h;
         f->end[view.faces[h]] = view.faces[corner_next(h)];
     }
-done:
-    topology_free(topology);
-    return status;
+    return STARG_OK;
 }
 
 /* Finds the predecessors of v and w on their common loop, if both parts have at least three
@@ -90,7 +85,6 @@ static bool have_common_neighbour(const filler *f, uint32_t v, uint32_t w) {
 
 /* Replaces w by v in its faces and splits their loop. */
 static starg_status join_copies(filler *f, uint32_t v, uint32_t w, bool *joined) {
-    starg_status status = STARG_OK;
     uint32_t before_v, before_w;
     *joined = false;
     if (!find_before(f, v, w, &before_v, &before_w) || have_common_neighbour(f, v, w))
@@ -99,23 +93,21 @@ static starg_status join_copies(filler *f, uint32_t v, uint32_t w, bool *joined)
         uint32_t *corner = repair_face(f->state, f->stars.list[i]);
         for (int k = 0; k < 3; k++)
             corner[k] = corner[k] == w ? v : corner[k];
-        STARG_TRY(add_edges(f, corner));
+        TRY(add_edges(f, corner));
     }
     f->alias[w] = v;
     f->end[before_v] = w;
     f->end[before_w] = v;
     *joined = true;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Tries to join open copies of the same vertex in pairs. */
 static starg_status join_split_vertices(filler *f) {
-    starg_status status = STARG_OK;
-    uint32_t *waiting = NULL;
+    SCOPED uint32_t *waiting = NULL;
     size_t inputs = f->state->input->vertex_count;
-    STARG_NEW(f->state->context, REPAIR_STAGE, waiting, inputs);
-    STARG_TRY(repair_stars_create(f->state, &f->stars));
+    NEW(f->state->context, REPAIR_STAGE, waiting, inputs);
+    TRY(repair_stars_create(f->state, &f->stars));
     for (size_t v = 0; v < inputs; v++)
         waiting[v] = TOPOLOGY_NONE;
     for (uint32_t v = 0; v < repair_vertex_count(f->state); v++) {
@@ -124,22 +116,19 @@ static starg_status join_split_vertices(filler *f) {
         if (f->out[v] == TOPOLOGY_NONE || origin == REPAIR_NEW)
             continue;
         if (waiting[origin] != TOPOLOGY_NONE)
-            STARG_TRY(join_copies(f, waiting[origin], v, &joined));
+            TRY(join_copies(f, waiting[origin], v, &joined));
         waiting[origin] = joined ? TOPOLOGY_NONE : v;
     }
-done:
-    starg_release(f->state->context, waiting);
-    return status;
+    return STARG_OK;
 }
 
 /* Collects the loop through `first`, against the direction of its faces, and marks it as closed.
  * False if the open edges do not form a loop. */
 static starg_status collect_loop(filler *f, uint32_t first, bool *closed) {
-    starg_status status = STARG_OK;
     uint32_t v = first;
     f->loop.count = 0;
     while (f->out[v] != TOPOLOGY_NONE) {
-        STARG_PUSH(f->state->context, REPAIR_STAGE, &f->loop, f->alias[v]);
+        PUSH(f->state->context, REPAIR_STAGE, &f->loop, f->alias[v]);
         f->out[v] = TOPOLOGY_NONE;
         v = f->end[v];
     }
@@ -149,8 +138,7 @@ static starg_status collect_loop(filler *f, uint32_t first, bool *closed) {
         f->loop.data[j] = f->loop.data[i];
         f->loop.data[i] = swap;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static size_t count_crossing(const filler *f, const fill_list *triangles) {
@@ -161,57 +149,50 @@ static size_t count_crossing(const filler *f, const fill_list *triangles) {
 }
 
 static starg_status make_fan(filler *f, uint32_t centre) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < f->loop.count; i++) {
-        STARG_PUSH(f->state->context, REPAIR_STAGE, &f->triangles, f->loop.data[i]);
-        STARG_PUSH(f->state->context, REPAIR_STAGE, &f->triangles,
-                   f->loop.data[(i + 1) % f->loop.count]);
-        STARG_PUSH(f->state->context, REPAIR_STAGE, &f->triangles, centre);
+        PUSH(f->state->context, REPAIR_STAGE, &f->triangles, f->loop.data[i]);
+        PUSH(f->state->context, REPAIR_STAGE, &f->triangles, f->loop.data[(i + 1) % f->loop.count]);
+        PUSH(f->state->context, REPAIR_STAGE, &f->triangles, centre);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A fan about the loop's centre: always manifold. Used if no filling is possible or it has fewer
  * than `faults` crossings; an unused centre vertex is dropped later. */
 static starg_status try_fan(filler *f, size_t faults) {
-    starg_status status = STARG_OK;
-    fill_list filling = f->triangles;
+    SCOPED fill_list filling = f->triangles;
     double centre[3] = {0, 0, 0};
     uint32_t vertex;
     for (size_t i = 0; i < f->loop.count; i++)
         for (int k = 0; k < 3; k++)
             centre[k] += repair_position(f->state, f->loop.data[i])[k] / (double)f->loop.count;
     f->triangles = (fill_list){0};
-    STARG_TRY(repair_add_vertex(f->state, centre, REPAIR_NEW, &vertex));
-    STARG_TRY(make_fan(f, vertex));
+    TRY(repair_add_vertex(f->state, centre, REPAIR_NEW, &vertex));
+    TRY(make_fan(f, vertex));
     if (count_crossing(f, &f->triangles) >= faults) {
         fill_list fan = f->triangles;
         f->triangles = filling;
         filling = fan;
     }
-done:
-    STARG_ARRAY_FREE(f->state->context, &filling);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status fill_loop(filler *f) {
-    starg_status status = STARG_OK;
     fill_job job = {f->state, &f->index, edge_is_taken, &f->edges};
     size_t faults;
     bool possible;
     f->triangles.count = 0;
-    STARG_TRY(repair_fill(&job, f->loop.data, f->loop.count, &f->triangles, &faults, &possible));
+    TRY(repair_fill(&job, f->loop.data, f->loop.count, &f->triangles, &faults, &possible));
     if (!possible || faults > 0)
-        STARG_TRY(try_fan(f, possible ? faults : SIZE_MAX));
+        TRY(try_fan(f, possible ? faults : SIZE_MAX));
     for (size_t i = 0; i < f->triangles.count; i += 3) {
         const uint32_t *corner = f->triangles.data + i;
-        STARG_TRY(repair_add_face(f->state, corner[0], corner[1], corner[2], REPAIR_ADDED));
-        STARG_TRY(add_edges(f, corner));
+        TRY(repair_add_face(f->state, corner[0], corner[1], corner[2],
+                            REPAIR_ADDED | REPAIR_FILLED));
+        TRY(add_edges(f, corner));
     }
     f->state->report.holes_filled++;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Rebuilds the index when many faces were added. */
@@ -245,13 +226,10 @@ starg_status repair_fill_holes(repair_state *state) {
         STARG_TRY(starg_check_cancel(state->context, REPAIR_STAGE));
     }
 done:
-    starg_release(state->context, f.out);
-    starg_release(state->context, f.end);
-    starg_release(state->context, f.alias);
-    repair_stars_free(state, &f.stars);
+    RELEASE(f.out, f.end, f.alias);
+    repair_stars_free(&f.stars);
     starg_release(state->context, f.edges.slots);
     repair_index_free(&f.index);
-    STARG_ARRAY_FREE(state->context, &f.loop);
-    STARG_ARRAY_FREE(state->context, &f.triangles);
+    RELEASE(f.loop.data, f.triangles.data);
     return status;
 }

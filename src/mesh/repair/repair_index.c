@@ -3,30 +3,23 @@
 
 #include <math.h>
 
-#include "mesh/topology.h"
-
 enum { FEW = 256 };
 
 starg_status repair_index_create(const repair_state *state, repair_index *index) {
-    starg_status status = STARG_OK;
     *index = (repair_index){.state = state, .tracked = repair_face_count(state)};
-    STARG_NEW(state->context, REPAIR_STAGE, index->vertices, state->vertices.count);
-    STARG_NEW(state->context, REPAIR_STAGE, index->faces, state->faces.count);
+    NEW(state->context, REPAIR_STAGE, index->vertices, state->vertices.count);
+    NEW(state->context, REPAIR_STAGE, index->faces, state->faces.count);
     if (index->tracked != 0) { /* otherwise the arrays may be NULL */
         memcpy(index->vertices, state->vertices.data, state->vertices.count * sizeof(double));
         memcpy(index->faces, state->faces.data, state->faces.count * sizeof(uint32_t));
     }
-    STARG_TRY(
-        bvh_create(state->context, index->vertices, index->faces, index->tracked, &index->tree));
-done:
-    return status;
+    return bvh_create(state->context, index->vertices, index->faces, index->tracked, &index->tree);
 }
 
 void repair_index_free(repair_index *index) {
     if (index->state == NULL)
         return;
-    starg_release(index->state->context, index->vertices);
-    starg_release(index->state->context, index->faces);
+    RELEASE(index->vertices, index->faces);
     bvh_free(index->tree);
     *index = (repair_index){0};
 }

@@ -2,6 +2,7 @@
 /* Orients each patch by breadth-first search across manifold edges. A patch whose search returns to
  * a face with the opposite side is one-sided, like a Moebius strip: it bounds nothing and is
  * dropped. Of the two orientations of a patch, the one that reverses fewer faces is used. */
+#include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/repair/repair.h"
 
@@ -60,20 +61,80 @@ starg_status repair_orient(repair_state *state) {
     repair_compact(state);
 done:
     topology_free(w.topology);
-    starg_release(state->context, w.side);
-    starg_release(state->context, w.queue);
+    RELEASE(w.side, w.queue);
     return status;
+}
+
+/* -1 if all shells that lie in no others face inwards, 1 if none does, 0 if some do. */
+static int outer_facing(const mesh_examination *all) {
+    size_t inward = 0, outer = 0;
+    for (size_t i = 0; i < all->topology->component_count; i++) {
+        const mesh_shell *own = &all->shells[i];
+        bool outermost = own->depth == 0 || own->crossed;
+        outer += outermost;
+        inward += outermost && own->volume < 0;
+    }
+    return inward == 0 ? 1 : inward == outer ? -1 : 0;
+}
+
+/* A shell in another bounds a cavity. Not so before a union, if it faces as that one does: then
+ * both are solids, one in the other. */
+static bool must_turn(const repair_state *state, const mesh_shell *shell, int outer) {
+    if (!state->options.unite || shell->depth == 0 || shell->crossed)
+        return shell->turn;
+    return outer != 0 ? outer < 0 : shell->around < 0;
+}
+
+/* Largest part of the area of a shell that fills holes, where the rest still proves what is inside:
+ * seen from there it covers most directions. */
+static const double MOST_FILLED = 0.25;
+
+/* The area of each shell, and how much of it fills holes. */
+static void measure_fillings(const repair_state *state, const starg_mesh *view,
+                             const mesh_topology *topology, double *area, double *filled) {
+    for (size_t f = 0; f < view->face_count; f++) {
+        const uint32_t *corner = view->faces + 3 * f;
+        double own =
+            vec3_triangle_area(repair_position(state, corner[0]), repair_position(state, corner[1]),
+                               repair_position(state, corner[2]));
+        area[topology->component[f]] += own;
+        filled[topology->component[f]] += state->flags.data[f] & REPAIR_FILLED ? own : 0;
+    }
+}
+
+static void tell_sheets(repair_state *state) {
+    size_t count = state->report.sheets_kept;
+    if (count > 0)
+        starg_log(state->context, STARG_LOG_NOTICE,
+                  "%zu open %s closed by faces of more than a quarter of the area: nothing proves "
+                  "which side is out, and faces keep theirs, which point into the volume",
+                  count, count == 1 ? "sheet was" : "sheets were");
 }
 
 starg_status repair_turn_shells(repair_state *state) {
     starg_status status = STARG_OK;
     mesh_examination all = {0};
     starg_mesh view = repair_view(state);
+    double *area = NULL, *filled = NULL;
     STARG_TRY(mesh_examine(state->context, &view, &all));
-    for (size_t f = 0; f < view.face_count; f++)
-        if (all.shells[all.topology->component[f]].turn)
+    size_t shells = all.topology->component_count;
+    STARG_NEW_ZERO(state->context, REPAIR_STAGE, area, shells);
+    STARG_NEW_ZERO(state->context, REPAIR_STAGE, filled, shells);
+    measure_fillings(state, &view, all.topology, area, filled);
+    int outer = outer_facing(&all);
+    for (size_t f = 0; f < view.face_count; f++) {
+        uint32_t shell = all.topology->component[f];
+        if (!must_turn(state, &all.shells[shell], outer))
+            continue;
+        if (all.shells[shell].depth > 0 || state->options.unite ||
+            filled[shell] <= MOST_FILLED * area[shell])
             repair_turn(state, f);
+        else
+            state->report.sheets_kept += all.shells[shell].first_face == f;
+    }
+    tell_sheets(state);
 done:
+    RELEASE(area, filled);
     mesh_examination_free(state->context, &all);
     return status;
 }

@@ -9,10 +9,12 @@
  *    own vertex in the middle of the edge, and the three stages start again.
  *
  * Cost O(n log n). */
-#include "mesh/repair/repair.h"
-#include "mesh/topology.h"
 
-enum { MAX_ROUNDS = 16 };
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "mesh/repair/repair.h"
+
+enum { MAX_ROUNDS = 16, MOST_STEPS = 8 };
 
 typedef struct splitter {
     repair_state *state;
@@ -27,12 +29,11 @@ static bool lowest_on_edge(const mesh_topology *topology, uint32_t h) {
 }
 
 static starg_status split_fans(splitter *s) {
-    starg_status status = STARG_OK;
     size_t corners = s->state->faces.count;
-    uint32_t *fan = NULL;
-    uint8_t *used = NULL;
-    STARG_NEW(s->state->context, REPAIR_STAGE, fan, corners);
-    STARG_NEW_ZERO(s->state->context, REPAIR_STAGE, used, repair_vertex_count(s->state));
+    SCOPED uint32_t *fan = NULL;
+    SCOPED uint8_t *used = NULL;
+    NEW(s->state->context, REPAIR_STAGE, fan, corners);
+    NEW_ZERO(s->state->context, REPAIR_STAGE, used, repair_vertex_count(s->state));
     starg_mesh view = repair_view(s->state);
     wings_find_fans(s->topology, &view, fan);
     for (uint32_t h = 0; h < corners; h++) { /* a fan's root is its lowest corner */
@@ -40,16 +41,13 @@ static starg_status split_fans(splitter *s) {
         if (root != h) {
             *vertex = s->state->faces.data[root];
         } else if (used[*vertex]) {
-            STARG_TRY(repair_add_vertex(s->state, repair_position(s->state, *vertex),
-                                        s->state->origin.data[*vertex], vertex));
+            TRY(repair_add_vertex(s->state, repair_position(s->state, *vertex),
+                                  s->state->origin.data[*vertex], vertex));
         } else {
             used[*vertex] = 1;
         }
     }
-done:
-    starg_release(s->state->context, fan);
-    starg_release(s->state->context, used);
-    return status;
+    return STARG_OK;
 }
 
 /* Replaces face (u, v, w) by (u, m, w) and (m, v, w), where u v is the edge of h. */
@@ -61,40 +59,69 @@ static starg_status split_face(repair_state *state, uint32_t h, uint32_t middle)
     return repair_add_face(state, middle, end, tip, REPAIR_ADDED);
 }
 
+/* Does p lie behind the face of h, or in its plane? */
+static bool lies_behind(const repair_state *state, uint32_t h, const double p[3]) {
+    const uint32_t *corner = state->faces.data + 3 * (size_t)(h / 3);
+    return orient3d(repair_position(state, corner[0]), repair_position(state, corner[1]),
+                    repair_position(state, corner[2]), p) >= 0;
+}
+
+/* The middle of the edge of h, rounded such that it lies behind both faces of the sheet: between
+ * them the other sheets are not, and the new faces cross none of theirs. */
+static void find_middle(const repair_state *state, uint32_t h, uint32_t other, double middle[3]) {
+    const uint32_t side[2] = {h, other != TOPOLOGY_NONE ? other : h};
+    const double *a = repair_position(state, state->faces.data[h]);
+    const double *b = repair_position(state, state->faces.data[corner_next(h)]);
+    double inward[3] = {0, 0, 0}, exact[3], largest = 0;
+    for (int i = 0; i < 2; i++) {
+        const uint32_t *corner = state->faces.data + 3 * (size_t)(side[i] / 3);
+        double normal[3];
+        vec3_triangle_normal(repair_position(state, corner[0]), repair_position(state, corner[1]),
+                             repair_position(state, corner[2]), normal);
+        vec3_along(inward, -1 / vec3_length(normal), normal, inward);
+    }
+    for (int k = 0; k < 3; k++) {
+        middle[k] = exact[k] = 0.5 * a[k] + 0.5 * b[k];
+        largest = fmax(largest, fmax(fabs(a[k]), fabs(b[k])));
+    }
+    double step = nextafter(largest, INFINITY) - largest;
+    for (int i = 0; i < MOST_STEPS; i++, step *= 2) {
+        if (lies_behind(state, side[0], middle) && lies_behind(state, side[1], middle))
+            return;
+        vec3_along(exact, step, inward, middle);
+    }
+    vec3_copy(exact, middle);
+}
+
 /* Gives a sheet on a shared edge its own middle vertex, unless one of its faces was split in this
  * round. */
 static starg_status split_sheet(splitter *s, uint32_t h, uint8_t *busy, bool *changed) {
-    starg_status status = STARG_OK;
     repair_state *state = s->state;
     uint32_t other = s->topology->twin[h], middle_vertex;
     *changed = true;
     if (busy[h / 3] || (other != TOPOLOGY_NONE && busy[other / 3]))
         return STARG_OK;
     double middle[3];
-    for (int k = 0; k < 3; k++)
-        middle[k] = 0.5 * repair_position(state, state->faces.data[h])[k] +
-                    0.5 * repair_position(state, state->faces.data[corner_next(h)])[k];
-    STARG_TRY(repair_add_vertex(state, middle, REPAIR_NEW, &middle_vertex));
+    find_middle(state, h, other, middle);
+    TRY(repair_add_vertex(state, middle, REPAIR_NEW, &middle_vertex));
     busy[h / 3] = 1;
-    STARG_TRY(split_face(state, h, middle_vertex));
+    TRY(split_face(state, h, middle_vertex));
     if (other != TOPOLOGY_NONE) {
         busy[other / 3] = 1;
-        STARG_TRY(split_face(state, other, middle_vertex));
+        TRY(split_face(state, other, middle_vertex));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Separates sheets that share both ends of an edge; *changed tells whether there are any. */
 static starg_status split_shared_edges(splitter *s, bool *changed) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     size_t halfedges = s->state->faces.count;
-    uint8_t *busy = NULL;
+    SCOPED uint8_t *busy = NULL;
     *changed = false;
     starg_mesh view = repair_view(s->state);
-    STARG_TRY(topology_create(s->state->context, &view, &topology));
-    STARG_NEW_ZERO(s->state->context, REPAIR_STAGE, busy, repair_face_count(s->state));
+    TRY(topology_create(s->state->context, &view, &topology));
+    NEW_ZERO(s->state->context, REPAIR_STAGE, busy, repair_face_count(s->state));
     for (uint32_t h = 0; h < halfedges; h++) {
         if (topology->twin[h] != TOPOLOGY_NONE || topology->ring[h] == h)
             continue;
@@ -103,12 +130,9 @@ static starg_status split_shared_edges(splitter *s, bool *changed) {
         uint32_t other = s->topology->twin[h];
         if (other != TOPOLOGY_NONE && (other < h || lowest_on_edge(topology, other)))
             continue;
-        STARG_TRY(split_sheet(s, h, busy, changed));
+        TRY(split_sheet(s, h, busy, changed));
     }
-done:
-    topology_free(topology);
-    starg_release(s->state->context, busy);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status split_once(repair_state *state, bool *changed) {
@@ -124,12 +148,10 @@ done:
 }
 
 starg_status repair_split(repair_state *state) {
-    starg_status status = STARG_OK;
     bool changed = true;
     for (int round = 0; round < MAX_ROUNDS && changed; round++) {
-        STARG_TRY(split_once(state, &changed));
-        STARG_TRY(starg_check_cancel(state->context, REPAIR_STAGE));
+        TRY(split_once(state, &changed));
+        TRY(starg_check_cancel(state->context, REPAIR_STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "mesh/repair/repair.h"
 
-#include <math.h>
-
 #include "core/rng.h"
 #include "geometry/predicates.h"
 
@@ -10,25 +8,20 @@ enum { FIRST_KEYS = 64 };
 
 starg_status repair_begin(repair_state *state, starg_context *context, const starg_mesh *input,
                           const starg_repair_options *options) {
-    starg_status status = STARG_OK;
     *state = (repair_state){.context = context, .input = input, .options = *options};
     for (size_t v = 0; v < input->vertex_count; v++) {
         uint32_t copy;
-        STARG_TRY(repair_add_vertex(state, input->vertices + 3 * v, (uint32_t)v, &copy));
+        TRY(repair_add_vertex(state, input->vertices + 3 * v, (uint32_t)v, &copy));
     }
     for (size_t f = 0; f < input->face_count; f++) {
         const uint32_t *corner = input->faces + 3 * f;
-        STARG_TRY(repair_add_face(state, corner[0], corner[1], corner[2], 0));
+        TRY(repair_add_face(state, corner[0], corner[1], corner[2], 0));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 void repair_end(repair_state *state) {
-    STARG_ARRAY_FREE(state->context, &state->vertices);
-    STARG_ARRAY_FREE(state->context, &state->origin);
-    STARG_ARRAY_FREE(state->context, &state->faces);
-    STARG_ARRAY_FREE(state->context, &state->flags);
+    RELEASE(state->vertices.data, state->origin.data, state->faces.data, state->flags.data);
 }
 
 starg_mesh repair_view(const repair_state *state) {
@@ -52,25 +45,21 @@ bool repair_has_no_area(const repair_state *state, const uint32_t corner[3]) {
 
 starg_status repair_add_vertex(repair_state *state, const double p[3], uint32_t origin,
                                uint32_t *vertex) {
-    starg_status status = STARG_OK;
     const double copy[3] = {p[0], p[1], p[2]}; /* p may point into the array that grows */
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(state->context, REPAIR_STAGE, &state->vertices, copy[k]);
-    STARG_PUSH(state->context, REPAIR_STAGE, &state->origin, origin);
+        PUSH(state->context, REPAIR_STAGE, &state->vertices, copy[k]);
+    PUSH(state->context, REPAIR_STAGE, &state->origin, origin);
     *vertex = (uint32_t)(repair_vertex_count(state) - 1);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status repair_add_face(repair_state *state, uint32_t a, uint32_t b, uint32_t c,
                              uint8_t flags) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(state->context, REPAIR_STAGE, &state->faces, a);
-    STARG_PUSH(state->context, REPAIR_STAGE, &state->faces, b);
-    STARG_PUSH(state->context, REPAIR_STAGE, &state->faces, c);
-    STARG_PUSH(state->context, REPAIR_STAGE, &state->flags, flags);
-done:
-    return status;
+    PUSH(state->context, REPAIR_STAGE, &state->faces, a);
+    PUSH(state->context, REPAIR_STAGE, &state->faces, b);
+    PUSH(state->context, REPAIR_STAGE, &state->faces, c);
+    PUSH(state->context, REPAIR_STAGE, &state->flags, flags);
+    return STARG_OK;
 }
 
 void repair_turn(repair_state *state, size_t face) {
@@ -93,10 +82,9 @@ void repair_compact(repair_state *state) {
 }
 
 starg_status repair_drop_isolated(repair_state *state) {
-    starg_status status = STARG_OK;
     size_t count = repair_vertex_count(state), kept = 0;
-    uint32_t *place = NULL;
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, place, count);
+    SCOPED uint32_t *place = NULL;
+    NEW_ZERO(state->context, REPAIR_STAGE, place, count);
     for (size_t i = 0; i < state->faces.count; i++)
         place[state->faces.data[i]] = 1;
     for (size_t v = 0; v < count; v++) {
@@ -110,17 +98,14 @@ starg_status repair_drop_isolated(repair_state *state) {
         state->faces.data[i] = place[state->faces.data[i]];
     state->origin.count = kept;
     state->vertices.count = 3 * kept;
-done:
-    starg_release(state->context, place);
-    return status;
+    return STARG_OK;
 }
 
 starg_status repair_stars_create(const repair_state *state, repair_stars *stars) {
-    starg_status status = STARG_OK;
     size_t count = repair_vertex_count(state);
     *stars = (repair_stars){0};
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, stars->start, count + 1);
-    STARG_NEW(state->context, REPAIR_STAGE, stars->list, state->faces.count);
+    NEW_ZERO(state->context, REPAIR_STAGE, stars->start, count + 1);
+    NEW(state->context, REPAIR_STAGE, stars->list, state->faces.count);
     for (size_t i = 0; i < state->faces.count; i++)
         stars->start[state->faces.data[i]]++;
     for (size_t v = 0; v < count; v++)
@@ -128,13 +113,11 @@ starg_status repair_stars_create(const repair_state *state, repair_stars *stars)
     /* start[v] is the end of v's range; filling backward moves it to the beginning */
     for (size_t i = state->faces.count; i-- > 0;)
         stars->list[--stars->start[state->faces.data[i]]] = (uint32_t)(i / 3);
-done:
-    return status;
+    return STARG_OK;
 }
 
-void repair_stars_free(const repair_state *state, repair_stars *stars) {
-    starg_release(state->context, stars->start);
-    starg_release(state->context, stars->list);
+void repair_stars_free(repair_stars *stars) {
+    RELEASE(stars->start, stars->list);
 }
 
 /* The slot of a key, or the free slot for it. */
@@ -147,27 +130,23 @@ static uint64_t *find_slot(const repair_keys *keys, uint64_t key) {
 }
 
 static starg_status grow_keys(starg_context *context, repair_keys *keys) {
-    starg_status status = STARG_OK;
     repair_keys grown = {.size = keys->size ? 2 * keys->size : FIRST_KEYS, .count = keys->count};
-    STARG_NEW_ZERO(context, REPAIR_STAGE, grown.slots, grown.size);
+    NEW_ZERO(context, REPAIR_STAGE, grown.slots, grown.size);
     for (size_t i = 0; i < keys->size; i++)
         if (keys->slots[i] != 0)
             *find_slot(&grown, keys->slots[i] - 1) = keys->slots[i];
     starg_release(context, keys->slots);
     *keys = grown;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status repair_keys_add(starg_context *context, repair_keys *keys, uint64_t key) {
-    starg_status status = STARG_OK;
     if (2 * (keys->count + 1) > keys->size)
-        STARG_TRY(grow_keys(context, keys));
+        TRY(grow_keys(context, keys));
     uint64_t *slot = find_slot(keys, key);
     keys->count += *slot == 0;
     *slot = key + 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 bool repair_keys_have(const repair_keys *keys, uint64_t key) {

@@ -13,7 +13,6 @@
  * their old, then in their new form. */
 #include "geometry/vec3.h"
 #include "mesh/repair/repair.h"
-#include "mesh/topology.h"
 
 /* Largest displacement of an input vertex, as a fraction of the diagonal. */
 #define LARGEST_MOVE 0.01
@@ -69,33 +68,29 @@ static size_t count_crossings(const untangler *u) {
 /* ---- regions ---- */
 
 static starg_status add_face_to_region(untangler *u, uint32_t face) {
-    starg_status status = STARG_OK;
     if (u->inside[face])
         return STARG_OK;
     u->inside[face] = 1;
-    STARG_PUSH(u->state->context, REPAIR_STAGE, &u->region, face);
+    PUSH(u->state->context, REPAIR_STAGE, &u->region, face);
     for (int k = 0; k < 3; k++) {
         uint32_t vertex = repair_face(u->state, face)[k];
         if (u->marked[vertex])
             continue;
         u->marked[vertex] = 1;
-        STARG_PUSH(u->state->context, REPAIR_STAGE, &u->points, vertex);
+        PUSH(u->state->context, REPAIR_STAGE, &u->points, vertex);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Adds every face that has a vertex in the region. */
 static starg_status grow_region(untangler *u) {
-    starg_status status = STARG_OK;
     size_t points = u->points.count;
     for (size_t i = 0; i < points; i++) {
         uint32_t vertex = u->points.data[i];
         for (size_t k = u->stars.start[vertex]; k < u->stars.start[vertex + 1]; k++)
-            STARG_TRY(add_face_to_region(u, u->stars.list[k]));
+            TRY(add_face_to_region(u, u->stars.list[k]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void clear_region(untangler *u) {
@@ -115,7 +110,6 @@ static bool region_is_free(const untangler *u) {
 
 /* Replaces the region's faces by copies at the end of the mesh. */
 static starg_status stand_in(untangler *u) {
-    starg_status status = STARG_OK;
     u->base = repair_face_count(u->state);
     for (size_t i = 0; i < u->region.count; i++) {
         uint8_t *flags = &u->state->flags.data[u->region.data[i]];
@@ -124,10 +118,9 @@ static starg_status stand_in(untangler *u) {
                                     repair_face(u->state, u->region.data[i])[2]};
         uint8_t old = *flags;
         *flags |= REPAIR_GONE;
-        STARG_TRY(repair_add_face(u->state, corner[0], corner[1], corner[2], old));
+        TRY(repair_add_face(u->state, corner[0], corner[1], corner[2], old));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void remove_stand_ins(untangler *u) {
@@ -151,13 +144,11 @@ static void keep_change(untangler *u) {
 /* ---- smoothing ---- */
 
 static starg_status save_positions(untangler *u, double_list *list, size_t count) {
-    starg_status status = STARG_OK;
     list->count = 0;
     for (size_t i = 0; i < 3 * count; i++)
-        STARG_PUSH(u->state->context, REPAIR_STAGE, list,
-                   repair_position(u->state, u->points.data[i / 3])[i % 3]);
-done:
-    return status;
+        PUSH(u->state->context, REPAIR_STAGE, list,
+             repair_position(u->state, u->points.data[i / 3])[i % 3]);
+    return STARG_OK;
 }
 
 static void load_positions(untangler *u, const double_list *list) {
@@ -200,19 +191,18 @@ static void smooth_points(untangler *u) {
 /* Smooths the patch's vertices step by step and keeps the step with the fewest crossings if that at
  * least halves them. The region is the patch and one ring. */
 static starg_status try_smoothing(untangler *u, size_t points, bool *helped) {
-    starg_status status = STARG_OK;
-    STARG_TRY(stand_in(u));
+    TRY(stand_in(u));
     size_t start = count_crossings(u), fewest = start;
-    STARG_TRY(save_positions(u, &u->before, points));
-    STARG_TRY(save_positions(u, &u->best, points));
-    STARG_TRY(save_positions(u, &u->moved, points));
+    TRY(save_positions(u, &u->before, points));
+    TRY(save_positions(u, &u->best, points));
+    TRY(save_positions(u, &u->moved, points));
     for (int step = 0; step < SMOOTHING_STEPS && fewest > 0; step++) {
         smooth_points(u);
         size_t now = count_crossings(u);
         if (now >= fewest)
             continue;
         fewest = now;
-        STARG_TRY(save_positions(u, &u->best, points));
+        TRY(save_positions(u, &u->best, points));
     }
     *helped = 2 * fewest <= start && fewest < start;
     load_positions(u, *helped ? &u->best : &u->before);
@@ -220,15 +210,13 @@ static starg_status try_smoothing(untangler *u, size_t points, bool *helped) {
         keep_change(u);
     else
         restore(u);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- cutting out and filling ---- */
 
 /* Collects the border of the region as a loop; false unless the region is a disc. */
 static starg_status collect_border(untangler *u, bool *is_disc) {
-    starg_status status = STARG_OK;
     size_t border = 0;
     uint32_t first = TOPOLOGY_NONE;
     bool simple = true;
@@ -249,12 +237,11 @@ static starg_status collect_border(untangler *u, bool *is_disc) {
     *is_disc = simple && border > 0 && border <= MAX_LOOP &&
                u->points.count + u->region.count == edges + 1;
     for (uint32_t v = first; *is_disc && u->loop.count < border; v = u->next[v])
-        STARG_PUSH(u->state->context, REPAIR_STAGE, &u->loop, v);
+        PUSH(u->state->context, REPAIR_STAGE, &u->loop, v);
     /* several loops would close before the whole border is listed */
     for (size_t i = 1; i < u->loop.count; i++)
         *is_disc = *is_disc && u->loop.data[i] != first;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool edge_is_taken(const void *user, uint32_t a, uint32_t b) {
@@ -277,37 +264,33 @@ static bool all_have_area(const untangler *u) {
 
 /* Replaces the region, a disc, by a filling of its border if that has fewer crossings. */
 static starg_status try_filling(untangler *u, bool *helped) {
-    starg_status status = STARG_OK;
     fill_job job = {u->state, &u->index, edge_is_taken, u};
     size_t faults;
     bool possible;
-    STARG_TRY(stand_in(u));
+    TRY(stand_in(u));
     size_t start = count_crossings(u);
     remove_stand_ins(u);
     u->triangles.count = 0;
     *u->work += u->loop.count * u->loop.count * u->loop.count;
-    STARG_TRY(repair_fill(&job, u->loop.data, u->loop.count, &u->triangles, &faults, &possible));
+    TRY(repair_fill(&job, u->loop.data, u->loop.count, &u->triangles, &faults, &possible));
     for (size_t i = 0; i < u->triangles.count; i += 3)
-        STARG_TRY(repair_add_face(u->state, u->triangles.data[i], u->triangles.data[i + 1],
-                                  u->triangles.data[i + 2], REPAIR_ADDED));
+        TRY(repair_add_face(u->state, u->triangles.data[i], u->triangles.data[i + 1],
+                            u->triangles.data[i + 2], REPAIR_ADDED));
     *helped = possible && all_have_area(u) && count_crossings(u) < start;
     if (*helped)
         keep_change(u);
     else
         restore(u);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- patches ---- */
 
 static starg_status start_region(untangler *u, const uint32_t *members, size_t count) {
-    starg_status status = STARG_OK;
     clear_region(u);
     for (size_t i = 0; i < count; i++)
-        STARG_TRY(add_face_to_region(u, members[i]));
-done:
-    return status;
+        TRY(add_face_to_region(u, members[i]));
+    return STARG_OK;
 }
 
 static starg_status mend_patch(untangler *u, const uint32_t *members, size_t count) {
@@ -357,12 +340,11 @@ static void join_patches(untangler *u) {
 }
 
 static starg_status mend_patches(untangler *u) {
-    starg_status status = STARG_OK;
-    fill_list members = {0};
+    SCOPED fill_list members = {0};
     size_t faces = u->index.tracked;
     /* groups the crossing faces by patch, starting at its lowest face */
-    uint32_t *chain = NULL;
-    STARG_NEW(u->state->context, REPAIR_STAGE, chain, faces);
+    SCOPED uint32_t *chain = NULL;
+    NEW(u->state->context, REPAIR_STAGE, chain, faces);
     for (size_t f = faces; f-- > 0;)
         chain[f] = TOPOLOGY_NONE;
     for (size_t f = faces; f-- > 0;) {
@@ -377,34 +359,20 @@ static starg_status mend_patches(untangler *u) {
             continue;
         members.count = 0;
         for (uint32_t m = f; m != TOPOLOGY_NONE; m = chain[m])
-            STARG_PUSH(u->state->context, REPAIR_STAGE, &members, m);
-        STARG_TRY(mend_patch(u, members.data, members.count));
-        STARG_TRY(starg_check_cancel(u->state->context, REPAIR_STAGE));
+            PUSH(u->state->context, REPAIR_STAGE, &members, m);
+        TRY(mend_patch(u, members.data, members.count));
+        TRY(starg_check_cancel(u->state->context, REPAIR_STAGE));
     }
-done:
-    starg_release(u->state->context, chain);
-    STARG_ARRAY_FREE(u->state->context, &members);
-    return status;
+    return STARG_OK;
 }
 
 static void free_round(untangler *u) {
-    starg_context *context = u->state->context;
     repair_index_free(&u->index);
     topology_free(u->topology);
-    repair_stars_free(u->state, &u->stars);
-    starg_release(context, u->crossing);
-    starg_release(context, u->patch);
-    starg_release(context, u->inside);
-    starg_release(context, u->marked);
-    starg_release(context, u->touched);
-    starg_release(context, u->next);
-    STARG_ARRAY_FREE(context, &u->region);
-    STARG_ARRAY_FREE(context, &u->points);
-    STARG_ARRAY_FREE(context, &u->loop);
-    STARG_ARRAY_FREE(context, &u->triangles);
-    STARG_ARRAY_FREE(context, &u->before);
-    STARG_ARRAY_FREE(context, &u->best);
-    STARG_ARRAY_FREE(context, &u->moved);
+    repair_stars_free(&u->stars);
+    RELEASE(u->crossing, u->patch, u->inside, u->marked, u->touched, u->next, u->region.data,
+            u->points.data, u->loop.data, u->triangles.data, u->before.data, u->best.data,
+            u->moved.data);
 }
 
 static starg_status untangle_once(repair_state *state, size_t *work, bool *changed) {
@@ -434,15 +402,12 @@ done:
 }
 
 starg_status repair_untangle(repair_state *state) {
-    starg_status status = STARG_OK;
     bool changed = true;
     size_t work = 0;
-    starg_progress_begin(state->context, REPAIR_STAGE);
+    IN_STAGE(state->context, REPAIR_STAGE);
     for (size_t round = 0; round < state->options.max_rounds && changed; round++) {
         starg_progress_step(state->context, round, state->options.max_rounds);
-        STARG_TRY(untangle_once(state, &work, &changed));
+        TRY(untangle_once(state, &work, &changed));
     }
-done:
-    starg_progress_end(state->context);
-    return status;
+    return STARG_OK;
 }

@@ -59,7 +59,6 @@ static starg_status set_scale(job *j) {
 
 /* Triangles around [-m, m] x [-m, m] in the planes across the axes. */
 static starg_status add_enclosing(job *j) {
-    starg_status status = STARG_OK;
     double largest = 0;
     for (size_t i = 0; i < j->surface->vertices.count; i++)
         largest = fmax(largest, fabs(j->surface->vertices.data[i]));
@@ -71,18 +70,16 @@ static starg_status add_enclosing(job *j) {
             p[(axis + 1) % 3] = i == 1 ? 3 * m : -m;
             p[(axis + 2) % 3] = i == 2 ? 3 * m : -m;
             exact_point_set(&corner, p, j->out->points.scale);
-            STARG_TRY(exact_points_add(&j->out->points, &corner, &j->enclosing[axis][i]));
+            TRY(exact_points_add(&j->out->points, &corner, &j->enclosing[axis][i]));
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Equal positions get the number of the first vertex there. */
 static starg_status add_vertices(job *j) {
-    starg_status status = STARG_OK;
     union_complex *out = j->out;
     size_t count = j->surface->vertices.count / 3;
-    STARG_NEW_ZERO(j->context, UNION_STAGE, j->point, count);
+    NEW_ZERO(j->context, UNION_STAGE, j->point, count);
     for (uint32_t f = 0; f < union_face_count(j->surface); f++)
         for (size_t k = 0; k < 3 && j->busy[f]; k++)
             j->point[j->surface->faces.data[3 * (size_t)f + k]] = 1;
@@ -93,25 +90,22 @@ static starg_status add_vertices(job *j) {
         if (!used)
             continue;
         exact_point_set(&own, j->surface->vertices.data + 3 * (size_t)v, out->points.scale);
-        STARG_TRY(exact_points_add(&out->points, &own, &j->point[v]));
+        TRY(exact_points_add(&out->points, &own, &j->point[v]));
         while (out->name.count < out->points.points.count)
-            STARG_PUSH(j->context, UNION_STAGE, &out->name, v);
+            PUSH(j->context, UNION_STAGE, &out->name, v);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Points found since get a name: all are on faces. */
 static starg_status name_points(job *j) {
-    starg_status status = STARG_OK;
     union_complex *out = j->out;
     size_t vertices = j->surface->vertices.count / 3;
     for (uint32_t p = (uint32_t)out->name.count; p < out->points.points.count; p++) {
-        STARG_PUSH(j->context, UNION_STAGE, &out->name, (uint32_t)(vertices + out->added.count));
-        STARG_PUSH(j->context, UNION_STAGE, &out->added, p);
+        PUSH(j->context, UNION_STAGE, &out->name, (uint32_t)(vertices + out->added.count));
+        PUSH(j->context, UNION_STAGE, &out->added, p);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- sheets ---- */
@@ -127,10 +121,9 @@ static void join_sheets(job *j) {
 
 /* Files each contact under both its faces. */
 static starg_status file_contacts(job *j) {
-    starg_status status = STARG_OK;
     size_t faces = union_face_count(j->surface), count = j->contacts->count;
-    STARG_NEW_ZERO(j->context, UNION_STAGE, j->first, faces + 1);
-    STARG_NEW(j->context, UNION_STAGE, j->list, 2 * count);
+    NEW_ZERO(j->context, UNION_STAGE, j->first, faces + 1);
+    NEW(j->context, UNION_STAGE, j->list, 2 * count);
     for (size_t i = 0; i < 2 * count; i++)
         j->first[j->contacts->data[i / 2].face[i % 2] + 1]++;
     for (size_t f = 0; f < faces; f++)
@@ -140,16 +133,15 @@ static starg_status file_contacts(job *j) {
     /* each count has gone down to its begin: first[f + 1] is where f begins */
     memmove(j->first, j->first + 1, faces * sizeof *j->first);
     j->first[faces] = 2 * count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Lists the faces concerned by sheet: counting sort by the root. */
 static starg_status order_faces(job *j) {
-    starg_status status = STARG_OK;
-    size_t faces = union_face_count(j->surface), *start = NULL;
-    STARG_NEW_ZERO(j->context, UNION_STAGE, start, faces + 1);
-    STARG_NEW(j->context, UNION_STAGE, j->order, faces);
+    size_t faces = union_face_count(j->surface);
+    SCOPED size_t *start = NULL;
+    NEW_ZERO(j->context, UNION_STAGE, start, faces + 1);
+    NEW(j->context, UNION_STAGE, j->order, faces);
     for (uint32_t f = 0; f < faces; f++)
         start[sets_find(j->sheet, f) + 1] += j->busy[f];
     for (size_t f = 0; f < faces; f++)
@@ -158,9 +150,7 @@ static starg_status order_faces(job *j) {
     for (uint32_t f = 0; f < faces; f++)
         if (j->busy[f])
             j->order[start[sets_find(j->sheet, f)]++] = f;
-done:
-    starg_release(j->context, start);
-    return status;
+    return STARG_OK;
 }
 
 /* The projection of a face in which it is largest, with coordinates in the order in which it turns
@@ -194,47 +184,41 @@ static starg_status begin_plane(job *j, uint32_t face) {
 }
 
 static starg_status add_border(job *j, uint32_t face) {
-    starg_status status = STARG_OK;
     for (uint32_t k = 0; k < 3; k++)
-        STARG_TRY(triangulation_insert(&j->plane, point_of(j, face, k)));
+        TRY(triangulation_insert(&j->plane, point_of(j, face, k)));
     for (uint32_t k = 0; k < 3; k++) {
         triangulation_carrier line = {{union_corner(j->surface, face, (int)k),
                                        union_corner(j->surface, face, (int)(k + 1) % 3), NULL}};
-        STARG_TRY(triangulation_constrain(&j->plane, point_of(j, face, k),
-                                          point_of(j, face, (k + 1) % 3), line));
+        TRY(triangulation_constrain(&j->plane, point_of(j, face, k), point_of(j, face, (k + 1) % 3),
+                                    line));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* What a face shares with others; in the same plane that runs along its border. */
 static starg_status add_shares(job *j, uint32_t face) {
-    starg_status status = STARG_OK;
     for (size_t i = j->first[face]; i < j->first[face + 1]; i++) {
         const union_contact *contact = &j->contacts->data[j->list[i]];
         uint32_t other = contact->face[contact->face[0] == face];
         if (contact->overlap)
             continue;
-        STARG_TRY(triangulation_insert(&j->plane, contact->end[0]));
-        STARG_TRY(triangulation_insert(&j->plane, contact->end[1]));
+        TRY(triangulation_insert(&j->plane, contact->end[0]));
+        TRY(triangulation_insert(&j->plane, contact->end[1]));
         if (contact->coplanar)
             continue;
         triangulation_carrier plane = {{union_corner(j->surface, other, 0),
                                         union_corner(j->surface, other, 1),
                                         union_corner(j->surface, other, 2)}};
-        STARG_TRY(triangulation_constrain(&j->plane, contact->end[0], contact->end[1], plane));
+        TRY(triangulation_constrain(&j->plane, contact->end[0], contact->end[1], plane));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- triangles ---- */
 
 static starg_status emit(job *j, const union_triangle *triangle) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(j->context, UNION_STAGE, &j->out->triangles, *triangle);
-done:
-    return status;
+    PUSH(j->context, UNION_STAGE, &j->out->triangles, *triangle);
+    return STARG_OK;
 }
 
 static starg_status emit_whole(job *j, uint32_t face) {
@@ -280,7 +264,6 @@ static void count_layers(const job *j, const uint32_t *faces, size_t count,
 }
 
 static starg_status emit_parts(job *j, const uint32_t *faces, size_t count) {
-    starg_status status = STARG_OK;
     const triangulation *t = &j->plane;
     for (size_t h = 0; h < t->corner.count; h += 3) {
         union_triangle own = {
@@ -295,10 +278,9 @@ static starg_status emit_parts(job *j, const uint32_t *faces, size_t count) {
             continue;
         for (int k = 0; k < 3; k++)
             own.corner[k] = j->out->name.data[own.corner[k]];
-        STARG_TRY(emit(j, &own));
+        TRY(emit(j, &own));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Is a face met in its corners only? */
@@ -314,52 +296,43 @@ static bool stays_whole(const job *j, uint32_t face) {
 }
 
 static starg_status cut_sheet(job *j, const uint32_t *faces, size_t count) {
-    starg_status status = STARG_OK;
     if (count == 1 && stays_whole(j, faces[0]))
         return emit_whole(j, faces[0]);
-    STARG_TRY(begin_plane(j, faces[0]));
+    TRY(begin_plane(j, faces[0]));
     for (size_t i = 0; i < count; i++)
-        STARG_TRY(add_border(j, faces[i]));
+        TRY(add_border(j, faces[i]));
     for (size_t i = 0; i < count; i++)
-        STARG_TRY(add_shares(j, faces[i]));
-    STARG_TRY(triangulation_improve(&j->plane));
-    STARG_TRY(name_points(j));
-    STARG_TRY(emit_parts(j, faces, count));
-    STARG_TRY(starg_check_cancel(j->context, UNION_STAGE));
-done:
-    return status;
+        TRY(add_shares(j, faces[i]));
+    TRY(triangulation_improve(&j->plane));
+    TRY(name_points(j));
+    TRY(emit_parts(j, faces, count));
+    return starg_check_cancel(j->context, UNION_STAGE);
 }
 
 static starg_status cut_sheets(job *j) {
-    starg_status status = STARG_OK;
     for (uint32_t f = 0; f < union_face_count(j->surface); f++)
         if (!j->busy[f])
-            STARG_TRY(emit_whole(j, f));
+            TRY(emit_whole(j, f));
     for (size_t i = 0, end; i < j->busy_count; i = end) {
         uint32_t root = sets_find(j->sheet, j->order[i]);
         for (end = i; end < j->busy_count && sets_find(j->sheet, j->order[end]) == root;)
             end++;
-        STARG_TRY(cut_sheet(j, j->order + i, end - i));
+        TRY(cut_sheet(j, j->order + i, end - i));
         starg_progress_step(j->context, end, j->busy_count);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- all ---- */
 
 static starg_status find_points(job *j) {
-    starg_status status = STARG_OK;
-    STARG_TRY(set_scale(j));
-    STARG_TRY(add_enclosing(j));
-    STARG_TRY(add_vertices(j));
+    TRY(set_scale(j));
+    TRY(add_enclosing(j));
+    TRY(add_vertices(j));
     for (size_t i = 0; i < j->contacts->count; i++)
         if (!j->contacts->data[i].overlap)
-            STARG_TRY(
-                union_find_ends(j->surface, j->point, &j->out->points, &j->contacts->data[i]));
-    STARG_TRY(name_points(j));
-done:
-    return status;
+            TRY(union_find_ends(j->surface, j->point, &j->out->points, &j->contacts->data[i]));
+    return name_points(j);
 }
 
 starg_status union_arrange(const union_surface *surface, union_contacts *contacts,
@@ -379,21 +352,14 @@ starg_status union_arrange(const union_surface *surface, union_contacts *contact
     STARG_TRY(order_faces(&j));
     STARG_TRY(cut_sheets(&j));
 done:
-    starg_release(context, j.busy);
-    starg_release(context, j.sheet);
-    starg_release(context, j.point);
-    starg_release(context, j.order);
-    starg_release(context, j.first);
-    starg_release(context, j.list);
+    RELEASE(j.busy, j.sheet, j.point, j.order, j.first, j.list);
     triangulation_free(&j.plane);
     return status;
 }
 
 void union_complex_free(union_complex *complex) {
     exact_points_free(&complex->points);
-    STARG_ARRAY_FREE(complex->context, &complex->triangles);
-    STARG_ARRAY_FREE(complex->context, &complex->added);
-    STARG_ARRAY_FREE(complex->context, &complex->name);
+    RELEASE(complex->triangles.data, complex->added.data, complex->name.data);
 }
 
 void union_complex_place(const union_complex *complex, uint32_t corner, exact_point *out) {

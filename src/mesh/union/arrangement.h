@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A surface cut along all its intersections: a complex of triangles with exact corners. */
-#ifndef STARG_MESH_UNION_ARRANGEMENT_H
-#define STARG_MESH_UNION_ARRANGEMENT_H
+#pragma once
 
 #include "geometry/bvh.h"
 #include "geometry/exact_points.h"
@@ -102,5 +101,3 @@ const double *union_complex_rounded(const union_complex *complex, uint32_t corne
 /* Sets keep[t] for every triangle t with a winding number below 1 in front and of 1 or more behind.
  * `tree` is over the complex's surface. Errors: MEMORY, CANCELLED, TIME. */
 starg_status union_choose(const union_complex *complex, const bvh *tree, bool *keep);
-
-#endif

@@ -9,7 +9,6 @@
 
 #include <math.h>
 
-#include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "mesh/topology.h"
 
@@ -35,12 +34,10 @@ static bool in_plane_of(const union_surface *surface, uint32_t face, uint32_t ot
 }
 
 static starg_status note(finder *f, uint32_t a, uint32_t b, triangle_contact how) {
-    starg_status status = STARG_OK;
     union_contact contact = {.face = {a, b}, .coplanar = in_plane_of(f->surface, a, b)};
     contact.overlap = contact.coplanar && how == TRIANGLES_CROSS;
-    STARG_PUSH(f->surface->context, UNION_STAGE, f->out, contact);
-done:
-    return status;
+    PUSH(f->surface->context, UNION_STAGE, f->out, contact);
+    return STARG_OK;
 }
 
 static bool look_at_pair(void *user, uint32_t other) {
@@ -95,7 +92,6 @@ static void add_end(union_contact *contact, int *count, uint32_t point) {
 static starg_status add_ends(const union_surface *surface, const uint32_t *point,
                              exact_points *points, uint32_t face, uint32_t other,
                              union_contact *contact, int *count) {
-    starg_status status = STARG_OK;
     const double *s[3], *t[3];
     int at[3];
     for (int k = 0; k < 3; k++) {
@@ -116,20 +112,17 @@ static starg_status add_ends(const union_surface *surface, const uint32_t *point
         uint32_t number;
         exact_plane_set(&plane, t, points->scale);
         exact_point_on_plane(&meeting, p, q, &plane, points->scale);
-        STARG_TRY(exact_points_add(points, &meeting, &number));
+        TRY(exact_points_add(points, &meeting, &number));
         add_end(contact, count, number);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status union_find_ends(const union_surface *surface, const uint32_t *point,
                              exact_points *points, union_contact *contact) {
-    starg_status status = STARG_OK;
     int count = 0;
     for (int i = 0; i < 2; i++)
-        STARG_TRY(add_ends(surface, point, points, contact->face[i], contact->face[1 - i], contact,
-                           &count));
-done:
-    return status;
+        TRY(add_ends(surface, point, points, contact->face[i], contact->face[1 - i], contact,
+                     &count));
+    return STARG_OK;
 }

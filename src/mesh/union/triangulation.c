@@ -28,13 +28,8 @@ enum { FLIPS_PER_TRIANGLE = 32 };
 /* ---- structure ---- */
 
 void triangulation_free(triangulation *t) {
-    STARG_ARRAY_FREE(t->context, &t->corner);
-    STARG_ARRAY_FREE(t->context, &t->twin);
-    STARG_ARRAY_FREE(t->context, &t->carrier);
-    STARG_ARRAY_FREE(t->context, &t->carriers);
-    STARG_ARRAY_FREE(t->context, &t->at);
-    STARG_ARRAY_FREE(t->context, &t->used);
-    STARG_ARRAY_FREE(t->context, &t->crossed);
+    RELEASE(t->corner.data, t->twin.data, t->carrier.data, t->carriers.data, t->at.data,
+            t->used.data, t->crossed.data);
 }
 
 static int turn(const triangulation *t, uint32_t a, uint32_t b, uint32_t c) {
@@ -55,25 +50,21 @@ static uint32_t tip_of(const triangulation *t, uint32_t h) {
 
 /* Room for a point's place in `at`. */
 static starg_status make_known(triangulation *t, uint32_t point) {
-    starg_status status = STARG_OK;
     while (t->at.count <= point)
-        STARG_PUSH(t->context, STAGE, &t->at, TRIANGULATION_NONE);
+        PUSH(t->context, STAGE, &t->at, TRIANGULATION_NONE);
     if (t->at.data[point] == TRIANGULATION_NONE)
-        STARG_PUSH(t->context, STAGE, &t->used, point);
-done:
-    return status;
+        PUSH(t->context, STAGE, &t->used, point);
+    return STARG_OK;
 }
 
 static starg_status add_triangle(triangulation *t, uint32_t *triangle) {
-    starg_status status = STARG_OK;
     *triangle = (uint32_t)(t->corner.count / 3);
     for (int k = 0; k < 3; k++) {
-        STARG_PUSH(t->context, STAGE, &t->corner, TRIANGULATION_NONE);
-        STARG_PUSH(t->context, STAGE, &t->twin, TRIANGULATION_NONE);
-        STARG_PUSH(t->context, STAGE, &t->carrier, TRIANGULATION_NONE);
+        PUSH(t->context, STAGE, &t->corner, TRIANGULATION_NONE);
+        PUSH(t->context, STAGE, &t->twin, TRIANGULATION_NONE);
+        PUSH(t->context, STAGE, &t->carrier, TRIANGULATION_NONE);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void set_triangle(triangulation *t, uint32_t triangle, uint32_t a, uint32_t b, uint32_t c) {
@@ -110,7 +101,6 @@ static void link_rim(triangulation *t, uint32_t h, rim beyond) {
 
 starg_status triangulation_begin(triangulation *t, const double *const plane[3], int u, int v,
                                  const uint32_t enclosing[3]) {
-    starg_status status = STARG_OK;
     uint32_t first;
     for (size_t i = 0; i < t->used.count; i++)
         t->at.data[t->used.data[i]] = TRIANGULATION_NONE;
@@ -119,11 +109,10 @@ starg_status triangulation_begin(triangulation *t, const double *const plane[3],
     t->u = u;
     t->v = v;
     for (int k = 0; k < 3; k++)
-        STARG_TRY(make_known(t, enclosing[k]));
-    STARG_TRY(add_triangle(t, &first));
+        TRY(make_known(t, enclosing[k]));
+    TRY(add_triangle(t, &first));
     set_triangle(t, first, enclosing[0], enclosing[1], enclosing[2]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- points ---- */
@@ -163,35 +152,32 @@ static place locate(const triangulation *t, uint32_t point) {
 }
 
 static starg_status split_triangle(triangulation *t, uint32_t triangle, uint32_t point) {
-    starg_status status = STARG_OK;
     uint32_t piece[3] = {triangle}, corner[3];
     rim beyond[3];
     for (uint32_t k = 0; k < 3; k++) {
         corner[k] = t->corner.data[3 * triangle + k];
         beyond[k] = rim_of(t, 3 * triangle + k);
     }
-    STARG_TRY(add_triangle(t, &piece[1]));
-    STARG_TRY(add_triangle(t, &piece[2]));
+    TRY(add_triangle(t, &piece[1]));
+    TRY(add_triangle(t, &piece[2]));
     for (uint32_t k = 0; k < 3; k++) {
         set_triangle(t, piece[k], corner[k], corner[(k + 1) % 3], point);
         link_rim(t, 3 * piece[k], beyond[k]);
     }
     for (uint32_t k = 0; k < 3; k++)
         link(t, 3 * piece[k] + 1, 3 * piece[(k + 1) % 3] + 2, TRIANGULATION_NONE);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The triangles (a, b, c) and (b, a, d) at an inner edge become four. */
 static starg_status split_edge(triangulation *t, uint32_t h, uint32_t point) {
-    starg_status status = STARG_OK;
     uint32_t g = t->twin.data[h], carrier = t->carrier.data[h], left = h / 3, right = g / 3;
     uint32_t a = start_of(t, h), b = end_of(t, h), c = tip_of(t, h), d = tip_of(t, g);
     rim bc = rim_of(t, corner_next(h)), ca = rim_of(t, corner_previous(h));
     rim ad = rim_of(t, corner_next(g)), db = rim_of(t, corner_previous(g));
     uint32_t more_left, more_right;
-    STARG_TRY(add_triangle(t, &more_left));
-    STARG_TRY(add_triangle(t, &more_right));
+    TRY(add_triangle(t, &more_left));
+    TRY(add_triangle(t, &more_right));
     set_triangle(t, left, a, point, c);
     set_triangle(t, more_left, point, b, c);
     set_triangle(t, right, b, point, d);
@@ -204,22 +190,18 @@ static starg_status split_edge(triangulation *t, uint32_t h, uint32_t point) {
     link(t, 3 * more_left, 3 * right, carrier);
     link(t, 3 * left + 1, 3 * more_left + 2, TRIANGULATION_NONE);
     link(t, 3 * right + 1, 3 * more_right + 2, TRIANGULATION_NONE);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status triangulation_insert(triangulation *t, uint32_t point) {
-    starg_status status = STARG_OK;
-    STARG_TRY(make_known(t, point));
+    TRY(make_known(t, point));
     if (t->at.data[point] != TRIANGULATION_NONE)
-        goto done;
+        return STARG_OK;
     place found = locate(t, point);
     for (uint32_t k = 0; k < 3; k++)
         if (found.side[k] == 0)
             return split_edge(t, 3 * found.triangle + k, point);
-    status = split_triangle(t, found.triangle, point);
-done:
-    return status;
+    return split_triangle(t, found.triangle, point);
 }
 
 /* ---- flips ---- */
@@ -308,38 +290,33 @@ static void cross(const triangulation *t, const triangulation_carrier *a,
 /* Splits the segment on a halfedge where another carrier crosses it. */
 static starg_status split_crossing(triangulation *t, uint32_t h, const triangulation_carrier *other,
                                    uint32_t *point) {
-    starg_status status = STARG_OK;
     exact_point meeting;
     cross(t, other, &t->carriers.data[t->carrier.data[h]], &meeting);
-    STARG_TRY(exact_points_add(t->points, &meeting, point));
-    STARG_TRY(make_known(t, *point));
-    STARG_TRY(split_edge(t, h, *point));
-done:
-    return status;
+    TRY(exact_points_add(t->points, &meeting, point));
+    TRY(make_known(t, *point));
+    return split_edge(t, h, *point);
 }
 
 /* Lists the free edges that the way from a towards b crosses, the first of them `h`, up to a
  * vertex on it: *target, made where it crosses a segment. */
 static starg_status march(triangulation *t, uint32_t h, uint32_t a, uint32_t b,
                           const triangulation_carrier *carrier, uint32_t *target) {
-    starg_status status = STARG_OK;
     t->crossed.count = 0;
     for (;;) {
         if (t->carrier.data[h] != TRIANGULATION_NONE) {
-            STARG_TRY(split_crossing(t, h, carrier, target));
-            goto done;
+            TRY(split_crossing(t, h, carrier, target));
+            return STARG_OK;
         }
         uint64_t edge = (uint64_t)start_of(t, h) << 32 | end_of(t, h);
-        STARG_PUSH(t->context, STAGE, &t->crossed, edge);
+        PUSH(t->context, STAGE, &t->crossed, edge);
         h = t->twin.data[h];
         *target = tip_of(t, h);
         int side = *target == b ? 0 : turn(t, a, b, *target);
         if (side == 0)
-            goto done;
+            return STARG_OK;
         h = side > 0 ? corner_next(h) : corner_previous(h);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Does the segment between a and b cross the edge c d? They have no vertex on each other. */
@@ -352,7 +329,6 @@ static bool crosses(const triangulation *t, uint32_t a, uint32_t b, uint32_t c, 
  * flip to an edge that is crossed too only happens every other time, at random: some sequence of
  * flips always leads to the end, and no circle lasts. */
 static starg_status flip_away(triangulation *t, uint32_t a, uint32_t b) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < t->crossed.count; i++) {
         uint64_t edge = t->crossed.data[i];
         uint32_t h = find_edge(t, (uint32_t)(edge >> 32), (uint32_t)edge);
@@ -366,12 +342,11 @@ static starg_status flip_away(triangulation *t, uint32_t a, uint32_t b) {
             if (!again)
                 continue;
         }
-        STARG_PUSH(t->context, STAGE, &t->crossed, edge);
+        PUSH(t->context, STAGE, &t->crossed, edge);
         if (i % 1024 == 1023)
-            STARG_TRY(starg_check_cancel(t->context, STAGE));
+            TRY(starg_check_cancel(t->context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void mark(triangulation *t, uint32_t h, uint32_t carrier) {
@@ -381,22 +356,20 @@ static void mark(triangulation *t, uint32_t h, uint32_t carrier) {
 
 starg_status triangulation_constrain(triangulation *t, uint32_t a, uint32_t b,
                                      triangulation_carrier carrier) {
-    starg_status status = STARG_OK;
     uint32_t own = (uint32_t)t->carriers.count;
-    STARG_PUSH(t->context, STAGE, &t->carriers, carrier);
+    PUSH(t->context, STAGE, &t->carriers, carrier);
     while (a != b) {
         bool along;
         uint32_t h = first_step(t, a, b, &along), next = end_of(t, h);
         if (!along) {
-            STARG_TRY(march(t, h, a, b, &carrier, &next));
-            STARG_TRY(flip_away(t, a, next));
+            TRY(march(t, h, a, b, &carrier, &next));
+            TRY(flip_away(t, a, next));
             h = find_edge(t, a, next);
         }
         mark(t, h, own);
         a = next;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- shape ---- */
@@ -424,7 +397,6 @@ static bool wants_flip(const triangulation *t, uint32_t h) {
 }
 
 starg_status triangulation_improve(triangulation *t) {
-    starg_status status = STARG_OK;
     size_t flips = 0, most = FLIPS_PER_TRIANGLE * t->corner.count / 3;
     bool changed = true;
     while (changed && flips < most) {
@@ -439,8 +411,7 @@ starg_status triangulation_improve(triangulation *t) {
             changed = true;
             flips++;
         }
-        STARG_TRY(starg_check_cancel(t->context, STAGE));
+        TRY(starg_check_cancel(t->context, STAGE));
     }
-done:
-    return status;
+    return STARG_OK;
 }

@@ -2,6 +2,8 @@
 /* The boundary of the union: cut, choose, round, check, and again where rounding has made faces
  * meet that did not.
  *
+ * 0. What touches within rounding becomes shared (conform.c), if that is done with few new
+ * vertices.
  * 1. Pairs of faces that meet away from common corners (contacts.c); without any, done.
  * 2. The surface is cut along what they share (arrangement.c).
  * 3. Triangles with a winding number below 1 in front and at least 1 behind stay (windings.c): the
@@ -10,8 +12,11 @@
  *    and triangles that lose their area go. What is left bounds a region again, up to the rounding.
  *
  * Later rounds look only at faces that are new, and there are few of those whose rounding matters.
- * Invariants: vertices of the mesh never move, faces that meet no others stay as they are, and the
- * result has no pair of step 1. */
+ * Where it still makes contacts after EXACT_ROUNDS, each round begins with step 0, whatever that
+ * adds: contacts within rounding are shared then, and none of them is made anew. A surface that
+ * grows to more than MOST_GROWTH times the largest of the first rounds is given up.
+ * Invariants: vertices of the mesh never move but by step 0, faces that meet no others stay as they
+ * are, and the result has no pair of step 1. */
 #include "mesh/union/union.h"
 
 #include <stdlib.h>
@@ -19,41 +24,57 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/union/arrangement.h"
+#include "mesh/union/conform.h"
 
-enum { MOST_ROUNDS = 20 };
+enum { EXACT_ROUNDS = 4, MOST_ROUNDS = 20, MOST_GROWTH = 8, SPARE_FACES = 4096 };
 
 void union_surface_free(union_surface *surface) {
-    STARG_ARRAY_FREE(surface->context, &surface->vertices);
-    STARG_ARRAY_FREE(surface->context, &surface->faces);
-    STARG_ARRAY_FREE(surface->context, &surface->origin);
-    STARG_ARRAY_FREE(surface->context, &surface->flags);
+    RELEASE(surface->vertices.data, surface->faces.data, surface->origin.data, surface->flags.data);
 }
 
 /* Adds a face unless it has no area. */
 static starg_status add_face(union_surface *surface, const uint32_t corner[3], uint32_t origin,
                              uint8_t flags) {
-    starg_status status = STARG_OK;
     const double *p[3];
     for (int k = 0; k < 3; k++)
         p[k] = surface->vertices.data + 3 * (size_t)corner[k];
     if (collinear(p[0], p[1], p[2]))
         return STARG_OK;
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(surface->context, UNION_STAGE, &surface->faces, corner[k]);
-    STARG_PUSH(surface->context, UNION_STAGE, &surface->origin, origin);
-    STARG_PUSH(surface->context, UNION_STAGE, &surface->flags, flags);
-done:
-    return status;
+        PUSH(surface->context, UNION_STAGE, &surface->faces, corner[k]);
+    PUSH(surface->context, UNION_STAGE, &surface->origin, origin);
+    PUSH(surface->context, UNION_STAGE, &surface->flags, flags);
+    return STARG_OK;
 }
 
-static starg_status copy_mesh(const starg_mesh *mesh, union_surface *out) {
-    starg_status status = STARG_OK;
+starg_status union_surface_make(starg_context *context, const starg_mesh *mesh,
+                                union_surface *out) {
+    *out = (union_surface){.context = context};
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-        STARG_PUSH(out->context, UNION_STAGE, &out->vertices, mesh->vertices[i]);
-    for (size_t f = 0; f < mesh->face_count; f++)
-        STARG_TRY(add_face(out, mesh->faces + 3 * f, (uint32_t)f, 0));
-done:
-    return status;
+        PUSH(context, UNION_STAGE, &out->vertices, mesh->vertices[i]);
+    for (size_t i = 0; i < 3 * mesh->face_count; i++)
+        PUSH(context, UNION_STAGE, &out->faces, mesh->faces[i]);
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        PUSH(context, UNION_STAGE, &out->origin, (uint32_t)f);
+        PUSH(context, UNION_STAGE, &out->flags, 0);
+    }
+    return STARG_OK;
+}
+
+/* They bound nothing. */
+static void drop_flat_faces(union_surface *surface) {
+    size_t kept = 0;
+    for (uint32_t f = 0; f < union_face_count(surface); f++) {
+        if (collinear(union_corner(surface, f, 0), union_corner(surface, f, 1),
+                      union_corner(surface, f, 2)))
+            continue;
+        memmove(surface->faces.data + 3 * kept, surface->faces.data + 3 * (size_t)f,
+                3 * sizeof(uint32_t));
+        surface->origin.data[kept] = surface->origin.data[f];
+        surface->flags.data[kept++] = surface->flags.data[f];
+    }
+    surface->faces.count = 3 * kept;
+    surface->origin.count = surface->flags.count = kept;
 }
 
 /* ---- rounding ---- */
@@ -84,28 +105,25 @@ static double rounding_of(const double p[3]) {
 
 /* Points of the complex in the order of their rounded places; those of vertices come first. */
 static starg_status sort_points(const union_complex *complex, rounded_point **out) {
-    starg_status status = STARG_OK;
     size_t count = complex->name.count;
-    STARG_NEW(complex->context, UNION_STAGE, *out, count);
+    NEW(complex->context, UNION_STAGE, *out, count);
     for (size_t i = 0; i < count; i++) {
         memcpy((*out)[i].p, exact_points_rounded(&complex->points, (uint32_t)i), sizeof(*out)[i].p);
         (*out)[i].name = complex->name.data[i];
     }
     qsort(*out, count, sizeof **out, compare_rounded);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Appends each new place to the vertices. vertex[i], not NONE for points that are used, becomes the
  * vertex of the i-th added point. */
 static starg_status round_points(const union_complex *complex, union_surface *out, uint32_t *vertex,
                                  double *moved) {
-    starg_status status = STARG_OK;
     size_t vertices = complex->surface->vertices.count / 3;
-    rounded_point *points = NULL;
+    SCOPED rounded_point *points = NULL;
     const double *place = NULL; /* of the vertex `own` */
     uint32_t own = 0;
-    STARG_TRY(sort_points(complex, &points));
+    TRY(sort_points(complex, &points));
     for (size_t i = 0; i < complex->name.count; i++) {
         const double *p = points[i].p;
         uint32_t name = points[i].name;
@@ -120,14 +138,12 @@ static starg_status round_points(const union_complex *complex, union_surface *ou
             own = (uint32_t)(out->vertices.count / 3);
             place = p;
             for (int k = 0; k < 3; k++)
-                STARG_PUSH(out->context, UNION_STAGE, &out->vertices, p[k]);
+                PUSH(out->context, UNION_STAGE, &out->vertices, p[k]);
             *moved = fmax(*moved, rounding_of(p));
         }
         vertex[name - vertices] = own;
     }
-done:
-    starg_release(complex->context, points);
-    return status;
+    return STARG_OK;
 }
 
 static void mark_used(const union_complex *complex, const bool *keep, uint32_t *vertex) {
@@ -145,16 +161,15 @@ static void mark_used(const union_complex *complex, const bool *keep, uint32_t *
 /* The triangles that are kept, with rounded corners. */
 static starg_status assemble(const union_complex *complex, const bool *keep, union_surface *out,
                              double *moved) {
-    starg_status status = STARG_OK;
     const union_surface *from = complex->surface;
     size_t vertices = from->vertices.count / 3;
-    uint32_t *vertex = NULL;
+    SCOPED uint32_t *vertex = NULL;
     double largest = 0;
-    STARG_NEW(out->context, UNION_STAGE, vertex, complex->added.count);
+    NEW(out->context, UNION_STAGE, vertex, complex->added.count);
     for (size_t i = 0; i < from->vertices.count; i++)
-        STARG_PUSH(out->context, UNION_STAGE, &out->vertices, from->vertices.data[i]);
+        PUSH(out->context, UNION_STAGE, &out->vertices, from->vertices.data[i]);
     mark_used(complex, keep, vertex);
-    STARG_TRY(round_points(complex, out, vertex, &largest));
+    TRY(round_points(complex, out, vertex, &largest));
     *moved += largest;
     for (size_t t = 0; t < complex->triangles.count; t++) {
         const union_triangle *own = &complex->triangles.data[t];
@@ -166,37 +181,32 @@ static starg_status assemble(const union_complex *complex, const bool *keep, uni
                 own->corner[k] < vertices ? own->corner[k] : vertex[own->corner[k] - vertices];
         uint8_t flags =
             own->whole ? from->flags.data[own->face] & UNION_PART : UNION_PART | UNION_FRESH;
-        STARG_TRY(add_face(out, corner, from->origin.data[own->face], flags));
+        TRY(add_face(out, corner, from->origin.data[own->face], flags));
     }
-done:
-    starg_release(out->context, vertex);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- rounds ---- */
 
 static starg_status cut_and_choose(union_surface *surface, const bvh *tree,
                                    union_contacts *contacts, union_report *report) {
-    starg_status status = STARG_OK;
     starg_context *context = surface->context;
+    SCOPED_BY(union_complex_free)
     union_complex complex = {.context = context, .points.context = context};
-    union_surface next = {.context = context};
-    bool *keep = NULL;
-    STARG_TRY(union_arrange(surface, contacts, &complex));
-    STARG_NEW(context, UNION_STAGE, keep, complex.triangles.count);
-    STARG_TRY(union_choose(&complex, tree, keep));
-    STARG_TRY(assemble(&complex, keep, &next, &report->moved));
+    SCOPED_BY(union_surface_free) union_surface next = {.context = context};
+    SCOPED bool *keep = NULL;
+    TRY(union_arrange(surface, contacts, &complex));
+    NEW(context, UNION_STAGE, keep, complex.triangles.count);
+    TRY(union_choose(&complex, tree, keep));
+    TRY(assemble(&complex, keep, &next, &report->moved));
     union_surface former = *surface;
     *surface = next;
     next = former;
-done:
-    union_complex_free(&complex);
-    union_surface_free(&next);
-    starg_release(context, keep);
-    return status;
+    return STARG_OK;
 }
 
-static starg_status fail_rounding(const union_surface *surface, const union_contacts *contacts) {
+static starg_status fail_rounding(const union_surface *surface, const union_contacts *contacts,
+                                  size_t rounds) {
     uint64_t faces[STARG_ERROR_INDICES];
     size_t shown = 0;
     for (size_t i = 0; i < contacts->count; i++)
@@ -206,45 +216,79 @@ static starg_status fail_rounding(const union_surface *surface, const union_cont
         surface->context, STARG_ERROR_MESH, UNION_STAGE, STARG_ELEMENT_FACE, faces, shown,
         "%zu pairs of faces (first: parts of %llu and %llu) still meet after %d rounds, because "
         "rounding new points makes new intersections; merge near vertices first",
-        contacts->count, (unsigned long long)faces[0], (unsigned long long)faces[1], MOST_ROUNDS);
+        contacts->count, (unsigned long long)faces[0], (unsigned long long)faces[1], (int)rounds);
 }
 
-/* One round; *done tells that there was nothing to do. */
-static starg_status run_round(union_surface *surface, union_report *report, bool *done) {
-    starg_status status = STARG_OK;
-    bvh *tree = NULL;
-    union_contacts contacts = {0};
-    bool first = report->rounds == 0;
-    STARG_TRY(bvh_create(surface->context, surface->vertices.data, surface->faces.data,
-                         union_face_count(surface), &tree));
-    STARG_TRY(union_find_contacts(surface, tree, first, &contacts));
+/* Rounds that only make more faces do not end. */
+static bool has_run_away(const union_surface *surface, union_report *report) {
+    size_t count = union_face_count(surface);
+    if (report->rounds <= EXACT_ROUNDS && count > report->most)
+        report->most = count;
+    return count > MOST_GROWTH * report->most + SPARE_FACES;
+}
+
+/* Joins what touches, unless that makes many faces, as where surfaces pass through one another in
+ * nearly the same plane: exact cuts make fewer. */
+static starg_status snap(union_surface *surface, double distance, bool always, double *moved,
+                         bool *changed) {
+    SCOPED_BY(union_surface_free) union_surface copy = {.context = surface->context};
+    conform_report joined;
+    const starg_mesh view = {.context = surface->context,
+                             .vertex_count = surface->vertices.count / 3,
+                             .face_count = union_face_count(surface),
+                             .vertices = surface->vertices.data,
+                             .faces = surface->faces.data};
+    TRY(union_surface_make(surface->context, &view, &copy));
+    memcpy(copy.origin.data, surface->origin.data, view.face_count * sizeof *copy.origin.data);
+    memcpy(copy.flags.data, surface->flags.data, view.face_count);
+    TRY(surface_conform(&copy, distance, &joined));
+    *changed = joined.rounds > 0 && !joined.left && (always || joined.added <= view.face_count);
+    if (*changed) {
+        union_surface former = *surface;
+        *surface = copy;
+        copy = former;
+        *moved += joined.moved;
+    }
+    return STARG_OK;
+}
+
+/* One round; *done tells that there was nothing to do. The first one always chooses: shells may lie
+ * in one another without meeting. */
+static starg_status run_round(union_surface *surface, double distance, union_report *report,
+                              bool *done) {
+    SCOPED_BY(bvh_drop) bvh *tree = NULL;
+    SCOPED union_contacts contacts = {0};
+    bool first = !report->chosen, joined = false, late = report->rounds >= EXACT_ROUNDS;
+    if (first || (late && !has_run_away(surface, report)))
+        TRY(snap(surface, distance, late, &report->moved, &joined));
+    drop_flat_faces(surface);
+    TRY(bvh_create(surface->context, surface->vertices.data, surface->faces.data,
+                   union_face_count(surface), &tree));
+    TRY(union_find_contacts(surface, tree, first, &contacts));
     if (first)
         report->pairs = contacts.count;
-    *done = contacts.count == 0;
+    *done = contacts.count == 0 && !joined && !first;
     if (*done)
-        goto done;
-    if (report->rounds == MOST_ROUNDS) {
-        status = fail_rounding(surface, &contacts);
-        goto done;
-    }
-    report->rounds++;
-    STARG_TRY(cut_and_choose(surface, tree, &contacts, report));
-done:
-    STARG_ARRAY_FREE(surface->context, &contacts);
-    bvh_free(tree);
-    return status;
+        return STARG_OK;
+    if (contacts.count > 0 && (report->rounds == MOST_ROUNDS || has_run_away(surface, report)))
+        return fail_rounding(surface, &contacts, report->rounds);
+    report->chosen = true;
+    report->rounds += contacts.count > 0 || joined;
+    *done = report->rounds > MOST_ROUNDS;
+    return cut_and_choose(surface, tree, &contacts, report);
 }
 
-starg_status union_of_mesh(starg_context *context, const starg_mesh *mesh, union_surface *out,
-                           union_report *report) {
+starg_status union_of_mesh(starg_context *context, const starg_mesh *mesh, double merge,
+                           union_surface *out, union_report *report) {
     starg_status status = STARG_OK;
     bool finished = false;
     *out = (union_surface){.context = context};
     *report = (union_report){0};
     starg_progress_begin(context, UNION_STAGE);
-    STARG_TRY(copy_mesh(mesh, out));
+    STARG_TRY(union_surface_make(context, mesh, out));
+    double distance = conform_distance(out, merge);
     while (!finished && union_face_count(out) > 0)
-        STARG_TRY(run_round(out, report, &finished));
+        STARG_TRY(run_round(out, distance, report, &finished));
 done:
     starg_progress_end(context);
     if (status != STARG_OK) {

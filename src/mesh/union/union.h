@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The boundary of what a closed surface that intersects itself encloses. */
-#ifndef STARG_MESH_UNION_UNION_H
-#define STARG_MESH_UNION_UNION_H
+#pragma once
 
-#include "core/memory.h"
 #include "mesh/mesh.h"
 
 #define UNION_STAGE "union"
@@ -36,14 +34,17 @@ typedef struct union_report {
     size_t pairs;  /* of faces that meet away from common corners, at the start    */
     size_t rounds; /* of arrangement and rounding                                  */
     double moved;  /* how far a new point is at most from where exact points lie   */
+    bool chosen;   /* winding numbers have been counted                            */
+    size_t most;   /* faces that a surface had in the first rounds, at most */
 } union_report;
 
 /* Makes the boundary of the region where the winding number of `mesh` is positive: a surface whose
  * faces meet in common corners and edges only. The mesh's vertices come first, some of them
  * unused; its faces that meet no others stay. Errors: MESH (rounding makes new intersections each
  * time), RANGE (the coordinates are too wide for exact points), MEMORY, CANCELLED, TIME. */
-starg_status union_of_mesh(starg_context *context, const starg_mesh *mesh, union_surface *out,
-                           union_report *report);
-void union_surface_free(union_surface *surface);
+starg_status union_of_mesh(starg_context *context, const starg_mesh *mesh, double merge,
+                           union_surface *out, union_report *report);
 
-#endif
+/* The faces of a mesh. Errors: MEMORY. */
+starg_status union_surface_make(starg_context *context, const starg_mesh *mesh, union_surface *out);
+void union_surface_free(union_surface *surface);

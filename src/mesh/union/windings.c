@@ -121,11 +121,10 @@ static double area_of(const union_complex *complex, const union_triangle *triang
 
 /* Joins triangles across edges of two. */
 static starg_status find_patches(const union_complex *complex, uint32_t *patch) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    uint32_t *faces = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED uint32_t *faces = NULL;
     size_t count = complex->triangles.count;
-    STARG_NEW(complex->context, UNION_STAGE, faces, 3 * count);
+    NEW(complex->context, UNION_STAGE, faces, 3 * count);
     for (size_t i = 0; i < 3 * count; i++)
         faces[i] = complex->triangles.data[i / 3].corner[i % 3];
     const starg_mesh mesh = {.context = complex->context,
@@ -133,22 +132,18 @@ static starg_status find_patches(const union_complex *complex, uint32_t *patch) 
                                  complex->surface->vertices.count / 3 + complex->added.count,
                              .face_count = count,
                              .faces = faces};
-    STARG_TRY(topology_create(complex->context, &mesh, &topology));
+    TRY(topology_create(complex->context, &mesh, &topology));
     sets_make(patch, count);
     for (uint32_t h = 0; h < 3 * count; h++)
         if (topology->twin[h] != TOPOLOGY_NONE)
             sets_join(patch, h / 3, topology->twin[h] / 3);
-done:
-    topology_free(topology);
-    starg_release(complex->context, faces);
-    return status;
+    return STARG_OK;
 }
 
 /* For the root of each patch its largest triangle; whole faces, whose corners are short, first. */
 static starg_status find_largest(const union_complex *complex, uint32_t *patch, uint32_t *largest) {
-    starg_status status = STARG_OK;
-    double *size = NULL;
-    STARG_NEW(complex->context, UNION_STAGE, size, complex->triangles.count);
+    SCOPED double *size = NULL;
+    NEW(complex->context, UNION_STAGE, size, complex->triangles.count);
     for (uint32_t t = 0; t < complex->triangles.count; t++) {
         const union_triangle *own = &complex->triangles.data[t];
         uint32_t root = sets_find(patch, t), best = largest[root];
@@ -157,19 +152,16 @@ static starg_status find_largest(const union_complex *complex, uint32_t *patch, 
             (own->whole == complex->triangles.data[best].whole && size[t] > size[best]))
             largest[root] = t;
     }
-done:
-    starg_release(complex->context, size);
-    return status;
+    return STARG_OK;
 }
 
 starg_status union_choose(const union_complex *complex, const bvh *tree, bool *keep) {
-    starg_status status = STARG_OK;
-    uint32_t *patch = NULL, *largest = NULL;
+    SCOPED uint32_t *patch = NULL, *largest = NULL;
     size_t count = complex->triangles.count;
-    STARG_NEW(complex->context, UNION_STAGE, patch, count);
-    STARG_NEW(complex->context, UNION_STAGE, largest, count);
-    STARG_TRY(find_patches(complex, patch));
-    STARG_TRY(find_largest(complex, patch, largest));
+    NEW(complex->context, UNION_STAGE, patch, count);
+    NEW(complex->context, UNION_STAGE, largest, count);
+    TRY(find_patches(complex, patch));
+    TRY(find_largest(complex, patch, largest));
     for (uint32_t t = 0; t < count; t++) { /* a root is the lowest of its patch */
         uint32_t root = sets_find(patch, t);
         int front;
@@ -177,13 +169,10 @@ starg_status union_choose(const union_complex *complex, const bvh *tree, bool *k
             keep[t] = keep[root];
             continue;
         }
-        STARG_TRY(shoot(complex, tree, largest[root], &front));
+        TRY(shoot(complex, tree, largest[root], &front));
         keep[t] = front < 1 && front + complex->triangles.data[t].layers >= 1;
         if (t % LINES_PER_CHECK == 0)
-            STARG_TRY(starg_check_cancel(complex->context, UNION_STAGE));
+            TRY(starg_check_cancel(complex->context, UNION_STAGE));
     }
-done:
-    starg_release(complex->context, patch);
-    starg_release(complex->context, largest);
-    return status;
+    return STARG_OK;
 }

@@ -21,7 +21,6 @@
  * and that of the joins. */
 #include "star/compatible/compatible.h"
 
-#include "core/memory.h"
 #include "star/compatible/twin_pieces.h"
 #include "star/decomposition.h"
 
@@ -32,49 +31,40 @@ enum { PLANE_STARTS = 3 }; /* divisions by planes: the one of the fewest pieces 
 /* ---- stages ---- */
 
 static starg_status join_start(twin_pieces *w) {
-    starg_status status = STARG_OK;
-    STARG_TRY(twin_pieces_list(w));
-    STARG_TRY(twin_pieces_join(w));
-done:
-    return status;
+    TRY(twin_pieces_list(w));
+    return twin_pieces_join(w);
 }
 
 /* Parts between planes, of several rounds the fewest. */
 static starg_status start_by_planes(const twin_pieces *from, twin_pieces *best) {
-    starg_status status = STARG_OK;
-    twin_pieces next = {.context = from->context};
+    SCOPED_BY(twin_pieces_free) twin_pieces next = {.context = from->context};
     for (uint64_t round = 0; round < PLANE_STARTS; round++) {
         twin_pieces_free(&next);
         next =
             (twin_pieces){.context = from->context, .meshes = {from->meshes[0], from->meshes[1]}};
-        STARG_TRY(compatible_planes(from->context, from->meshes, round, next.own, &next.pieces));
+        TRY(compatible_planes(from->context, from->meshes, round, next.own, &next.pieces));
         for (int i = 0; i < 2; i++)
             if (next.own[i] != NULL)
                 next.meshes[i] = next.own[i];
-        STARG_TRY(join_start(&next));
+        TRY(join_start(&next));
         if (round == 0 || next.pieces.count < best->pieces.count)
             twin_pieces_swap(best, &next);
     }
-done:
-    twin_pieces_free(&next);
-    return status;
+    return STARG_OK;
 }
 
 /* Regions that are grown or, where tetrahedra may be cut and these are fewer, parts between planes.
  */
 static starg_status start(twin_pieces *w, bool cut) {
-    starg_status status = STARG_OK;
-    twin_pieces other = {.context = w->context};
-    STARG_TRY(grow_compatible_regions(w->context, w->meshes[0], w->meshes[1], &w->pieces));
-    STARG_TRY(join_start(w));
-    STARG_TRY(compatible_regrow(w));
+    SCOPED_BY(twin_pieces_free) twin_pieces other = {.context = w->context};
+    TRY(grow_compatible_regions(w->context, w->meshes[0], w->meshes[1], &w->pieces));
+    TRY(join_start(w));
+    TRY(compatible_regrow(w));
     if (cut && w->pieces.count > 1)
-        STARG_TRY(start_by_planes(w, &other));
+        TRY(start_by_planes(w, &other));
     if (other.pieces.count > 0 && other.pieces.count < w->pieces.count)
         twin_pieces_swap(w, &other);
-done:
-    twin_pieces_free(&other);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the result ---- */
@@ -98,23 +88,44 @@ done:
     return status;
 }
 
+/* Guards in the middle, and the result. */
+static starg_status deliver(twin_pieces *w, starg_decomposition *out[2]) {
+    starg_status status = STARG_OK;
+    STARG_TRY(twin_pieces_center(w));
+    for (int i = 0; i < 2; i++)
+        STARG_TRY(finish(w, i, &out[i]));
+done:
+    if (status != STARG_OK) {
+        starg_decomposition_free(w->context, out[0]);
+        out[0] = NULL;
+    }
+    return status;
+}
+
+starg_status compatible_join(starg_context *context, const starg_tetmesh *mesh,
+                             const starg_tetmesh *image, const uint32_t *labels,
+                             const double *const guards[2], size_t count,
+                             starg_decomposition *out[2]) {
+    SCOPED_BY(twin_pieces_free) twin_pieces w = {.context = context, .meshes = {mesh, image}};
+    out[0] = out[1] = NULL;
+    NEW(context, STAGE, w.pieces.labels, mesh->count);
+    memcpy(w.pieces.labels, labels, mesh->count * sizeof *labels);
+    w.pieces.count = count;
+    for (size_t i = 0; i < 3 * count; i++) {
+        PUSH(context, STAGE, &w.pieces.guards, guards[0][i]);
+        PUSH(context, STAGE, &w.pieces.counterparts, guards[1][i]);
+    }
+    TRY(join_start(&w));
+    return deliver(&w, out);
+}
+
 starg_status compatible_decompose(starg_context *context, const starg_tetmesh *mesh,
                                   const starg_tetmesh *image, bool cut,
                                   starg_decomposition *out[2]) {
-    starg_status status = STARG_OK;
-    twin_pieces w = {.context = context, .meshes = {mesh, image}};
+    SCOPED_BY(twin_pieces_free) twin_pieces w = {.context = context, .meshes = {mesh, image}};
     out[0] = out[1] = NULL;
-    STARG_TRY(start(&w, cut));
+    TRY(start(&w, cut));
     if (cut)
-        STARG_TRY(compatible_cut(&w));
-    STARG_TRY(twin_pieces_center(&w));
-    for (int i = 0; i < 2; i++)
-        STARG_TRY(finish(&w, i, &out[i]));
-done:
-    if (status != STARG_OK) {
-        starg_decomposition_free(context, out[0]);
-        out[0] = NULL;
-    }
-    twin_pieces_free(&w);
-    return status;
+        TRY(compatible_cut(&w));
+    return deliver(&w, out);
 }

@@ -7,8 +7,6 @@
  * when that has long saved nothing, or after a number of tetrahedra in proportion to all. */
 #include "star/compatible/twin_pieces.h"
 
-#include <string.h>
-
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "join";
@@ -52,23 +50,22 @@ static void choose_plane(const twin_pieces *w, const uint8_t *dropped, starg_rng
 /* The pieces that are kept, and the two parts. */
 static starg_status number_parts(const twin_pieces *w, const uint8_t *dropped,
                                  double guards[2][2][3], twin_pieces *out) {
-    starg_status status = STARG_OK;
-    uint32_t *numbers = NULL;
+    SCOPED uint32_t *numbers = NULL;
     grown_regions *pieces = &out->pieces;
-    STARG_NEW(w->context, STAGE, numbers, w->pieces.count);
+    NEW(w->context, STAGE, numbers, w->pieces.count);
     for (size_t p = 0; p < w->pieces.count; p++) {
         if (dropped[p])
             continue;
         numbers[p] = (uint32_t)pieces->count++;
         for (size_t k = 3 * p; k < 3 * p + 3; k++) {
-            STARG_PUSH(w->context, STAGE, &pieces->guards, w->pieces.guards.data[k]);
-            STARG_PUSH(w->context, STAGE, &pieces->counterparts, w->pieces.counterparts.data[k]);
+            PUSH(w->context, STAGE, &pieces->guards, w->pieces.guards.data[k]);
+            PUSH(w->context, STAGE, &pieces->counterparts, w->pieces.counterparts.data[k]);
         }
     }
     for (int part = 0; part < 2; part++)
         for (int k = 0; k < 3; k++) {
-            STARG_PUSH(w->context, STAGE, &pieces->guards, guards[part][0][k]);
-            STARG_PUSH(w->context, STAGE, &pieces->counterparts, guards[part][1][k]);
+            PUSH(w->context, STAGE, &pieces->guards, guards[part][0][k]);
+            PUSH(w->context, STAGE, &pieces->counterparts, guards[part][1][k]);
         }
     for (size_t t = 0; t < out->meshes[0]->count; t++) {
         uint32_t label = pieces->labels[t];
@@ -76,34 +73,30 @@ static starg_status number_parts(const twin_pieces *w, const uint8_t *dropped,
                                                   : numbers[label];
     }
     pieces->count += 2;
-done:
-    starg_release(w->context, numbers);
-    return status;
+    return STARG_OK;
 }
 
 /* Tries planes for a group; *out has no pieces if none will do. */
 static starg_status divide_group(const twin_pieces *w, const uint8_t *dropped, starg_rng *rng,
                                  through_cut *cut, twin_pieces *out) {
-    starg_status status = STARG_OK;
     double guards[2][2][3];
     bool found = false;
     for (int i = 0; i < CUT_TRIES && !found; i++) {
         choose_plane(w, dropped, rng, cut->levels);
-        STARG_TRY(through_find(cut, guards, &found));
+        TRY(through_find(cut, guards, &found));
     }
     if (found)
-        STARG_TRY(through_divide(cut, w->pieces.labels, out->own, &out->pieces.labels, &found));
+        TRY(through_divide(cut, w->pieces.labels, out->own, &out->pieces.labels, &found));
     if (!found)
-        goto done;
+        return STARG_OK;
     for (int i = 0; i < 2; i++)
         out->meshes[i] = out->own[i];
-    STARG_TRY(number_parts(w, dropped, guards, out));
-    STARG_TRY(twin_pieces_list(out));
-    STARG_TRY(twin_pieces_prove(out, &found));
+    TRY(number_parts(w, dropped, guards, out));
+    TRY(twin_pieces_list(out));
+    TRY(twin_pieces_prove(out, &found));
     if (!found)
         out->pieces.count = 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* One group: *saved says whether it has become two pieces. */
@@ -135,25 +128,20 @@ static starg_status cut_group(twin_pieces *w, uint64_t round, size_t *work, bool
     }
 done:
     through_free(&cut);
-    starg_release(context, cut.levels);
-    starg_release(context, dropped);
-    starg_release(context, inside);
+    RELEASE(cut.levels, dropped, inside);
     twin_pieces_free(&next);
     return status;
 }
 
 starg_status compatible_cut(twin_pieces *w) {
-    starg_status status = STARG_OK;
     size_t idle = 0, work = 0, most = CUT_WORK * w->meshes[0]->count;
-    starg_progress_begin(w->context, STAGE);
+    IN_STAGE(w->context, STAGE);
     for (uint64_t round = 1; idle < CUT_IDLE && work < most && w->pieces.count > 2; round++) {
         bool saved;
-        STARG_TRY(starg_check_cancel(w->context, STAGE));
-        STARG_TRY(cut_group(w, round, &work, &saved));
+        TRY(starg_check_cancel(w->context, STAGE));
+        TRY(cut_group(w, round, &work, &saved));
         idle = saved ? 0 : idle + 1;
         starg_progress_step(w->context, work, most);
     }
-done:
-    starg_progress_end(w->context);
-    return status;
+    return STARG_OK;
 }

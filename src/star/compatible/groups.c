@@ -6,8 +6,6 @@
  * has long saved nothing, or after a number of tetrahedra in proportion to all. */
 #include "star/compatible/twin_pieces.h"
 
-#include "star/strict/start/region_growing.h"
-
 static const char STAGE[] = "join";
 
 enum {
@@ -21,43 +19,34 @@ enum {
 /* The pieces without those dropped, and what is grown in their stead. */
 static starg_status replace_group(const twin_pieces *w, const uint8_t *dropped, uint64_t round,
                                   twin_pieces *out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(grow_compatible_again(w->context, w->meshes[0], w->meshes[1], &w->pieces, dropped,
-                                    round, &out->pieces));
-    STARG_TRY(twin_pieces_list(out));
+    TRY(grow_compatible_again(w->context, w->meshes[0], w->meshes[1], &w->pieces, dropped, round,
+                              &out->pieces));
+    TRY(twin_pieces_list(out));
     for (size_t p = 0, kept = 0; p < w->pieces.count; p++)
         if (!dropped[p])
             out->fresh[kept++] = 0;
-    STARG_TRY(twin_pieces_join(out));
-done:
-    return status;
+    return twin_pieces_join(out);
 }
 
 starg_status compatible_regrow(twin_pieces *w) {
-    starg_status status = STARG_OK;
     starg_context *context = w->context;
-    twin_pieces next = {.context = context};
-    uint8_t *dropped = NULL;
-    starg_progress_begin(context, STAGE);
-    STARG_NEW(context, STAGE, dropped, w->pieces.count);
+    SCOPED_BY(twin_pieces_free) twin_pieces next = {.context = context};
+    SCOPED uint8_t *dropped = NULL;
+    IN_STAGE(context, STAGE);
+    NEW(context, STAGE, dropped, w->pieces.count);
     size_t idle = 0, work = 0, most = WORK_LEAST + WORK_EACH * w->meshes[0]->count;
     for (uint64_t round = 1; idle < IDLE_MOST && work < most && w->pieces.count > 1; round++) {
         starg_rng rng = starg_rng_make(context->seed, 0, round);
         size_t group = 0;
-        STARG_TRY(
-            twin_pieces_drop(w, 2 + starg_rng_below(&rng, GROUP_MOST - 1), &rng, dropped, &group));
+        TRY(twin_pieces_drop(w, 2 + starg_rng_below(&rng, GROUP_MOST - 1), &rng, dropped, &group));
         twin_pieces_free(&next);
         next = (twin_pieces){.context = context, .meshes = {w->meshes[0], w->meshes[1]}};
-        STARG_TRY(replace_group(w, dropped, round, &next));
+        TRY(replace_group(w, dropped, round, &next));
         work += group + w->meshes[0]->count / PASSES;
         idle = next.pieces.count < w->pieces.count ? 0 : idle + 1;
         if (next.pieces.count <= w->pieces.count)
             twin_pieces_swap(w, &next);
         starg_progress_step(context, work, most);
     }
-done:
-    starg_progress_end(context);
-    twin_pieces_free(&next);
-    starg_release(context, dropped);
-    return status;
+    return STARG_OK;
 }

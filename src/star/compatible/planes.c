@@ -15,16 +15,12 @@
  *
  * Cost: for each part that of the split plane search, and a pass over all tetrahedra. */
 #include "star/compatible/twin_pieces.h"
+#include "star/compatible/twin_region.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/rng.h"
 #include "geometry/vec3.h"
-#include "star/piece_faces.h"
-#include "star/strict/search/split_plane.h"
-#include "visibility/kernel.h"
+#include "star/strict/search/search.h"
 
 static const char STAGE[] = "planes";
 
@@ -54,9 +50,7 @@ typedef struct plane_builder {
 static void builder_free(plane_builder *b) {
     for (int i = 0; i < 2; i++)
         starg_tetmesh_free(b->own[i]);
-    starg_release(b->context, b->labels);
-    STARG_ARRAY_FREE(b->context, &b->parts);
-    STARG_ARRAY_FREE(b->context, &b->faces);
+    RELEASE(b->labels, b->parts.data, b->faces.data);
     region_scratch_free(&b->scratch);
 }
 
@@ -64,52 +58,41 @@ static void builder_free(plane_builder *b) {
 
 /* The faces around a part. */
 static starg_status list_faces(plane_builder *b, uint32_t number) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = b->meshes[0];
     b->faces.count = 0;
     for (size_t face = 0; face < 4 * mesh->count; face++)
         if (b->labels[face / 4] == number)
-            STARG_TRY(
-                piece_faces_add(b->context, mesh, b->labels, face, number, number, &b->faces));
-done:
-    return status;
+            TRY(piece_faces_add(b->context, mesh, b->labels, face, number, number, &b->faces));
+    return STARG_OK;
 }
 
 static kernel_faces surface_in(const plane_builder *b, int place) {
     return (kernel_faces){b->meshes[place]->vertices, b->faces.data, b->faces.count / 3};
 }
 
-/* A place where the part has no kernel; -1: it has guards in both. */
-static starg_status find_guards(plane_builder *b, part *it, int *blind) {
-    starg_status status = STARG_OK;
-    int first = (int)starg_rng_below(&b->rng, 2);
+starg_status twin_kernels(starg_context *context, const kernel_faces surfaces[2], starg_rng *rng,
+                          double guards[2][3], int *blind) {
+    int first = (int)starg_rng_below(rng, 2);
     *blind = -1;
     for (int i = 0; i < 2 && *blind < 0; i++) {
         int place = first ^ i;
-        const kernel_faces surface = surface_in(b, place);
         starg_kernel_result kernel;
-        STARG_TRY(kernel_find(b->context, &surface, &kernel));
-        vec3_copy(kernel.guard, it->guards[place]);
+        TRY(kernel_find(context, &surfaces[place], &kernel));
+        vec3_copy(kernel.guard, guards[place]);
         if (kernel.verdict != STARG_KERNEL_INTERIOR)
             *blind = place;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the plane ---- */
 
-/* To a cube of about unit size. */
-typedef struct unit_frame {
-    double origin[3], scale;
-} unit_frame;
-
-static unit_frame frame_of(const starg_tetmesh *mesh, const uint32_t *corners, size_t count) {
+twin_frame twin_frame_of(const double *places, const uint32_t *corners, size_t count) {
     double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
-    unit_frame out = {.scale = 0};
+    twin_frame out = {.scale = 0};
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < 3; k++) {
-            double x = mesh->vertices[3 * (size_t)corners[i] + k];
+            double x = places[3 * (size_t)corners[i] + k];
             lower[k] = fmin(lower[k], x);
             upper[k] = fmax(upper[k], x);
         }
@@ -121,13 +104,12 @@ static unit_frame frame_of(const starg_tetmesh *mesh, const uint32_t *corners, s
     return out;
 }
 
-static void to_unit(const unit_frame *frame, const double p[3], double out[3]) {
+void twin_to_unit(const twin_frame *frame, const double p[3], double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = (p[k] - frame->origin[k]) * frame->scale;
 }
 
 static starg_status add_triangle(starg_context *context, const uint32_t numbers[3], region *out) {
-    starg_status status = STARG_OK;
     const double *a = out->vertices.data + 3 * (size_t)numbers[0];
     const double *b = out->vertices.data + 3 * (size_t)numbers[1];
     const double *c = out->vertices.data + 3 * (size_t)numbers[2];
@@ -137,49 +119,43 @@ static starg_status add_triangle(starg_context *context, const uint32_t numbers[
     vec3_triangle_normal(a, b, c, normal);
     double length = vec3_length(normal);
     if (!(length > 0))
-        goto done; /* too thin for doubles: any guard will do */
+        return STARG_OK; /* too thin for doubles: any guard will do */
     for (int k = 0; k < 3; k++)
         normal[k] /= length;
     offset = vec3_dot(normal, a);
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(context, STAGE, &out->rows, normal[k]);
-    STARG_PUSH(context, STAGE, &out->rows, offset);
-    STARG_PUSH(context, STAGE, &out->triangles, fresh);
-done:
-    return status;
+        PUSH(context, STAGE, &out->rows, normal[k]);
+    PUSH(context, STAGE, &out->rows, offset);
+    PUSH(context, STAGE, &out->triangles, fresh);
+    return STARG_OK;
 }
 
-/* The listed faces as the input of a plane search. */
-static starg_status make_region(const plane_builder *b, int place, const unit_frame *frame,
-                                region *out) {
-    starg_status status = STARG_OK;
-    const starg_tetmesh *mesh = b->meshes[place];
-    uint32_t *numbers = NULL;
-    STARG_NEW(b->context, STAGE, numbers, mesh->vertex_count);
-    memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
-    for (size_t i = 0; i < b->faces.count; i += 3) {
-        uint32_t corners[3];
+starg_status twin_region(starg_context *context, const double *places, size_t vertices,
+                         const uint32_t *corners, size_t count, const twin_frame *frame,
+                         region *out) {
+    SCOPED uint32_t *numbers = NULL;
+    NEW(context, STAGE, numbers, vertices);
+    memset(numbers, 0xff, vertices * sizeof *numbers);
+    for (size_t i = 0; i < count; i += 3) {
+        uint32_t own[3];
         for (size_t k = 0; k < 3; k++) {
-            uint32_t v = b->faces.data[i + k];
+            uint32_t v = corners[i + k];
             double p[3];
             if (numbers[v] == NOWHERE) {
                 numbers[v] = (uint32_t)(out->vertices.count / 3);
-                to_unit(frame, mesh->vertices + 3 * (size_t)v, p);
+                twin_to_unit(frame, places + 3 * (size_t)v, p);
                 for (int c = 0; c < 3; c++)
-                    STARG_PUSH(b->context, STAGE, &out->vertices, p[c]);
+                    PUSH(context, STAGE, &out->vertices, p[c]);
             }
-            corners[k] = numbers[v];
+            own[k] = numbers[v];
         }
-        STARG_TRY(add_triangle(b->context, corners, out));
+        TRY(add_triangle(context, own, out));
     }
-    STARG_TRY(region_make_blocks(b->context, out));
-done:
-    starg_release(b->context, numbers);
-    return status;
+    return region_make_blocks(context, out);
 }
 
 /* Heights above the plane of the part's vertices; 0 for all others. */
-static void find_levels(const plane_builder *b, uint32_t number, int place, const unit_frame *frame,
+static void find_levels(const plane_builder *b, uint32_t number, int place, const twin_frame *frame,
                         const partition_plane *plane, double *levels) {
     const starg_tetmesh *mesh = b->meshes[place];
     memset(levels, 0, mesh->vertex_count * sizeof *levels);
@@ -187,49 +163,45 @@ static void find_levels(const plane_builder *b, uint32_t number, int place, cons
         double p[3];
         if (b->labels[i / 4] != number)
             continue;
-        to_unit(frame, mesh->vertices + 3 * (size_t)mesh->tetrahedra[i], p);
+        twin_to_unit(frame, mesh->vertices + 3 * (size_t)mesh->tetrahedra[i], p);
         levels[mesh->tetrahedra[i]] = vec3_dot(plane->normal, p) - plane->offset;
     }
 }
 
 static starg_status choose_plane(plane_builder *b, uint32_t number, int place, double *levels,
                                  bool *found) {
-    starg_status status = STARG_OK;
     int attempts = b->parts.data[number].attempts;
-    const unit_frame frame = frame_of(b->meshes[place], b->faces.data, b->faces.count);
+    const starg_tetmesh *mesh = b->meshes[place];
+    const twin_frame frame = twin_frame_of(mesh->vertices, b->faces.data, b->faces.count);
     const split_plane_options options = {.margin = MARGIN,
                                          .effort = EFFORT,
                                          .demand = attempts < FAIR_FROM    ? SPLIT_PLANE_GAIN
                                                    : attempts < HALVE_FROM ? SPLIT_PLANE_FAIR
                                                                            : SPLIT_PLANE_HALVE};
-    region r = {.vertices = {0}};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     partition_plane plane;
-    STARG_TRY(make_region(b, place, &frame, &r));
-    STARG_TRY(split_plane_find(&r, &options, &b->rng, &b->scratch, &plane, found));
+    TRY(twin_region(b->context, mesh->vertices, mesh->vertex_count, b->faces.data, b->faces.count,
+                    &frame, &r));
+    TRY(split_plane_find(&r, &options, &b->rng, &b->scratch, &plane, found));
     if (*found)
         find_levels(b, number, place, &frame, &plane, levels);
-done:
-    region_free(b->context, &r);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the cut ---- */
 
 static starg_status open_part(plane_builder *b, int attempts, uint32_t *number) {
-    starg_status status = STARG_OK;
     *number = (uint32_t)b->parts.count;
-    STARG_PUSH(b->context, STAGE, &b->parts, ((part){.attempts = attempts}));
-done:
-    return status;
+    PUSH(b->context, STAGE, &b->parts, ((part){.attempts = attempts}));
+    return STARG_OK;
 }
 
 /* What hangs together with a tetrahedron of label `from` becomes `to`. */
 static starg_status relabel(plane_builder *b, size_t seed, uint32_t from, uint32_t to) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = b->meshes[0];
-    STARG_ARRAY(uint32_t) stack = {0};
+    SCOPED STARG_ARRAY(uint32_t) stack = {0};
     b->labels[seed] = to;
-    STARG_PUSH(b->context, STAGE, &stack, (uint32_t)seed);
+    PUSH(b->context, STAGE, &stack, (uint32_t)seed);
     while (stack.count > 0) {
         size_t t = stack.data[--stack.count];
         for (size_t face = 4 * t; face < 4 * t + 4; face++) {
@@ -237,28 +209,24 @@ static starg_status relabel(plane_builder *b, size_t seed, uint32_t from, uint32
             if (u == STARG_TETMESH_NONE || b->labels[u] != from)
                 continue;
             b->labels[u] = to;
-            STARG_PUSH(b->context, STAGE, &stack, u);
+            PUSH(b->context, STAGE, &stack, u);
         }
     }
-done:
-    STARG_ARRAY_FREE(b->context, &stack);
-    return status;
+    return STARG_OK;
 }
 
 /* Each connected set with a label becomes a part; the first is `number`, if that is one. */
 static starg_status separate(plane_builder *b, uint32_t label, uint32_t number, int attempts) {
-    starg_status status = STARG_OK;
     for (size_t t = 0; t < b->meshes[0]->count; t++) {
         uint32_t to = number;
         if (b->labels[t] != label)
             continue;
         if (to == NOWHERE)
-            STARG_TRY(open_part(b, attempts, &to));
-        STARG_TRY(relabel(b, t, label, to));
+            TRY(open_part(b, attempts, &to));
+        TRY(relabel(b, t, label, to));
         number = NOWHERE;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void adopt(plane_builder *b, starg_tetmesh *const meshes[2], uint32_t *labels) {
@@ -271,22 +239,19 @@ static void adopt(plane_builder *b, starg_tetmesh *const meshes[2], uint32_t *la
 }
 
 static starg_status divide(plane_builder *b, uint32_t number, through_cut *cut, bool *done) {
-    starg_status status = STARG_OK;
     starg_tetmesh *meshes[2];
     uint32_t *labels;
     *done = false;
-    STARG_TRY(through_place(cut, done));
+    TRY(through_place(cut, done));
     if (*done)
-        STARG_TRY(through_divide(cut, b->labels, meshes, &labels, done));
+        TRY(through_divide(cut, b->labels, meshes, &labels, done));
     if (!*done)
-        goto done;
+        return STARG_OK;
     adopt(b, meshes, labels);
     int attempts = b->parts.data[number].attempts / 2;
     b->parts.data[number].attempts = attempts;
-    STARG_TRY(separate(b, THROUGH_PART, number, attempts));
-    STARG_TRY(separate(b, THROUGH_PART + 1, NOWHERE, attempts));
-done:
-    return status;
+    TRY(separate(b, THROUGH_PART, number, attempts));
+    return separate(b, THROUGH_PART + 1, NOWHERE, attempts);
 }
 
 static starg_status cut_part(plane_builder *b, uint32_t number, int place) {
@@ -305,38 +270,34 @@ static starg_status cut_part(plane_builder *b, uint32_t number, int place) {
     if (!done)
         b->parts.data[number].attempts++;
 done:
-    starg_release(b->context, cut.levels);
-    starg_release(b->context, inside);
+    RELEASE(cut.levels, inside);
     through_free(&cut);
     return status;
 }
 
 static starg_status look_at(plane_builder *b, uint32_t number) {
-    starg_status status = STARG_OK;
     int blind;
-    STARG_TRY(list_faces(b, number));
-    STARG_TRY(find_guards(b, &b->parts.data[number], &blind));
+    TRY(list_faces(b, number));
+    const kernel_faces surfaces[2] = {surface_in(b, 0), surface_in(b, 1)};
+    TRY(twin_kernels(b->context, surfaces, &b->rng, b->parts.data[number].guards, &blind));
     if (blind < 0)
         b->parts.data[number].done = true;
     else
-        STARG_TRY(cut_part(b, number, blind));
-done:
-    return status;
+        TRY(cut_part(b, number, blind));
+    return STARG_OK;
 }
 
 /* ---- the result ---- */
 
 /* Later cuts may have divided what was proven before, with rounded points. */
 static starg_status prove(plane_builder *b, uint32_t number) {
-    starg_status status = STARG_OK;
     part *it = &b->parts.data[number];
-    STARG_TRY(list_faces(b, number));
+    TRY(list_faces(b, number));
     for (int place = 0; place < 2 && it->done; place++) {
         const kernel_faces surface = surface_in(b, place);
         it->done = kernel_sees_all(&surface, it->guards[place]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* What is not done is grown. */
@@ -357,36 +318,32 @@ static starg_status finish(plane_builder *b, grown_regions *out) {
     STARG_TRY(
         grow_compatible_again(b->context, b->meshes[0], b->meshes[1], &parts, dropped, 0, out));
 done:
-    starg_release(b->context, dropped);
-    STARG_ARRAY_FREE(b->context, &parts.guards);
-    STARG_ARRAY_FREE(b->context, &parts.counterparts);
+    RELEASE(dropped, parts.guards.data, parts.counterparts.data);
     return status;
 }
 
 starg_status compatible_planes(starg_context *context, const starg_tetmesh *const meshes[2],
                                uint64_t round, starg_tetmesh *own[2], grown_regions *pieces) {
-    starg_status status = STARG_OK;
+    SCOPED_BY(builder_free)
     plane_builder b = {.context = context,
                        .meshes = {meshes[0], meshes[1]},
                        .scratch = {.context = context},
                        .rng = starg_rng_make(context->seed, 2, round)};
     own[0] = own[1] = NULL;
-    STARG_NEW(context, STAGE, b.labels, meshes[0]->count);
+    NEW(context, STAGE, b.labels, meshes[0]->count);
     for (size_t t = 0; t < meshes[0]->count; t++)
         b.labels[t] = THROUGH_PART;
-    STARG_TRY(separate(&b, THROUGH_PART, NOWHERE, 0));
+    TRY(separate(&b, THROUGH_PART, NOWHERE, 0));
     for (uint32_t i = 0; i < b.parts.count; i++)
         while (!b.parts.data[i].done && b.parts.data[i].attempts < ATTEMPTS_MOST &&
                b.meshes[0]->count < GROWTH_MOST * meshes[0]->count) {
-            STARG_TRY(starg_check_cancel(context, STAGE));
-            STARG_TRY(look_at(&b, i));
+            TRY(starg_check_cancel(context, STAGE));
+            TRY(look_at(&b, i));
         }
-    STARG_TRY(finish(&b, pieces));
+    TRY(finish(&b, pieces));
     for (int i = 0; i < 2; i++) {
         own[i] = b.own[i];
         b.own[i] = NULL;
     }
-done:
-    builder_free(&b);
-    return status;
+    return STARG_OK;
 }

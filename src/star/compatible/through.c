@@ -15,12 +15,9 @@
 #include "star/compatible/twin_pieces.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "star/piece_faces.h"
-#include "visibility/kernel.h"
 
 static const char STAGE[] = "join";
 
@@ -33,8 +30,7 @@ static const int EDGE[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 void through_free(through_cut *cut) {
     STARG_ARRAY_FREE(cut->context, &cut->edges);
     for (int i = 0; i < 2; i++) {
-        STARG_ARRAY_FREE(cut->context, &cut->places[i]);
-        STARG_ARRAY_FREE(cut->context, &cut->faces[i]);
+        RELEASE(cut->places[i].data, cut->faces[i].data);
     }
 }
 
@@ -50,10 +46,9 @@ static bool crosses(const through_cut *cut, uint32_t a, uint32_t b) {
 
 /* All at once, so that the order of edges does not matter. */
 static starg_status move_onto_vertices(through_cut *cut) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = cut->meshes[0];
-    uint8_t *near = NULL;
-    STARG_NEW_ZERO(cut->context, STAGE, near, mesh->vertex_count);
+    SCOPED uint8_t *near = NULL;
+    NEW_ZERO(cut->context, STAGE, near, mesh->vertex_count);
     for (size_t t = 0; t < mesh->count; t++)
         for (int e = 0; cut->inside[t] && e < 6; e++) {
             uint32_t a = mesh->tetrahedra[4 * t + (size_t)EDGE[e][0]];
@@ -69,9 +64,7 @@ static starg_status move_onto_vertices(through_cut *cut) {
     for (size_t v = 0; v < mesh->vertex_count; v++)
         if (near[v])
             cut->levels[v] = 0;
-done:
-    starg_release(cut->context, near);
-    return status;
+    return STARG_OK;
 }
 
 static int compare_keys(const void *left, const void *right) {
@@ -80,7 +73,6 @@ static int compare_keys(const void *left, const void *right) {
 }
 
 static starg_status list_edges(through_cut *cut) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = cut->meshes[0];
     size_t kept = 0;
     cut->edges.count = 0;
@@ -89,7 +81,7 @@ static starg_status list_edges(through_cut *cut) {
             uint32_t a = mesh->tetrahedra[4 * t + (size_t)EDGE[e][0]];
             uint32_t b = mesh->tetrahedra[4 * t + (size_t)EDGE[e][1]];
             if (crosses(cut, a, b))
-                STARG_PUSH(cut->context, STAGE, &cut->edges, key_of(a, b));
+                PUSH(cut->context, STAGE, &cut->edges, key_of(a, b));
         }
     if (cut->edges.count > 0)
         qsort(cut->edges.data, cut->edges.count, sizeof *cut->edges.data, compare_keys);
@@ -97,8 +89,7 @@ static starg_status list_edges(through_cut *cut) {
         if (kept == 0 || cut->edges.data[kept - 1] != cut->edges.data[i])
             cut->edges.data[kept++] = cut->edges.data[i];
     cut->edges.count = kept;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The number of the point on an edge; UINT32_MAX: it does not cross. */
@@ -112,42 +103,37 @@ static uint32_t point_on(const through_cut *cut, uint32_t a, uint32_t b) {
 }
 
 static starg_status place_points(through_cut *cut) {
-    starg_status status = STARG_OK;
     for (int i = 0; i < 2; i++) {
         const starg_tetmesh *mesh = cut->meshes[i];
         cut->places[i].count = 0;
         for (size_t k = 0; k < 3 * mesh->vertex_count; k++)
-            STARG_PUSH(cut->context, STAGE, &cut->places[i], mesh->vertices[k]);
+            PUSH(cut->context, STAGE, &cut->places[i], mesh->vertices[k]);
         for (size_t e = 0; e < cut->edges.count; e++) {
             uint32_t a = (uint32_t)(cut->edges.data[e] >> 32), b = (uint32_t)cut->edges.data[e];
             double at = cut->levels[a] / (cut->levels[a] - cut->levels[b]);
             for (size_t k = 0; k < 3; k++) {
                 double from = mesh->vertices[3 * (size_t)a + k];
                 double to = mesh->vertices[3 * (size_t)b + k];
-                STARG_PUSH(cut->context, STAGE, &cut->places[i], from + at * (to - from));
+                PUSH(cut->context, STAGE, &cut->places[i], from + at * (to - from));
             }
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- faces around the parts ---- */
 
 static starg_status add_polygon(through_cut *cut, int part, const uint32_t *corners, size_t count) {
-    starg_status status = STARG_OK;
     for (size_t i = 1; i + 1 < count; i++) {
-        STARG_PUSH(cut->context, STAGE, &cut->faces[part], corners[0]);
-        STARG_PUSH(cut->context, STAGE, &cut->faces[part], corners[i]);
-        STARG_PUSH(cut->context, STAGE, &cut->faces[part], corners[i + 1]);
+        PUSH(cut->context, STAGE, &cut->faces[part], corners[0]);
+        PUSH(cut->context, STAGE, &cut->faces[part], corners[i]);
+        PUSH(cut->context, STAGE, &cut->faces[part], corners[i + 1]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* What of a face is on either side. */
 static starg_status add_outer_face(through_cut *cut, const uint32_t corners[3]) {
-    starg_status status = STARG_OK;
     for (int part = 0; part < 2; part++) {
         uint32_t polygon[4];
         size_t count = 0;
@@ -158,10 +144,9 @@ static starg_status add_outer_face(through_cut *cut, const uint32_t corners[3]) 
             if (crosses(cut, a, b))
                 polygon[count++] = point_on(cut, a, b);
         }
-        STARG_TRY(add_polygon(cut, part, polygon, count));
+        TRY(add_polygon(cut, part, polygon, count));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* 0, 1, or -1 for a tetrahedron that is on both sides. */
@@ -177,7 +162,6 @@ static int side_of(const through_cut *cut, const uint32_t corners[4]) {
 /* The polygon between both parts, for the lower one, and reversed for the upper one. */
 static starg_status add_inner_polygon(through_cut *cut, uint32_t *polygon, size_t count,
                                       uint32_t below) {
-    starg_status status = STARG_OK;
     const double *places = cut->places[0].data;
     double normal[3], down[3];
     uint32_t turned[4];
@@ -187,10 +171,8 @@ static starg_status add_inner_polygon(through_cut *cut, uint32_t *polygon, size_
     for (size_t i = 0; i < count; i++)
         turned[i] = polygon[(count - i) % count];
     bool outward = vec3_dot(normal, down) < 0;
-    STARG_TRY(add_polygon(cut, 0, outward ? polygon : turned, count));
-    STARG_TRY(add_polygon(cut, 1, outward ? turned : polygon, count));
-done:
-    return status;
+    TRY(add_polygon(cut, 0, outward ? polygon : turned, count));
+    return add_polygon(cut, 1, outward ? turned : polygon, count);
 }
 
 static starg_status add_cut_of(through_cut *cut, const uint32_t corners[4]) {
@@ -223,32 +205,28 @@ static bool is_on_cut(const through_cut *cut, const uint32_t corners[3]) {
 }
 
 static starg_status add_faces_of(through_cut *cut, size_t t) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = cut->meshes[0];
     int side = side_of(cut, mesh->tetrahedra + 4 * t);
     if (side < 0)
-        STARG_TRY(add_cut_of(cut, mesh->tetrahedra + 4 * t));
+        TRY(add_cut_of(cut, mesh->tetrahedra + 4 * t));
     for (size_t face = 4 * t; face < 4 * t + 4; face++) {
         uint32_t corners[3], u = mesh->neighbours[face];
         piece_face_corners(mesh, face, corners);
         bool outer = u == STARG_TETMESH_NONE || !cut->inside[u], on = is_on_cut(cut, corners);
         if (outer && !on)
-            STARG_TRY(add_outer_face(cut, corners));
+            TRY(add_outer_face(cut, corners));
         else if (on && (outer || side_of(cut, mesh->tetrahedra + 4 * (size_t)u) != side))
-            STARG_TRY(add_polygon(cut, side, corners, 3));
+            TRY(add_polygon(cut, side, corners, 3));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status list_faces(through_cut *cut) {
-    starg_status status = STARG_OK;
     cut->faces[0].count = cut->faces[1].count = 0;
     for (size_t t = 0; t < cut->meshes[0]->count; t++)
         if (cut->inside[t])
-            STARG_TRY(add_faces_of(cut, t));
-done:
-    return status;
+            TRY(add_faces_of(cut, t));
+    return STARG_OK;
 }
 
 starg_status through_place(through_cut *cut, bool *found) {
@@ -267,25 +245,23 @@ done:
 }
 
 starg_status through_find(through_cut *cut, double guards[2][2][3], bool *found) {
-    starg_status status = STARG_OK;
-    STARG_TRY(through_place(cut, found));
+    TRY(through_place(cut, found));
     if (!*found)
-        goto done;
+        return STARG_OK;
     *found = false;
-    STARG_TRY(list_faces(cut));
+    TRY(list_faces(cut));
     for (int i = 0; i < 4; i++) {
         int part = i / 2, place = i % 2;
         const kernel_faces surface = {cut->places[place].data, cut->faces[part].data,
                                       cut->faces[part].count / 3};
         starg_kernel_result kernel;
-        STARG_TRY(kernel_find(cut->context, &surface, &kernel));
+        TRY(kernel_find(cut->context, &surface, &kernel));
         if (kernel.verdict != STARG_KERNEL_INTERIOR)
-            goto done;
+            return STARG_OK;
         vec3_copy(kernel.guard, guards[part][place]);
     }
     *found = true;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- dividing ---- */
@@ -348,7 +324,6 @@ typedef struct divided {
 
 static starg_status divide_all(const through_cut *cut, const uint32_t *labels, divided *out,
                                bool *good) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = cut->meshes[0];
     *good = true;
     for (size_t t = 0; t < mesh->count && *good; t++) {
@@ -357,32 +332,28 @@ static starg_status divide_all(const through_cut *cut, const uint32_t *labels, d
         for (size_t i = 0; i < count && *good; i++) {
             *good = count == 1 || is_positive(cut, parts[i]);
             for (int k = 0; k < 4; k++)
-                STARG_PUSH(cut->context, STAGE, &out->tetrahedra, parts[i][k]);
-            STARG_PUSH(cut->context, STAGE, &out->labels,
-                       cut->inside[t] ? label_of(cut, parts[i]) : labels[t]);
+                PUSH(cut->context, STAGE, &out->tetrahedra, parts[i][k]);
+            PUSH(cut->context, STAGE, &out->labels,
+                 cut->inside[t] ? label_of(cut, parts[i]) : labels[t]);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status adopt(const through_cut *cut, const divided *parts, int place,
                           starg_tetmesh **out) {
-    starg_status status = STARG_OK;
-    double *vertices = NULL;
-    uint32_t *tetrahedra = NULL;
+    SCOPED double *vertices = NULL;
+    SCOPED uint32_t *tetrahedra = NULL;
     size_t size = cut->places[place].count;
-    STARG_NEW(cut->context, STAGE, vertices, size);
-    STARG_NEW(cut->context, STAGE, tetrahedra, parts->tetrahedra.count);
+    NEW(cut->context, STAGE, vertices, size);
+    NEW(cut->context, STAGE, tetrahedra, parts->tetrahedra.count);
     memcpy(vertices, cut->places[place].data, size * sizeof *vertices);
     memcpy(tetrahedra, parts->tetrahedra.data, parts->tetrahedra.count * sizeof *tetrahedra);
-    STARG_TRY(tetmesh_adopt(cut->context, vertices, size / 3, tetrahedra,
-                            parts->tetrahedra.count / 4, NULL, true, out));
+    TRY(tetmesh_adopt(cut->context, vertices, size / 3, tetrahedra, parts->tetrahedra.count / 4,
+                      NULL, true, out));
+    vertices = NULL;
+    tetrahedra = NULL;
     return STARG_OK;
-done:
-    starg_release(cut->context, vertices);
-    starg_release(cut->context, tetrahedra);
-    return status;
 }
 
 starg_status through_divide(const through_cut *cut, const uint32_t *labels, starg_tetmesh *out[2],
@@ -399,8 +370,7 @@ starg_status through_divide(const through_cut *cut, const uint32_t *labels, star
     *out_labels = parts.labels.data;
     parts.labels.data = NULL;
 done:
-    STARG_ARRAY_FREE(cut->context, &parts.tetrahedra);
-    STARG_ARRAY_FREE(cut->context, &parts.labels);
+    RELEASE(parts.tetrahedra.data, parts.labels.data);
     if (status != STARG_OK) {
         starg_tetmesh_free(out[0]);
         out[0] = NULL;

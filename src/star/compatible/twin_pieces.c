@@ -7,10 +7,8 @@
 #include "star/compatible/twin_pieces.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
-#include "visibility/kernel.h"
 
 static const char STAGE[] = "join";
 
@@ -28,7 +26,7 @@ void twin_pieces_free(twin_pieces *w) {
         starg_release(w->context, blocks[i]);
     for (int i = 0; i < 2; i++)
         starg_tetmesh_free(w->own[i]);
-    grown_regions_free(w->context, &w->pieces);
+    grown_regions_free(&w->pieces);
 }
 
 void twin_pieces_swap(twin_pieces *a, twin_pieces *b) {
@@ -38,13 +36,12 @@ void twin_pieces_swap(twin_pieces *a, twin_pieces *b) {
 }
 
 starg_status twin_pieces_list(twin_pieces *w) {
-    starg_status status = STARG_OK;
     size_t count = w->pieces.count;
-    STARG_NEW(w->context, STAGE, w->next, w->meshes[0]->count);
-    STARG_NEW(w->context, STAGE, w->heads, count);
-    STARG_NEW(w->context, STAGE, w->tails, count);
-    STARG_NEW(w->context, STAGE, w->fresh, count);
-    STARG_NEW_ZERO(w->context, STAGE, w->joined, count);
+    NEW(w->context, STAGE, w->next, w->meshes[0]->count);
+    NEW(w->context, STAGE, w->heads, count);
+    NEW(w->context, STAGE, w->tails, count);
+    NEW(w->context, STAGE, w->fresh, count);
+    NEW_ZERO(w->context, STAGE, w->joined, count);
     memset(w->heads, 0xff, count * sizeof *w->heads);
     memset(w->fresh, 1, count);
     for (size_t t = w->meshes[0]->count; t-- > 0;) {
@@ -54,42 +51,36 @@ starg_status twin_pieces_list(twin_pieces *w) {
             w->tails[piece] = (uint32_t)t;
         w->heads[piece] = (uint32_t)t;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- kernels ---- */
 
 /* Adds the faces of piece `piece` that bound its union with `other`. */
 static starg_status add_faces(twin_pieces *w, uint32_t piece, uint32_t other) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = w->meshes[0];
     for (uint32_t t = w->heads[piece]; t != TWIN_LAST; t = w->next[t])
         for (size_t face = 4 * (size_t)t; face < 4 * (size_t)t + 4; face++)
-            STARG_TRY(
-                piece_faces_add(w->context, mesh, w->pieces.labels, face, piece, other, &w->faces));
-done:
-    return status;
+            TRY(piece_faces_add(w->context, mesh, w->pieces.labels, face, piece, other, &w->faces));
+    return STARG_OK;
 }
 
 /* Looks for a guard of two pieces together, or of one that is given twice, in both places. */
 static starg_status find_guards(twin_pieces *w, uint32_t piece, uint32_t other, double guards[2][3],
                                 bool *found) {
-    starg_status status = STARG_OK;
     *found = true;
     w->faces.count = 0;
-    STARG_TRY(add_faces(w, piece, other));
+    TRY(add_faces(w, piece, other));
     if (other != piece)
-        STARG_TRY(add_faces(w, other, piece));
+        TRY(add_faces(w, other, piece));
     for (int i = 0; i < 2 && *found; i++) {
         const kernel_faces surface = {w->meshes[i]->vertices, w->faces.data, w->faces.count / 3};
         starg_kernel_result kernel;
-        STARG_TRY(kernel_find(w->context, &surface, &kernel));
+        TRY(kernel_find(w->context, &surface, &kernel));
         vec3_copy(kernel.guard, guards[i]);
         *found = kernel.verdict == STARG_KERNEL_INTERIOR;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void set_guards(twin_pieces *w, uint32_t piece, double guards[2][3]) {
@@ -135,7 +126,6 @@ static void merge_contacts(contact_list *list) {
 /* Pairs of pieces of which one is fresh, the largest contact first. The area is that of the first
  * mesh. */
 static starg_status find_contacts(const twin_pieces *w, contact_list *out) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = w->meshes[0];
     out->count = 0;
     for (size_t face = 0; face < 4 * mesh->count; face++) {
@@ -144,15 +134,14 @@ static starg_status find_contacts(const twin_pieces *w, contact_list *out) {
             continue;
         b = w->pieces.labels[u];
         if (a < b && (w->fresh[a] || w->fresh[b]))
-            STARG_PUSH(w->context, STAGE, out, ((contact){a, b, area_of(mesh, face)}));
+            PUSH(w->context, STAGE, out, ((contact){a, b, area_of(mesh, face)}));
     }
     if (out->count == 0)
-        goto done;
+        return STARG_OK;
     qsort(out->data, out->count, sizeof *out->data, by_pieces);
     merge_contacts(out);
     qsort(out->data, out->count, sizeof *out->data, by_area);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- joins ---- */
@@ -168,7 +157,6 @@ static void append(twin_pieces *w, uint32_t piece, uint32_t other) {
 
 /* One round: each piece changes once at most, so that contacts stay true. */
 static starg_status join_round(twin_pieces *w, const contact_list *contacts, size_t *joins) {
-    starg_status status = STARG_OK;
     *joins = 0;
     for (size_t i = 0; i < contacts->count; i++) {
         const contact *c = &contacts->data[i];
@@ -176,16 +164,15 @@ static starg_status join_round(twin_pieces *w, const contact_list *contacts, siz
         bool found;
         if (w->joined[c->first] || w->joined[c->second])
             continue;
-        STARG_TRY(starg_check_cancel(w->context, STAGE));
-        STARG_TRY(find_guards(w, c->first, c->second, guards, &found));
+        TRY(starg_check_cancel(w->context, STAGE));
+        TRY(find_guards(w, c->first, c->second, guards, &found));
         if (!found)
             continue;
         append(w, c->first, c->second);
         set_guards(w, c->first, guards);
         (*joins)++;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Numbers without gaps. */
@@ -208,35 +195,30 @@ static void renumber(twin_pieces *w) {
 }
 
 starg_status twin_pieces_join(twin_pieces *w) {
-    starg_status status = STARG_OK;
-    contact_list contacts = {0};
+    SCOPED contact_list contacts = {0};
     size_t joins;
     do {
-        STARG_TRY(find_contacts(w, &contacts));
-        STARG_TRY(join_round(w, &contacts, &joins));
+        TRY(find_contacts(w, &contacts));
+        TRY(join_round(w, &contacts, &joins));
         memcpy(w->fresh, w->joined, w->pieces.count);
         memset(w->joined, 0, w->pieces.count);
     } while (joins > 0);
     renumber(w);
-done:
-    STARG_ARRAY_FREE(w->context, &contacts);
-    return status;
+    return STARG_OK;
 }
 
 /* Of guards that see their pieces already: a program that fails by rounding changes nothing. */
 starg_status twin_pieces_center(twin_pieces *w) {
-    starg_status status = STARG_OK;
     for (uint32_t piece = 0; piece < w->pieces.count; piece++) {
         double guards[2][3];
         bool found;
         if (w->heads[piece] == TWIN_LAST)
             continue;
-        STARG_TRY(find_guards(w, piece, piece, guards, &found));
+        TRY(find_guards(w, piece, piece, guards, &found));
         if (found)
             set_guards(w, piece, guards);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- choices ---- */
@@ -269,11 +251,10 @@ done:
 }
 
 starg_status twin_pieces_prove(twin_pieces *w, bool *proven) {
-    starg_status status = STARG_OK;
     *proven = true;
     for (uint32_t piece = 0; piece < w->pieces.count && *proven; piece++) {
         w->faces.count = 0;
-        STARG_TRY(add_faces(w, piece, piece));
+        TRY(add_faces(w, piece, piece));
         *proven = w->faces.count > 0;
         for (int i = 0; i < 2 && *proven; i++) {
             const double *guards = i == 0 ? w->pieces.guards.data : w->pieces.counterparts.data;
@@ -282,6 +263,5 @@ starg_status twin_pieces_prove(twin_pieces *w, bool *proven) {
             *proven = kernel_sees_all(&surface, guards + 3 * (size_t)piece);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }

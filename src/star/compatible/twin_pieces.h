@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pieces of two solids at once: the steps of compatible.c. */
-#ifndef STARG_STAR_COMPATIBLE_TWIN_PIECES_H
-#define STARG_STAR_COMPATIBLE_TWIN_PIECES_H
+#pragma once
 
-#include "core/memory.h"
 #include "core/rng.h"
 #include "star/piece_faces.h"
 #include "star/strict/start/region_growing.h"
-#include "tetra/tetmesh.h"
 
 /* Pieces that are star-shaped in two solids: sets of tetrahedra that lie in two places. */
 
@@ -97,5 +94,3 @@ starg_status compatible_regrow(twin_pieces *w);
  * planes. Errors: MESH (a tetrahedron so thin that no point is found in it), MEMORY, CANCELLED. */
 starg_status compatible_planes(starg_context *context, const starg_tetmesh *const meshes[2],
                                uint64_t round, starg_tetmesh *own[2], grown_regions *pieces);
-
-#endif

@@ -17,8 +17,6 @@
  * coloured tetrahedra. */
 #include "star/paper/state.h"
 
-#include <math.h>
-
 #include "geometry/vec3.h"
 
 static const paper_guard *guard_of(const paper_front *front, int32_t colour) {

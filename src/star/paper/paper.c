@@ -15,10 +15,7 @@
  */
 #include "star/decomposition.h"
 
-#include <math.h>
-
 #include "geometry/vec3.h"
-#include "mesh/solid.h"
 #include "star/paper/state.h"
 #include "starguard/guard.h"
 
@@ -39,13 +36,12 @@ starg_status tet_rings_create(starg_context *context, const starg_tetmesh *mesh,
         out->at[--out->first[mesh->tetrahedra[i]]] = (uint32_t)(i / 4);
 done:
     if (status != STARG_OK)
-        tet_rings_free(context, out);
+        tet_rings_free(out);
     return status;
 }
 
-void tet_rings_free(starg_context *context, tet_rings *rings) {
-    starg_release(context, rings->first);
-    starg_release(context, rings->at);
+void tet_rings_free(tet_rings *rings) {
+    RELEASE(rings->first, rings->at);
     *rings = (tet_rings){0};
 }
 
@@ -62,26 +58,22 @@ static double find_diagonal(const starg_tetmesh *mesh) {
 
 static starg_status state_create(starg_context *context, const starg_tetmesh *mesh,
                                  paper_state *s) {
-    starg_status status = STARG_OK;
     *s = (paper_state){.context = context, .diagonal = find_diagonal(mesh)};
-    STARG_TRY(tetmesh_copy(context, mesh, &s->mesh));
-    STARG_TRY(tet_sight_create(context, s->mesh, &s->sight));
-    STARG_TRY(tet_rings_create(context, s->mesh, &s->rings));
-    STARG_TRY(heap_create(context, mesh->count, &s->heap));
-    STARG_NEW(context, PAPER_STAGE, s->offer, mesh->count);
-    STARG_NEW(context, PAPER_STAGE, s->labels, mesh->count);
+    TRY(tetmesh_copy(context, mesh, &s->mesh));
+    TRY(tet_sight_create(context, s->mesh, &s->sight));
+    TRY(tet_rings_create(context, s->mesh, &s->rings));
+    TRY(heap_create(context, mesh->count, &s->heap));
+    NEW(context, PAPER_STAGE, s->offer, mesh->count);
+    NEW(context, PAPER_STAGE, s->labels, mesh->count);
     memset(s->labels, 0xff, mesh->count * sizeof *s->labels);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void state_free(paper_state *s) {
     tet_sight_free(s->context, &s->sight);
-    tet_rings_free(s->context, &s->rings);
+    tet_rings_free(&s->rings);
     heap_free(s->heap);
-    starg_release(s->context, s->offer);
-    starg_release(s->context, s->labels);
-    STARG_ARRAY_FREE(s->context, &s->guards);
+    RELEASE(s->offer, s->labels, s->guards.data);
     starg_tetmesh_free(s->mesh);
 }
 
@@ -89,20 +81,18 @@ static void state_free(paper_state *s) {
 
 /* Takes those that are strictly inside, no more than `most` of them. */
 static starg_status take_guards(paper_state *s, const double *points, size_t count, size_t most) {
-    starg_status status = STARG_OK;
     size_t outside = 0;
     for (size_t i = 0; i < count && (most == 0 || paper_pieces(s) < most); i++) {
         bool inside = tet_sight_contains(&s->sight, points + 3 * i);
         outside += !inside;
         for (size_t k = 0; inside && k < 3; k++)
-            STARG_PUSH(s->context, PAPER_STAGE, &s->guards, points[3 * i + k]);
+            PUSH(s->context, PAPER_STAGE, &s->guards, points[3 * i + k]);
     }
     if (outside > 0)
         starg_log(s->context, STARG_LOG_NOTICE,
                   "ignoring %zu of %zu guards that are not strictly inside the tetrahedra", outside,
                   count);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Guards of section 3 for the boundary. Where that is no surface that they can be placed for
@@ -137,24 +127,21 @@ done:
 /* ---- growth ---- */
 
 static starg_status domain_of_all(paper_state *s, paper_domain *out) {
-    starg_status status = STARG_OK;
-    STARG_NEW(s->context, PAPER_STAGE, out->tetrahedra, s->mesh->count);
-    STARG_NEW(s->context, PAPER_STAGE, out->vertices, s->mesh->vertex_count);
+    NEW(s->context, PAPER_STAGE, out->tetrahedra, s->mesh->count);
+    NEW(s->context, PAPER_STAGE, out->vertices, s->mesh->vertex_count);
     out->count = s->mesh->count;
     for (size_t t = 0; t < s->mesh->count; t++)
         out->tetrahedra[t] = (uint32_t)t;
     for (size_t v = 0; v < s->mesh->vertex_count; v++)
         if (s->rings.first[v] < s->rings.first[v + 1])
             out->vertices[out->vertex_count++] = (uint32_t)v;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Small components between the regions. */
 static starg_status take_small_components(paper_state *s, const paper_front *front) {
-    starg_status status = STARG_OK;
-    component_search c;
-    STARG_TRY(component_create(s, &c));
+    SCOPED_BY(component_free) component_search c = {0};
+    TRY(component_create(s, &c));
     for (size_t t = 0; t < s->mesh->count; t++) {
         if (s->labels[t] >= 0 || c.tet_mark[t] > 0)
             continue;
@@ -162,9 +149,7 @@ static starg_status take_small_components(paper_state *s, const paper_front *fro
         if (c.found.count <= PAPER_SMALL_COMPONENT)
             growth_relaxed(s, front, c.found.tetrahedra, c.found.count, PAPER_LEAST_SEEN);
     }
-done:
-    component_free(s, &c);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status grow_from_guards(paper_state *s, size_t max_pieces) {
@@ -183,19 +168,16 @@ static starg_status grow_from_guards(paper_state *s, size_t max_pieces) {
         growth_relaxed(s, &front, all.tetrahedra, all.count, 0);
 done:
     for (size_t i = 0; guards != NULL && i < count; i++)
-        view_free(s, &guards[i]);
-    starg_release(s->context, guards);
-    starg_release(s->context, all.tetrahedra);
-    starg_release(s->context, all.vertices);
+        view_free(&guards[i]);
+    RELEASE(guards, all.tetrahedra, all.vertices);
     return status;
 }
 
 /* Pieces without a tetrahedron, whose guard stands where another one has been first, go. */
 static starg_status drop_empty_pieces(paper_state *s) {
-    starg_status status = STARG_OK;
     size_t count = paper_pieces(s), kept = 0;
-    int32_t *number = NULL;
-    STARG_NEW(s->context, PAPER_STAGE, number, count);
+    SCOPED int32_t *number = NULL;
+    NEW(s->context, PAPER_STAGE, number, count);
     memset(number, 0xff, count * sizeof *number);
     for (size_t t = 0; t < s->mesh->count; t++)
         number[s->labels[t]] = 0;
@@ -208,9 +190,7 @@ static starg_status drop_empty_pieces(paper_state *s) {
     s->guards.count = 3 * kept;
     for (size_t t = 0; t < s->mesh->count; t++)
         s->labels[t] = number[s->labels[t]];
-done:
-    starg_release(s->context, number);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status finish(paper_state *s, starg_decomposition **out) {
@@ -224,24 +204,20 @@ static starg_status finish(paper_state *s, starg_decomposition **out) {
 
 starg_status paper_decompose(starg_context *context, const starg_tetmesh *mesh,
                              const starg_decompose_options *options, starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    paper_state s;
+    SCOPED_BY(state_free) paper_state s = {0};
     bool time_limited = false;
     *out = NULL;
-    starg_progress_begin(context, PAPER_STAGE);
-    STARG_TRY(state_create(context, mesh, &s));
+    IN_STAGE(context, PAPER_STAGE);
+    TRY(state_create(context, mesh, &s));
     if (options->guards != NULL)
-        STARG_TRY(take_guards(&s, options->guards, options->guard_count, options->max_pieces));
+        TRY(take_guards(&s, options->guards, options->guard_count, options->max_pieces));
     else
-        STARG_TRY(place_guards(&s, options->max_pieces, &time_limited));
-    STARG_TRY(grow_from_guards(&s, options->max_pieces));
-    STARG_TRY(uncoloured_regrow(&s, options->max_pieces, &time_limited));
-    STARG_TRY(drop_empty_pieces(&s));
-    STARG_TRY(smooth_borders(&s));
-    STARG_TRY(finish(&s, out));
+        TRY(place_guards(&s, options->max_pieces, &time_limited));
+    TRY(grow_from_guards(&s, options->max_pieces));
+    TRY(uncoloured_regrow(&s, options->max_pieces, &time_limited));
+    TRY(drop_empty_pieces(&s));
+    TRY(smooth_borders(&s));
+    TRY(finish(&s, out));
     (*out)->time_limited = time_limited;
-done:
-    state_free(&s);
-    starg_progress_end(context);
-    return status;
+    return STARG_OK;
 }

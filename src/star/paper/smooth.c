@@ -190,8 +190,6 @@ starg_status smooth_borders(paper_state *s) {
                 move_vertex(&m, (uint32_t)v);
     }
 done:
-    starg_release(s->context, m.fixed);
-    starg_release(s->context, m.volumes);
-    starg_release(s->context, m.facing);
+    RELEASE(m.fixed, m.volumes, m.facing);
     return status;
 }

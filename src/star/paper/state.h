@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Region growing as in the paper: the state, and the steps that change it. */
-#ifndef STARG_STAR_PAPER_STATE_H
-#define STARG_STAR_PAPER_STATE_H
+#pragma once
 
-#include "core/memory.h"
 #include "mesh/levels/heap.h"
 #include "star/piece_faces.h"
 
@@ -48,7 +46,7 @@ typedef struct paper_state {
 
 /* Errors: MEMORY. */
 starg_status tet_rings_create(starg_context *context, const starg_tetmesh *mesh, tet_rings *out);
-void tet_rings_free(starg_context *context, tet_rings *rings);
+void tet_rings_free(tet_rings *rings);
 
 /* The middle of a tetrahedron, rounded. */
 static inline void paper_centroid(const paper_state *s, size_t tetrahedron, double out[3]) {
@@ -76,11 +74,11 @@ typedef struct view_scratch {
     uint32_t *waiting, *stack;
 } view_scratch;
 starg_status view_scratch_create(const paper_state *s, view_scratch *out);
-void view_scratch_free(const paper_state *s, view_scratch *scratch);
+void view_scratch_free(view_scratch *scratch);
 
 /* An empty view: nothing is seen. Errors: MEMORY. */
 starg_status view_create(const paper_state *s, paper_guard *g);
-void view_free(const paper_state *s, paper_guard *g);
+void view_free(paper_guard *g);
 
 /* Fills `toward` and `cost` within a domain; the position is known. */
 void view_fill(const paper_state *s, paper_guard *g, const paper_domain *domain,
@@ -104,7 +102,7 @@ typedef struct component_search {
 
 /* Memory for all searches; free it also after a failure. Errors: MEMORY. */
 starg_status component_create(const paper_state *s, component_search *out);
-void component_free(const paper_state *s, component_search *c);
+void component_free(component_search *c);
 
 /* Finds the uncoloured component of a tetrahedron, breadth first. */
 void component_find(const paper_state *s, component_search *c, uint32_t tetrahedron);
@@ -170,5 +168,3 @@ starg_status uncoloured_regrow(paper_state *s, size_t max_pieces, bool *time_lim
 /* Moves inner vertices where pieces meet; every tetrahedron stays positive. Errors: MEMORY,
  * CANCELLED. */
 starg_status smooth_borders(paper_state *s);
-
-#endif

@@ -20,23 +20,17 @@
  * nothing has to be cleared in between: the cost of a search is the size of what it finds. */
 
 starg_status component_create(const paper_state *s, component_search *out) {
-    starg_status status = STARG_OK;
     *out = (component_search){0};
-    STARG_NEW(s->context, PAPER_STAGE, out->found.tetrahedra, s->mesh->count);
-    STARG_NEW(s->context, PAPER_STAGE, out->found.vertices, s->mesh->vertex_count);
-    STARG_NEW(s->context, PAPER_STAGE, out->number, s->mesh->vertex_count);
-    STARG_NEW_ZERO(s->context, PAPER_STAGE, out->tet_mark, s->mesh->count);
-    STARG_NEW_ZERO(s->context, PAPER_STAGE, out->vertex_mark, s->mesh->vertex_count);
-done:
-    return status;
+    NEW(s->context, PAPER_STAGE, out->found.tetrahedra, s->mesh->count);
+    NEW(s->context, PAPER_STAGE, out->found.vertices, s->mesh->vertex_count);
+    NEW(s->context, PAPER_STAGE, out->number, s->mesh->vertex_count);
+    NEW_ZERO(s->context, PAPER_STAGE, out->tet_mark, s->mesh->count);
+    NEW_ZERO(s->context, PAPER_STAGE, out->vertex_mark, s->mesh->vertex_count);
+    return STARG_OK;
 }
 
-void component_free(const paper_state *s, component_search *c) {
-    starg_release(s->context, c->found.tetrahedra);
-    starg_release(s->context, c->found.vertices);
-    starg_release(s->context, c->number);
-    starg_release(s->context, c->tet_mark);
-    starg_release(s->context, c->vertex_mark);
+void component_free(component_search *c) {
+    RELEASE(c->found.tetrahedra, c->found.vertices, c->number, c->tet_mark, c->vertex_mark);
     *c = (component_search){0};
 }
 
@@ -100,13 +94,11 @@ static size_t pick_candidates(const rest *r, trial *t) {
 }
 
 static starg_status make_seen(starg_context *context, void *shared, void **scratch) {
-    starg_status status = STARG_OK;
     const trial *t = shared;
     bool *seen = NULL;
-    STARG_NEW(context, PAPER_STAGE, seen, t->rest->component.found.vertex_count);
+    NEW(context, PAPER_STAGE, seen, t->rest->component.found.vertex_count);
     *scratch = seen;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void free_seen(starg_context *context, void *scratch) {
@@ -158,20 +150,18 @@ static starg_status choose_guard(rest *r) {
 /* ---- growth ---- */
 
 static starg_status grow_new_piece(rest *r) {
-    starg_status status = STARG_OK;
     paper_state *s = r->state;
     const paper_domain *c = &r->component.found;
     const paper_front front = {&r->guard, 1, (int32_t)paper_pieces(s)};
     int least = c->count > PAPER_SMALL_COMPONENT ? 4 : PAPER_LEAST_SEEN;
-    STARG_TRY(choose_guard(r));
+    TRY(choose_guard(r));
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(s->context, PAPER_STAGE, &s->guards, r->guard.position[k]);
+        PUSH(s->context, PAPER_STAGE, &s->guards, r->guard.position[k]);
     view_fill(s, &r->guard, c, &r->scratch);
     growth_strict(s, &front);
     growth_relaxed(s, &front, c->tetrahedra, c->count, least);
     view_clear(&r->guard, c);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The guards before may have used up all the time: a little more is taken for what they leave. */
@@ -207,8 +197,8 @@ starg_status uncoloured_regrow(paper_state *s, size_t max_pieces, bool *time_lim
     }
 done:
     starg_progress_end(s->context);
-    component_free(s, &r.component);
-    view_scratch_free(s, &r.scratch);
-    view_free(s, &r.guard);
+    component_free(&r.component);
+    view_scratch_free(&r.scratch);
+    view_free(&r.guard);
     return status;
 }

@@ -14,13 +14,12 @@ starg_status view_scratch_create(const paper_state *s, view_scratch *out) {
     STARG_NEW(s->context, PAPER_STAGE, out->stack, s->mesh->count);
 done:
     if (status != STARG_OK)
-        view_scratch_free(s, out);
+        view_scratch_free(out);
     return status;
 }
 
-void view_scratch_free(const paper_state *s, view_scratch *scratch) {
-    starg_release(s->context, scratch->waiting);
-    starg_release(s->context, scratch->stack);
+void view_scratch_free(view_scratch *scratch) {
+    RELEASE(scratch->waiting, scratch->stack);
     *scratch = (view_scratch){0};
 }
 
@@ -33,13 +32,12 @@ starg_status view_create(const paper_state *s, paper_guard *g) {
     memset(g->toward, 0xff, s->mesh->vertex_count * sizeof *g->toward);
 done:
     if (status != STARG_OK)
-        view_free(s, g);
+        view_free(g);
     return status;
 }
 
-void view_free(const paper_state *s, paper_guard *g) {
-    starg_release(s->context, g->toward);
-    starg_release(s->context, g->cost);
+void view_free(paper_guard *g) {
+    RELEASE(g->toward, g->cost);
     g->toward = NULL;
     g->cost = NULL;
 }
@@ -68,32 +66,26 @@ typedef struct views {
 } views;
 
 static starg_status make_scratch(starg_context *context, void *shared, void **scratch) {
-    starg_status status = STARG_OK;
     const views *job = shared;
-    view_scratch *own = NULL;
-    STARG_NEW_ZERO(context, PAPER_STAGE, own, 1);
-    STARG_TRY(view_scratch_create(job->state, own));
+    SCOPED view_scratch *own = NULL;
+    NEW_ZERO(context, PAPER_STAGE, own, 1);
+    TRY(view_scratch_create(job->state, own));
     *scratch = own;
     own = NULL;
-done:
-    starg_release(context, own);
-    return status;
+    return STARG_OK;
 }
 
 static void free_scratch(starg_context *context, void *scratch) {
+    (void)context;
     view_scratch *own = scratch;
-    starg_release(context, own->waiting);
-    starg_release(context, own->stack);
-    starg_release(context, own);
+    RELEASE(own->waiting, own->stack, own);
 }
 
 static starg_status make_view(starg_context *context, void *shared, void *scratch, size_t item) {
     const views *job = shared;
     paper_guard *g = &job->guards[item];
     (void)context;
-    starg_status status = view_create(job->state, g);
-    if (status != STARG_OK)
-        return status;
+    TRY(view_create(job->state, g));
     g->home = dependency_home(job->state->mesh, g->position);
     view_fill(job->state, g, job->all, scratch);
     return STARG_OK;

@@ -14,13 +14,9 @@
  * (region_growing.c), which always succeeds, and the better one of both starts is searched. */
 #include "star/decomposition.h"
 
-#include <math.h>
-
 #include "star/strict/finish/finish.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/partition/partition.h"
 #include "star/strict/search/improve.h"
-#include "star/strict/search/renew.h"
 #include "star/strict/start/region_growing.h"
 #include "star/strict/start/start.h"
 
@@ -52,13 +48,11 @@ static const double USUAL_SIZE = 4000;
 static const double FADING = 0.7;
 
 static starg_status collect_guards(const partition *p, double **guards) {
-    starg_status status = STARG_OK;
-    STARG_NEW(p->context, PARTITION_STAGE, *guards, 3 * p->pieces.count);
+    NEW(p->context, PARTITION_STAGE, *guards, 3 * p->pieces.count);
     for (size_t i = 0; i < p->pieces.count; i++)
         for (int k = 0; k < 3; k++)
             (*guards)[3 * i + (size_t)k] = p->pieces.data[i].guard[k];
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status finish(const partition *p, starg_decomposition **out) {
@@ -74,8 +68,7 @@ static starg_status finish(const partition *p, starg_decomposition **out) {
     labels = NULL;
 done:
     starg_tetmesh_free(mesh);
-    starg_release(p->context, labels);
-    starg_release(p->context, guards);
+    RELEASE(labels, guards);
     return status;
 }
 
@@ -89,44 +82,33 @@ typedef struct model {
 
 static starg_status start_by_region_growing(const starg_tetmesh *mesh,
                                             const starg_decompose_options *options, partition *p) {
-    starg_status status = STARG_OK;
     starg_context *context = p->context;
-    grown_regions start = {.count = 0};
-    STARG_TRY(grow_regions(context, mesh, options->guards, options->guard_count, &start));
-    STARG_TRY(partition_create(context, mesh, start.labels, start.guards.data, start.count, p));
-    STARG_TRY(improve_join(p));
-done:
-    grown_regions_free(context, &start);
-    return status;
+    SCOPED_BY(grown_regions_free) grown_regions start = {.count = 0};
+    TRY(grow_regions(context, mesh, options->guards, options->guard_count, &start));
+    TRY(partition_create(context, mesh, start.labels, start.guards.data, start.count, p));
+    return improve_join(p);
 }
 
 static starg_status make_one_piece(const model *m, partition *p) {
-    starg_status status = STARG_OK;
     static const double nowhere[3] = {0, 0, 0};
-    uint32_t *labels = NULL;
+    SCOPED uint32_t *labels = NULL;
     if (m->surface != NULL)
         return partition_create_from_surface(p->context, m->surface, p);
-    STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(m->mesh));
-    STARG_TRY(partition_create(p->context, m->mesh, labels, nowhere, 1, p));
-done:
-    starg_release(p->context, labels);
-    return status;
+    NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(m->mesh));
+    return partition_create(p->context, m->mesh, labels, nowhere, 1, p);
 }
 
 /* All in one piece, then cut. */
 static starg_status start_by_bsp(const model *m, const bsp_options *options, partition *p,
                                  bsp_report *report) {
-    starg_status status = STARG_OK;
-    starg_progress_begin(p->context, "planes");
-    STARG_TRY(make_one_piece(m, p));
-    STARG_TRY(bsp_start(p, options, report));
+    IN_STAGE(p->context, "planes");
+    TRY(make_one_piece(m, p));
+    TRY(bsp_start(p, options, report));
     if (report->done)
-        STARG_TRY(improve_join(p));
+        TRY(improve_join(p));
     else
         partition_free(p);
-done:
-    starg_progress_end(p->context);
-    return status;
+    return STARG_OK;
 }
 
 static void keep_better(partition *p, partition *other) {
@@ -138,35 +120,30 @@ static void keep_better(partition *p, partition *other) {
  * better one; planes are worth no more than a few evaluations for each. */
 static starg_status begin_with_tetrahedra(const model *of, const starg_decompose_options *options,
                                           partition *p) {
-    starg_status status = STARG_OK;
-    partition other = {.context = p->context};
+    SCOPED_BY(partition_free) partition other = {.context = p->context};
     bsp_report report;
-    STARG_TRY(start_by_region_growing(of->mesh, options, p));
+    TRY(start_by_region_growing(of->mesh, options, p));
     if (p->pieces.count < 2 || starg_time_is_over(p->context))
-        goto done;
+        return STARG_OK;
     const bsp_options wanted = {.budget = EVALUATIONS_LEAST + EVALUATIONS_EACH * p->pieces.count,
                                 .guards = options->guards,
                                 .guard_count = options->guard_count};
-    STARG_TRY(start_by_bsp(of, &wanted, &other, &report));
+    TRY(start_by_bsp(of, &wanted, &other, &report));
     if (report.done)
         keep_better(p, &other);
-done:
-    partition_free(&other);
-    return status;
+    return STARG_OK;
 }
 
 /* The partition has no pieces when there is no start. */
 static starg_status begin(const model *of, const starg_decompose_options *options, partition *p) {
-    starg_status status = STARG_OK;
     bsp_report report = {.done = false};
     bsp_options wanted = {
         .guards = options->guards, .guard_count = options->guard_count, .to_the_end = true};
     if (of->mesh != NULL)
         return begin_with_tetrahedra(of, options, p);
     for (; !report.done && wanted.stream < STARTS; wanted.stream++)
-        STARG_TRY(start_by_bsp(of, &wanted, p, &report));
-done:
-    return status;
+        TRY(start_by_bsp(of, &wanted, p, &report));
+    return STARG_OK;
 }
 
 /* ---- searches ---- */
@@ -205,7 +182,6 @@ static void spend(searches *s, record *on, uint64_t trials, uint64_t work, size_
 
 /* Small changes, for a while. */
 static starg_status change_some(searches *s, partition *p) {
-    starg_status status = STARG_OK;
     improve_report report;
     const improve_options wanted = {.trials = s->trials_left,
                                     .work = least(s->work_left, s->work_each),
@@ -214,27 +190,24 @@ static starg_status change_some(searches *s, partition *p) {
                                     .first = s->trials,
                                     .tallies = &s->tallies};
     size_t before = p->pieces.count;
-    STARG_TRY(improve(p, &wanted, &report));
+    TRY(improve(p, &wanted, &report));
     spend(s, &s->changes, report.trials, report.work, before - p->pieces.count);
     s->time_limited = report.time_limited;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Some pieces anew. */
 static starg_status renew_some(searches *s, partition *p) {
-    starg_status status = STARG_OK;
     renew_report report;
     const renew_options wanted = {.trials = s->trials_left,
                                   .work = s->work_left,
                                   .round = s->rounds,
                                   .tallies = &s->renewal_tallies};
     size_t before = p->pieces.count;
-    STARG_TRY(renew(p, &wanted, &report));
+    TRY(renew(p, &wanted, &report));
     spend(s, &s->renewals, report.trials, report.work, before - p->pieces.count);
     s->time_limited = report.time_limited;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static double gain_of(const record *of, uint64_t each) {
@@ -257,17 +230,14 @@ static uint64_t room_for(const searches *s, const starg_decompose_options *optio
 
 /* Only while some component may have fewer pieces (partition_find_open). */
 static starg_status may_go_on(const searches *s, const partition *p, bool *on) {
-    starg_status status = STARG_OK;
-    partition_numbers open = {0};
+    SCOPED partition_numbers open = {0};
     *on = s->idle < idle_most(s, p) && s->trials_left > 0 && s->work_left > 0 && !s->time_limited &&
           p->pieces.count > s->enough;
     if (!*on)
         return STARG_OK;
-    STARG_TRY(partition_find_open(p, &open));
+    TRY(partition_find_open(p, &open));
     *on = open.count > 0;
-done:
-    STARG_ARRAY_FREE(p->context, &open);
-    return status;
+    return STARG_OK;
 }
 
 /* Does the effort count trials? */
@@ -295,6 +265,7 @@ static void tell_progress(const searches *s, const partition *p) {
     if (s->work_left <= WORK_BEST)
         part = fmax(part, (double)s->work / (double)(s->work + s->work_left));
     part = fmax(part, passed / (passed + fmax(0, starg_seconds_left(p->context))));
+    starg_tell_best(p->context, p->pieces.count, "pieces");
     starg_progress_step(p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
 }
 
@@ -318,38 +289,35 @@ static starg_status search(searches *s, partition *p) {
         tell_progress(s, p);
     }
 done:
+    starg_tell_best(p->context, 0, "");
     starg_progress_end(p->context);
     return status;
 }
 
 static starg_status decompose(starg_context *context, model of,
                               const starg_decompose_options *options, starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    partition p = {.context = context};
-    region_scratch scratch = {.context = context};
+    SCOPED_BY(partition_free) partition p = {.context = context};
+    SCOPED_BY(region_scratch_free) region_scratch scratch = {.context = context};
     bool trials = counts_trials(options), clocked = context->deadline.at > 0;
     searches s = {.trials_left = trials ? options->effort : UINT64_MAX,
                   .work_left = trials || clocked ? UINT64_MAX : work_of(options),
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
-    STARG_TRY(begin(&of, options, &p));
+    TRY(begin(&of, options, &p));
     if (p.pieces.count == 0)
-        goto done;
+        return STARG_OK;
     if (!starg_time_is_over(context))
-        STARG_TRY(merge_coplanar(&p));
-    STARG_TRY(search(&s, &p));
-    STARG_TRY(merge_coplanar(&p));
-    STARG_TRY(apply_centers(&p, &scratch));
-    STARG_TRY(widen(&p, room_for(&s, options)));
-    STARG_TRY(refine_caps(&p));
-    STARG_TRY(reshape(&p, room_for(&s, options)));
-    STARG_TRY(finish(&p, out));
+        TRY(merge_coplanar(&p));
+    TRY(search(&s, &p));
+    TRY(merge_coplanar(&p));
+    TRY(apply_centers(&p, &scratch));
+    TRY(widen(&p, room_for(&s, options)));
+    TRY(refine_caps(&p));
+    TRY(reshape(&p, room_for(&s, options)));
+    TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
     (*out)->options.effort = effort_of(&s, options);
-done:
-    region_scratch_free(&scratch);
-    partition_free(&p);
-    return status;
+    return STARG_OK;
 }
 
 starg_status strict_decompose_surface(starg_context *context, const kernel_faces *surface,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The last steps: room for guards, and better tetrahedra. */
-#ifndef STARG_STAR_STRICT_FINISH_FINISH_H
-#define STARG_STAR_STRICT_FINISH_FINISH_H
+#pragma once
 
 #include "star/strict/partition/partition.h"
 
@@ -60,5 +59,3 @@ starg_status refine_caps(partition *p);
  * stays above half of FLATNESS_MARGIN. Ends when `work` (64 for each look at a facet) is done or
  * time is over. Rebuilds the index. Errors: MEMORY, CANCELLED. */
 starg_status reshape(partition *p, uint64_t work);
-
-#endif

@@ -8,8 +8,6 @@
  * Rounded: it says which cut is better, never whether one is valid. Cost: linear in the facets. */
 #include "star/strict/finish/finish.h"
 
-#include <math.h>
-
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "star/piece_faces.h"

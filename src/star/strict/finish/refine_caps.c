@@ -21,12 +21,9 @@
  * vertex that is thought of a pass over the cap. */
 #include "star/strict/finish/finish.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
-#include "star/strict/partition/partition.h"
 
 enum { ROUNDS_MOST = 16, FRESH_MOST = 1000 /* new vertices of a cap */ };
 
@@ -62,15 +59,8 @@ typedef struct refiner {
 } refiner;
 
 static void refiner_free(refiner *r) {
-    starg_context *context = r->p->context;
-    starg_release(context, r->order);
-    starg_release(context, r->cap_of);
-    STARG_ARRAY_FREE(context, &r->facets);
-    STARG_ARRAY_FREE(context, &r->edges);
-    STARG_ARRAY_FREE(context, &r->loose);
-    STARG_ARRAY_FREE(context, &r->triangles);
-    STARG_ARRAY_FREE(context, &r->best);
-    STARG_ARRAY_FREE(context, &r->proposals);
+    RELEASE(r->order, r->cap_of, r->facets.data, r->edges.data, r->loose.data, r->triangles.data,
+            r->best.data, r->proposals.data);
 }
 
 /* ---- caps ---- */
@@ -90,12 +80,11 @@ static int by_cap(const void *x, const void *y) {
 }
 
 static starg_status find_caps(refiner *r) {
-    starg_status status = STARG_OK;
     size_t count = r->p->facets.count;
-    ranked_facet *ranked = NULL;
-    STARG_NEW(r->p->context, PARTITION_STAGE, ranked, count);
-    STARG_NEW(r->p->context, PARTITION_STAGE, r->order, count);
-    STARG_NEW(r->p->context, PARTITION_STAGE, r->cap_of, count);
+    SCOPED ranked_facet *ranked = NULL;
+    NEW(r->p->context, PARTITION_STAGE, ranked, count);
+    NEW(r->p->context, PARTITION_STAGE, r->order, count);
+    NEW(r->p->context, PARTITION_STAGE, r->cap_of, count);
     for (uint32_t i = 0; i < count; i++) {
         const facet *f = &r->p->facets.data[i];
         ranked[i] = (ranked_facet){f->plane, {f->side[0], f->side[1]}, i};
@@ -109,9 +98,7 @@ static starg_status find_caps(refiner *r) {
         r->order[i] = ranked[i].number;
         r->cap_of[ranked[i].number] = first;
     }
-done:
-    starg_release(r->p->context, ranked);
-    return status;
+    return STARG_OK;
 }
 
 static bool has_edge(const facet *f, uint32_t from, uint32_t to) {
@@ -137,7 +124,6 @@ static void look_around(const refiner *r, uint32_t cap, uint32_t from, uint32_t 
 
 /* The edges of the cap's border, and those within that others have. */
 static starg_status find_edges(refiner *r, uint32_t first, uint32_t end) {
-    starg_status status = STARG_OK;
     r->edges.count = r->loose.count = 0;
     for (int inner = 0; inner < 2; inner++) {
         for (uint32_t i = 3 * first; i < 3 * end; i++) {
@@ -146,14 +132,13 @@ static starg_status find_edges(refiner *r, uint32_t first, uint32_t end) {
             bool own, other;
             look_around(r, first, edge.to, edge.from, &own, &other);
             if (inner ? own && other && edge.from < edge.to : !own)
-                STARG_PUSH(r->p->context, PARTITION_STAGE, &r->edges, edge);
+                PUSH(r->p->context, PARTITION_STAGE, &r->edges, edge);
             if (!inner)
-                STARG_PUSH(r->p->context, PARTITION_STAGE, &r->loose, edge.from);
+                PUSH(r->p->context, PARTITION_STAGE, &r->loose, edge.from);
         }
         r->border_count = inner ? r->border_count : r->edges.count;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- angles ---- */
@@ -200,15 +185,13 @@ static void place(const refiner *r, uint32_t vertex, double out[2]) {
 }
 
 static starg_status add_vertex(refiner *r, const double at[2]) {
-    starg_status status = STARG_OK;
     double point[3];
     uint32_t vertex;
     for (int k = 0; k < 3; k++)
         point[k] = r->origin[k] + ldexp(at[0] * r->axes[0][k] + at[1] * r->axes[1][k], r->exponent);
-    STARG_TRY(partition_add_point(r->p, point, &vertex));
-    STARG_PUSH(r->p->context, PARTITION_STAGE, &r->loose, vertex);
-done:
-    return status;
+    TRY(partition_add_point(r->p, point, &vertex));
+    PUSH(r->p->context, PARTITION_STAGE, &r->loose, vertex);
+    return STARG_OK;
 }
 
 static double distance(const double a[2], const double b[2]) {
@@ -248,7 +231,6 @@ static bool is_close_to_border(const refiner *r, const double at[2]) {
 
 /* If a triangle is thin. */
 static starg_status propose(refiner *r, const uint32_t corners[3]) {
-    starg_status status = STARG_OK;
     double c[3][2], length[3], shortest = INFINITY;
     int k = 0; /* the shortest edge begins here */
     for (int i = 0; i < 3; i++)
@@ -272,9 +254,8 @@ static starg_status propose(refiner *r, const uint32_t corners[3]) {
                             .angle = sine,
                             .room = hypot(high, 0.5 * shortest)};
     if (is_inside(r, fresh.at) && !is_close_to_border(r, fresh.at))
-        STARG_PUSH(r->p->context, PARTITION_STAGE, &r->proposals, fresh);
-done:
-    return status;
+        PUSH(r->p->context, PARTITION_STAGE, &r->proposals, fresh);
+    return STARG_OK;
 }
 
 static int by_angle(const void *x, const void *y) {
@@ -289,11 +270,10 @@ static int by_angle(const void *x, const void *y) {
 
 /* Those that are not close to each other, the thinnest triangles first. */
 static starg_status add_vertices(refiner *r, bool *any) {
-    starg_status status = STARG_OK;
     size_t taken = 0;
     r->proposals.count = 0;
     for (size_t i = 0; i < r->triangles.count; i += 3)
-        STARG_TRY(propose(r, r->triangles.data + i));
+        TRY(propose(r, r->triangles.data + i));
     if (r->proposals.count > 0)
         qsort(r->proposals.data, r->proposals.count, sizeof *r->proposals.data, by_angle);
     for (size_t i = 0; i < r->proposals.count; i++) {
@@ -304,38 +284,34 @@ static starg_status add_vertices(refiner *r, bool *any) {
                    APART * fmax(next.room, r->proposals.data[k].room);
         if (!fine)
             continue;
-        STARG_TRY(add_vertex(r, next.at));
+        TRY(add_vertex(r, next.at));
         r->proposals.data[taken++] = next;
     }
     *any = taken > 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- one cap ---- */
 
 static starg_status keep_triangles(refiner *r) {
-    starg_status status = STARG_OK;
     r->best.count = 0;
     for (size_t i = 0; i < r->triangles.count; i++)
-        STARG_PUSH(r->p->context, PARTITION_STAGE, &r->best, r->triangles.data[i]);
-done:
-    return status;
+        PUSH(r->p->context, PARTITION_STAGE, &r->best, r->triangles.data[i]);
+    return STARG_OK;
 }
 
 /* The best of all rounds. *better is false if that is how it was. */
 static starg_status refine(refiner *r, const facet *f, bool *better) {
-    starg_status status = STARG_OK;
     double best = lack_of_all(r, f);
     bool go_on = true;
     *better = false;
     for (int round = 0; round < ROUNDS_MOST && go_on; round++) {
-        STARG_TRY(add_vertices(r, &go_on));
+        TRY(add_vertices(r, &go_on));
         if (!go_on)
             break;
         r->triangles.count = 0;
-        STARG_TRY(cap_fill(r->p->context, r->p->points.data, r->p->planes.data[f->plane].normal,
-                           &r->edges, &r->loose, &r->triangles, &go_on));
+        TRY(cap_fill(r->p->context, r->p->points.data, r->p->planes.data[f->plane].normal,
+                     &r->edges, &r->loose, &r->triangles, &go_on));
         double lack = go_on ? lack_of_all(r, f) : INFINITY;
         go_on = go_on && lack > 0 && r->p->points.count / 3 - r->first_points < FRESH_MOST;
         if (lack >= best)
@@ -343,79 +319,68 @@ static starg_status refine(refiner *r, const facet *f, bool *better) {
         best = lack;
         *better = true;
         r->best_points = r->p->points.count / 3;
-        STARG_TRY(keep_triangles(r));
+        TRY(keep_triangles(r));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_best(refiner *r, const facet *like) {
-    starg_status status = STARG_OK;
     facet fresh = *like;
     for (size_t i = 0; i < r->best.count; i += 3) {
         memcpy(fresh.corners, r->best.data + i, sizeof fresh.corners);
-        STARG_PUSH(r->p->context, PARTITION_STAGE, &r->facets, fresh);
+        PUSH(r->p->context, PARTITION_STAGE, &r->facets, fresh);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status visit_cap(refiner *r, uint32_t first, uint32_t end) {
-    starg_status status = STARG_OK;
     const facet like = r->p->facets.data[r->order[first]];
     bool better = false;
     r->first_points = r->p->points.count / 3;
     r->triangles.count = 0;
     for (uint32_t i = 3 * first; i < 3 * end; i++)
-        STARG_PUSH(r->p->context, PARTITION_STAGE, &r->triangles,
-                   r->p->facets.data[r->order[i / 3]].corners[i % 3]);
+        PUSH(r->p->context, PARTITION_STAGE, &r->triangles,
+             r->p->facets.data[r->order[i / 3]].corners[i % 3]);
     if (like.side[FACET_OUTER] != PARTITION_OUTSIDE && lack_of_all(r, &like) > 0) {
         find_axes(r, &like);
-        STARG_TRY(find_edges(r, first, end));
-        STARG_TRY(refine(r, &like, &better));
+        TRY(find_edges(r, first, end));
+        TRY(refine(r, &like, &better));
     }
     r->any = r->any || better;
     r->p->points.count = r->p->unit.count = 3 * (better ? r->best_points : r->first_points);
     if (better)
-        STARG_TRY(take_best(r, &like));
+        TRY(take_best(r, &like));
     for (uint32_t i = first; i < end && !better; i++)
-        STARG_PUSH(r->p->context, PARTITION_STAGE, &r->facets, r->p->facets.data[r->order[i]]);
-done:
-    return status;
+        PUSH(r->p->context, PARTITION_STAGE, &r->facets, r->p->facets.data[r->order[i]]);
+    return STARG_OK;
 }
 
 static starg_status visit_caps(refiner *r) {
-    starg_status status = STARG_OK;
     size_t count = r->p->facets.count;
     r->exponent = partition_exponent(r->p);
     for (uint32_t first = 0, end = 0; first < count; first = end) {
         while (end < count && r->cap_of[r->order[end]] == first)
             end++;
-        STARG_TRY(visit_cap(r, first, end));
+        TRY(visit_cap(r, first, end));
     }
     r->p->facets.count = 0;
     for (size_t i = 0; i < r->facets.count; i++)
-        STARG_PUSH(r->p->context, PARTITION_STAGE, &r->p->facets, r->facets.data[i]);
-done:
-    return status;
+        PUSH(r->p->context, PARTITION_STAGE, &r->p->facets, r->facets.data[i]);
+    return STARG_OK;
 }
 
 starg_status refine_caps(partition *p) {
-    starg_status status = STARG_OK;
-    partition copy = {.context = p->context};
-    refiner r = {.p = &copy};
+    SCOPED_BY(partition_free) partition copy = {.context = p->context};
+    SCOPED_BY(refiner_free) refiner r = {.p = &copy};
     bool done = false;
-    STARG_TRY(partition_copy(p, &copy));
-    STARG_TRY(partition_build_index(&copy));
-    STARG_TRY(find_caps(&r));
-    STARG_TRY(visit_caps(&r));
-    STARG_TRY(partition_build_index(&copy));
+    TRY(partition_copy(p, &copy));
+    TRY(partition_build_index(&copy));
+    TRY(find_caps(&r));
+    TRY(visit_caps(&r));
+    TRY(partition_build_index(&copy));
     if (r.any)
-        STARG_TRY(partition_certify_all(&copy, &done));
+        TRY(partition_certify_all(&copy, &done));
     if (done)
         partition_swap(p, &copy);
-done:
-    refiner_free(&r);
-    partition_free(&copy);
-    return status;
+    return STARG_OK;
 }

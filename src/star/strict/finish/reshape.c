@@ -26,7 +26,6 @@
  * total. */
 #include "star/strict/finish/finish.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
@@ -69,14 +68,12 @@ typedef struct change {
 /* ---- angles and margins ---- */
 
 static starg_status find_margins(reshaper *r) {
-    starg_status status = STARG_OK;
     const partition *p = r->p;
-    STARG_NEW(p->context, PARTITION_STAGE, r->margins, p->pieces.count);
+    NEW(p->context, PARTITION_STAGE, r->margins, p->pieces.count);
     for (uint32_t i = 0; i < p->pieces.count; i++)
         r->margins[i] =
             fmin(flatness_room(p, i), ENOUGH * FLATNESS_MARGIN * flatness_diagonal(p, i));
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool keeps_margins(const reshaper *r, const facet *f) {
@@ -251,20 +248,17 @@ static void touch(reshaper *r, const facet *f) {
 
 /* A facet between pieces that has changed gets a plane of its own. */
 static starg_status give_plane(partition *p, facet *f) {
-    starg_status status = STARG_OK;
     partition_plane plane;
     if (is_outer(f))
         return STARG_OK;
     partition_plane_of(p, f->corners, &plane);
     f->plane = (uint32_t)p->planes.count;
-    STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
-done:
-    return status;
+    PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
+    return STARG_OK;
 }
 
 /* Facets that vanish keep their place until the end of the round, without pieces. */
 static starg_status make_move(reshaper *r, const change *how) {
-    starg_status status = STARG_OK;
     partition *p = r->p;
     put_between(p, how->from, how->to, how->share);
     for (uint32_t c = p->first_at.data[how->from]; c != PARTITION_NO_CORNER;
@@ -277,24 +271,21 @@ static starg_status make_move(reshaper *r, const change *how) {
         }
         if (how->share == 1)
             f->corners[c % 3] = how->to;
-        STARG_TRY(give_plane(p, f));
+        TRY(give_plane(p, f));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status make(reshaper *r, const change *how) {
-    starg_status status = STARG_OK;
     if (how->from != NONE)
         return make_move(r, how);
     for (int i = 0; i < 2; i++) {
         facet *f = &r->p->facets.data[how->facets[i]];
         *f = how->swapped[i];
         touch(r, f);
-        STARG_TRY(give_plane(r->p, f));
+        TRY(give_plane(r->p, f));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- rounds ---- */
@@ -308,7 +299,6 @@ static int by_lack(const void *x, const void *y) {
 
 /* Those with vertices of cuts. */
 static starg_status rank_flat(reshaper *r) {
-    starg_status status = STARG_OK;
     const partition *p = r->p;
     r->flat.count = 0;
     for (uint32_t i = 0; i < p->facets.count; i++) {
@@ -318,16 +308,14 @@ static starg_status rank_flat(reshaper *r) {
             made = made || f->corners[k] >= p->first_points;
         const ranked_facet one = {made ? flatness_of_facet(p, f) : 0, i};
         if (one.lack > 0)
-            STARG_PUSH(p->context, PARTITION_STAGE, &r->flat, one);
+            PUSH(p->context, PARTITION_STAGE, &r->flat, one);
     }
     if (r->flat.count > 1)
         qsort(r->flat.data, r->flat.count, sizeof *r->flat.data, by_lack);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status change_at(reshaper *r, uint32_t number, bool *any) {
-    starg_status status = STARG_OK;
     change best = {.saved = LEAST};
     for (int k = 0; k < 3; k++) {
         try_moves(r, r->p->facets.data[number].corners[k], &best);
@@ -335,10 +323,9 @@ static starg_status change_at(reshaper *r, uint32_t number, bool *any) {
     }
     if (best.saved <= LEAST)
         return STARG_OK;
-    STARG_TRY(make(r, &best));
+    TRY(make(r, &best));
     *any = true;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* What a round costs that changes nothing, index included: half a look for each facet. */
@@ -378,31 +365,26 @@ static bool may_go_on(const reshaper *r) {
 }
 
 static starg_status change_facets(reshaper *r, bool *any) {
-    starg_status status = STARG_OK;
     bool go_on = true;
     for (int i = 0; i < ROUNDS_MOST && go_on && may_go_on(r); i++) {
-        STARG_TRY(run_round(r, &go_on));
+        TRY(run_round(r, &go_on));
         *any = *any || go_on;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* What pieces are known by. */
 static starg_status measure_pieces(partition *p) {
-    starg_status status = STARG_OK;
-    partition_triangles triangles = {0};
+    SCOPED partition_triangles triangles = {0};
     for (uint32_t i = 0; i < p->pieces.count; i++) {
         piece *of = &p->pieces.data[i];
         triangles.count = 0;
-        STARG_TRY(partition_gather(p, i, &triangles));
+        TRY(partition_gather(p, i, &triangles));
         of->volume = partition_volume(p, triangles.data, triangles.count / 3);
         of->radius = flatness_room(p, i);
         of->stamp = ++p->stamps;
     }
-done:
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
+    return STARG_OK;
 }
 
 starg_status reshape(partition *p, uint64_t work) {
@@ -419,7 +401,6 @@ starg_status reshape(partition *p, uint64_t work) {
     STARG_TRY(measure_pieces(p));
 done:
     p->context->work += (work / LOOK_WORK - r.looks) * LOOK_WORK / PARTITION_WORK;
-    starg_release(p->context, r.margins);
-    STARG_ARRAY_FREE(p->context, &r.flat);
+    RELEASE(r.margins, r.flat.data);
     return status;
 }

@@ -15,7 +15,6 @@
  * few over all of them. */
 #include "star/strict/finish/finish.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"

@@ -16,14 +16,11 @@
  * union; `work` in total. */
 #include "star/strict/finish/finish.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "core/rng.h"
 #include "geometry/vec3.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/partition/partition.h"
-#include "star/strict/search/covering.h"
+#include "star/strict/search/search.h"
 
 enum {
     IDLE_MOST = 12, /* consecutive rounds without a change before it stops */
@@ -61,7 +58,6 @@ static int by_lack(const void *x, const void *y) {
 
 /* The neighbours of a piece, each once. */
 static starg_status find_around(widener *w, uint32_t number) {
-    starg_status status = STARG_OK;
     const partition *p = w->p;
     w->around.count = 0;
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
@@ -70,10 +66,9 @@ static starg_status find_around(widener *w, uint32_t number) {
         for (size_t i = 0; i < w->around.count && !known; i++)
             known = w->around.data[i] == next;
         if (!known)
-            STARG_PUSH(p->context, PARTITION_STAGE, &w->around, next);
+            PUSH(p->context, PARTITION_STAGE, &w->around, next);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static double fitness(const partition *part, size_t count) {
@@ -88,61 +83,54 @@ typedef struct pair {
 } pair;
 
 static starg_status cut_by_plane(widener *w, const pair *of, bool *done) {
-    starg_status status = STARG_OK;
     const repartition_options options = {
         .margin = of->margin, .directions = DIRECTIONS, .steps = STEPS};
     starg_rng rng = starg_rng_make(w->p->context->seed, RNG_STREAM, w->tries++);
-    repartition_plan plan = {.cuts = 0};
+    cut_plan plan = {.count = 0};
     apply_effect effect = {.done = false};
     bool found = false;
-    STARG_TRY(repartition_find(of->r, 2, &options, &rng, &w->scratch, &plan, &found));
+    TRY(repartition_find(of->r, 2, &options, &rng, &w->scratch, &plan, &found));
     if (found)
-        STARG_TRY(apply_plan(w->p, of->pieces, 2, &plan, ROUNDED * of->margin, fitness, &w->scratch,
-                             &effect));
+        TRY(apply_cuts(w->p, of->pieces, 2, &plan, ROUNDED * of->margin, fitness, &w->scratch,
+                       &effect));
     *done = effect.done;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status cut_from_guards(widener *w, const pair *of, bool *done) {
-    starg_status status = STARG_OK;
     double starts[2][3];
     const covering_options options = {
         .margin = of->margin, .starts = (const double(*)[3])starts, .start_count = 2};
     starg_rng rng = starg_rng_make(w->p->context->seed, RNG_STREAM, w->tries++);
-    border_plan plan = {.count = 0};
+    cut_plan plan = {.count = 0};
     apply_effect effect = {.done = false};
     bool found = false;
     for (int i = 0; i < 2; i++)
         partition_to_unit(w->p, w->p->pieces.data[of->pieces[i]].guard, starts[i]);
-    STARG_TRY(covering_find(of->r, 2, &options, &rng, &w->scratch, &plan, &found));
+    TRY(covering_find(of->r, 2, &options, &rng, &w->scratch, &plan, &found));
     if (found)
-        STARG_TRY(apply_borders(w->p, of->pieces, 2, &plan, ROUNDED * of->margin, fitness,
-                                &w->scratch, &effect));
+        TRY(apply_cuts(w->p, of->pieces, 2, &plan, ROUNDED * of->margin, fitness, &w->scratch,
+                       &effect));
     *done = effect.done;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* With the margin that is aimed at, or else with more than the smaller one is now. */
 static starg_status try_pair(widener *w, uint32_t a, uint32_t b, bool *done) {
-    starg_status status = STARG_OK;
     const partition *p = w->p;
-    region r = {.vertices = {0}};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     pair of = {.pieces = {a, b}, .r = &r};
     const double margins[2] = {GOAL * fmax(flatness_diagonal(p, a), flatness_diagonal(p, b)),
                                GROWTH * fmin(p->pieces.data[a].radius, p->pieces.data[b].radius)};
-    STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
-    STARG_TRY(region_gather(p, of.pieces, 2, &w->scratch, &r));
+    TRY(starg_check_cancel(p->context, PARTITION_STAGE));
+    TRY(region_gather(p, of.pieces, 2, &w->scratch, &r));
     for (int i = 0; i < 2 && !*done && margins[i] <= margins[0]; i++) {
         of.margin = margins[i];
-        STARG_TRY(cut_by_plane(w, &of, done));
+        TRY(cut_by_plane(w, &of, done));
         if (!*done)
-            STARG_TRY(cut_from_guards(w, &of, done));
+            TRY(cut_from_guards(w, &of, done));
     }
-done:
-    region_free(p->context, &r);
-    return status;
+    return STARG_OK;
 }
 
 static bool is_over(const widener *w) {
@@ -150,13 +138,11 @@ static bool is_over(const widener *w) {
 }
 
 static starg_status widen_piece(widener *w, uint32_t number, bool *done) {
-    starg_status status = STARG_OK;
     *done = false;
-    STARG_TRY(find_around(w, number));
+    TRY(find_around(w, number));
     for (size_t i = 0; i < w->around.count && !*done && !is_over(w); i++)
-        STARG_TRY(try_pair(w, number, w->around.data[i], done));
-done:
-    return status;
+        TRY(try_pair(w, number, w->around.data[i], done));
+    return STARG_OK;
 }
 
 /* ---- rounds ---- */
@@ -174,17 +160,15 @@ static void rank(const widener *w, ranked_piece *list, size_t *count) {
 }
 
 static starg_status run_round(widener *w, ranked_piece *list, bool *any) {
-    starg_status status = STARG_OK;
     size_t count;
     *any = false;
     rank(w, list, &count);
     for (size_t i = 0; i < count && !is_over(w); i++) {
         bool done;
-        STARG_TRY(widen_piece(w, list[i].number, &done));
+        TRY(widen_piece(w, list[i].number, &done));
         *any = *any || done;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status widen(partition *p, uint64_t work) {
@@ -205,8 +189,7 @@ starg_status widen(partition *p, uint64_t work) {
     }
 done:
     p->context->work += w.scratch.work / PARTITION_WORK;
-    starg_release(p->context, list);
-    STARG_ARRAY_FREE(p->context, &w.around);
+    RELEASE(list, w.around.data);
     region_scratch_free(&w.scratch);
     return status;
 }

@@ -10,12 +10,10 @@
  * that fails, linear in the facets of its pieces; of one that succeeds, a pass over all facets. */
 #include "star/strict/partition/apply.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "star/strict/partition/partition.h"
 
 enum { PARTS_MOST = FAN_TAKERS_MOST }; /* more than a cut makes */
 
@@ -50,93 +48,68 @@ static starg_status drop_pieces(partition *p, const uint32_t *unused, size_t cou
 
 /* ---- cuts ---- */
 
-/* Cuts the union of pieces 0 to count - 1 of the extract. */
-static starg_status cut(change *c, size_t count, const repartition_plan *plan, bool *done) {
-    static const uint32_t numbers[APPLY_MOST] = {0, 1, 2, 3, 4};
-    starg_status status = STARG_OK;
-    partition *p = &c->extract.part;
-    *done = true;
-    partition_join(p, numbers, count);
-    for (int i = 0; i < plan->cuts && *done; i++)
-        STARG_TRY(partition_slice(p, numbers[i], numbers[i + 1], &plan->planes[i], done));
-    c->part_count = (size_t)plan->cuts + 1;
-    for (size_t i = 0; i < c->part_count; i++)
-        c->parts[i] = numbers[i];
-done:
-    return status;
-}
-
 /* Cuts off what is above a plane, if anything is, and adds it to piece `away`. */
 static starg_status cut_away(partition *p, uint32_t from, uint32_t empty, uint32_t away,
                              const partition_plane *plane, bool *done) {
-    starg_status status = STARG_OK;
     const uint32_t all[2] = {away, from}, part[2] = {away, empty};
     int sides = partition_sides(p, from, plane);
     if (sides == PARTITION_ABOVE)
         partition_join(p, all, 2);
     if (sides == (PARTITION_ABOVE | PARTITION_BELOW)) {
-        STARG_TRY(partition_slice(p, from, empty, plane, done));
+        TRY(partition_slice(p, from, empty, plane, done));
         partition_join(p, part, 2);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Cuts the union of the first pieces of the extract into the parts of the plan, in their order. */
-static starg_status cut_along_borders(change *c, size_t count, const border_plan *plan,
-                                      bool *done) {
+static starg_status cut(change *c, size_t count, const cut_plan *plan, bool *done) {
     static const uint32_t numbers[APPLY_MOST] = {0, 1, 2, 3, 4};
-    starg_status status = STARG_OK;
     partition *p = &c->extract.part;
     const size_t pieces = p->pieces.count;
     /* what is below the planes of a term so far, above some of them, and a place for a slice */
     const uint32_t below = (uint32_t)pieces, away = below + 1, empty = below + 2;
     uint32_t part = 0;
     for (int i = 0; i < 3; i++)
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->pieces, (piece){.radius = 0});
+        PUSH(p->context, PARTITION_STAGE, &p->pieces, (piece){.radius = 0});
     partition_join(p, numbers, count);
     partition_join(p, (const uint32_t[2]){below, 0}, 2);
     *done = true;
     for (int i = 0; i < plan->count && *done; i++) {
-        STARG_TRY(cut_away(p, below, empty, away, &plan->planes[i], done));
-        if (plan->ends[i] == BORDER_GOES_ON)
+        TRY(cut_away(p, below, empty, away, &plan->planes[i], done));
+        if (plan->ends[i] == CUT_GOES_ON)
             continue;
         partition_join(p, (const uint32_t[2]){part, below}, 2);
         partition_join(p, (const uint32_t[2]){below, away}, 2);
-        part += plan->ends[i] == BORDER_ENDS_PART;
+        part += plan->ends[i] == CUT_ENDS_PART;
     }
     partition_join(p, (const uint32_t[2]){part, below}, 2);
     p->pieces.count = pieces;
     c->part_count = (size_t)part + 1;
     for (size_t i = 0; i < c->part_count; i++)
         c->parts[i] = numbers[i];
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- proofs ---- */
 
 static starg_status settle_piece(change *c, uint32_t number, bool *done) {
-    starg_status status = STARG_OK;
     partition *p = &c->extract.part;
-    region r = {.vertices = {0}};
-    partition_triangles triangles = {0};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
+    SCOPED partition_triangles triangles = {0};
     piece fresh = {.stamp = ++p->stamps};
     double center[3];
     *done = false;
-    STARG_TRY(region_gather(p, &number, 1, c->scratch, &r));
-    STARG_TRY(region_find_center(&r, NULL, 0, c->scratch, center, &fresh.radius));
+    TRY(region_gather(p, &number, 1, c->scratch, &r));
+    TRY(region_find_center(&r, NULL, 0, c->scratch, center, &fresh.radius));
     if (fresh.radius < c->margin)
-        goto done;
+        return STARG_OK;
     partition_from_unit(p, center, fresh.guard);
-    STARG_TRY(partition_gather(p, number, &triangles));
+    TRY(partition_gather(p, number, &triangles));
     *done = partition_certify(p, triangles.data, triangles.count / 3, fresh.guard);
     fresh.volume = partition_volume(p, triangles.data, triangles.count / 3);
     p->pieces.data[number] = fresh;
-done:
-    region_free(p->context, &r);
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
+    return STARG_OK;
 }
 
 static bool is_new(const change *c, uint32_t number) {
@@ -169,34 +142,23 @@ static bool check_others(const change *c) {
 
 /* Certified guards for all parts. */
 static starg_status settle_parts(change *c, bool *done) {
-    starg_status status = STARG_OK;
-    STARG_TRY(partition_build_index(&c->extract.part));
+    TRY(partition_build_index(&c->extract.part));
     *done = true;
     for (size_t i = 0; i < c->part_count && *done; i++)
-        STARG_TRY(settle_piece(c, c->parts[i], done));
-done:
-    return status;
+        TRY(settle_piece(c, c->parts[i], done));
+    return STARG_OK;
 }
 
-/* How to cut: one of the two is not NULL. */
-typedef struct cuts {
-    const repartition_plan *planes;
-    const border_plan *borders;
-} cuts;
-
-static starg_status apply_cuts(partition *p, const uint32_t *pieces, size_t count, cuts how,
-                               double margin, apply_worth worth, region_scratch *scratch,
-                               apply_effect *effect) {
+starg_status apply_cuts(partition *p, const uint32_t *pieces, size_t count, const cut_plan *plan,
+                        double margin, apply_worth worth, region_scratch *scratch,
+                        apply_effect *effect) {
     starg_status status = STARG_OK;
     change c = {.margin = margin, .scratch = scratch};
     bool done = false;
     *effect = (apply_effect){.done = false};
     STARG_TRY(extract_make(p, pieces, count, scratch, &c.extract));
     const double before = worth == NULL ? 0 : worth(&c.extract.part, count);
-    if (how.planes != NULL)
-        STARG_TRY(cut(&c, count, how.planes, &done));
-    else
-        STARG_TRY(cut_along_borders(&c, count, how.borders, &done));
+    STARG_TRY(cut(&c, count, plan, &done));
     if (done)
         STARG_TRY(settle_parts(&c, &done));
     effect->done =
@@ -208,18 +170,6 @@ static starg_status apply_cuts(partition *p, const uint32_t *pieces, size_t coun
 done:
     extract_free(&c.extract);
     return status;
-}
-
-starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
-                        const repartition_plan *plan, double margin, apply_worth worth,
-                        region_scratch *scratch, apply_effect *effect) {
-    return apply_cuts(p, pieces, count, (cuts){.planes = plan}, margin, worth, scratch, effect);
-}
-
-starg_status apply_borders(partition *p, const uint32_t *pieces, size_t count,
-                           const border_plan *plan, double margin, apply_worth worth,
-                           region_scratch *scratch, apply_effect *effect) {
-    return apply_cuts(p, pieces, count, (cuts){.borders = plan}, margin, worth, scratch, effect);
 }
 
 /* ---- fans ---- */
@@ -238,7 +188,6 @@ static int ascending(const void *x, const void *y) {
 
 /* The plan in the numbers of the extract. */
 static starg_status translate(const change *c, const fan_plan *plan, fan_plan *out) {
-    starg_status status = STARG_OK;
     const partition_extract *e = &c->extract;
     *out = *plan;
     out->entries.data = NULL;
@@ -251,11 +200,10 @@ static starg_status translate(const change *c, const fan_plan *plan, fan_plan *o
         uint32_t entry = plan->entries.data[i], number = entry / 2;
         const uint32_t *found =
             bsearch(&number, e->facets.data, e->facets.count, sizeof number, ascending);
-        STARG_PUSH(e->part.context, PARTITION_STAGE, &out->entries,
-                   2 * (uint32_t)(found - e->facets.data) + entry % 2);
+        PUSH(e->part.context, PARTITION_STAGE, &out->entries,
+             2 * (uint32_t)(found - e->facets.data) + entry % 2);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The pieces of a plan, and the takers. */
@@ -297,7 +245,6 @@ done:
 /* The facets of two pieces except those between them. */
 static starg_status gather_union(const partition *p, uint32_t a, uint32_t b,
                                  partition_triangles *out) {
-    starg_status status = STARG_OK;
     const uint32_t pair[2] = {a, b};
     for (int i = 0; i < 2; i++)
         for (uint32_t k = p->start.data[pair[i]]; k < p->start.data[pair[i] + 1]; k++) {
@@ -307,10 +254,9 @@ static starg_status gather_union(const partition *p, uint32_t a, uint32_t b,
                 continue;
             facet_outward(f, (int)(entry % 2), corners);
             for (int c = 0; c < 3; c++)
-                STARG_PUSH(p->context, PARTITION_STAGE, out, corners[c]);
+                PUSH(p->context, PARTITION_STAGE, out, corners[c]);
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The largest ball in the common kernel of two pieces. Most pairs have none, and usually a sample
@@ -318,75 +264,62 @@ done:
 static starg_status find_common_ball(const partition *p, const uint32_t pair[2], double margin,
                                      region_scratch *scratch, double center[3], double *radius) {
     static const uint32_t most[] = {256, 8192, UINT32_MAX};
-    starg_status status = STARG_OK;
-    region r = {.vertices = {0}};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     *radius = INFINITY;
     for (size_t i = 0; i < sizeof most / sizeof *most && *radius >= margin; i++) {
-        STARG_TRY(region_gather_some(p, pair, 2, most[i], scratch, &r));
-        STARG_TRY(region_find_center(&r, NULL, 0, scratch, center, radius));
+        TRY(region_gather_some(p, pair, 2, most[i], scratch, &r));
+        TRY(region_find_center(&r, NULL, 0, scratch, center, radius));
     }
-done:
-    region_free(p->context, &r);
-    return status;
+    return STARG_OK;
 }
 
 starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
                         region_scratch *scratch, bool *done) {
-    starg_status status = STARG_OK;
     const uint32_t pair[2] = {a, b};
-    partition_triangles triangles = {0};
+    SCOPED partition_triangles triangles = {0};
     piece fresh = {.stamp = p->stamps + 1};
     double center[3];
     *done = false;
-    STARG_TRY(find_common_ball(p, pair, margin, scratch, center, &fresh.radius));
+    TRY(find_common_ball(p, pair, margin, scratch, center, &fresh.radius));
     if (fresh.radius < margin)
-        goto done;
+        return STARG_OK;
     partition_from_unit(p, center, fresh.guard);
-    STARG_TRY(gather_union(p, a, b, &triangles));
+    TRY(gather_union(p, a, b, &triangles));
     *done = partition_certify(p, triangles.data, triangles.count / 3, fresh.guard);
     if (!*done)
-        goto done;
+        return STARG_OK;
     fresh.volume = p->pieces.data[a].volume + p->pieces.data[b].volume;
     p->stamps++;
     partition_join(p, pair, 2);
     p->pieces.data[a] = fresh;
     partition_renumber(p, (uint32_t)p->pieces.count - 1, b);
-    STARG_TRY(partition_build_index(p));
-done:
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
+    return partition_build_index(p);
 }
 
 /* ---- guards ---- */
 
 static starg_status center_guard(partition *p, uint32_t number, region *r,
                                  partition_triangles *triangles, region_scratch *scratch) {
-    starg_status status = STARG_OK;
     piece *it = &p->pieces.data[number];
     double center[3], guard[3], radius;
     triangles->count = 0;
-    STARG_TRY(region_gather(p, &number, 1, scratch, r));
-    STARG_TRY(region_find_center(r, NULL, 0, scratch, center, &radius));
+    TRY(region_gather(p, &number, 1, scratch, r));
+    TRY(region_find_center(r, NULL, 0, scratch, center, &radius));
     partition_from_unit(p, center, guard);
     if (radius <= it->radius)
-        goto done;
-    STARG_TRY(partition_gather(p, number, triangles));
+        return STARG_OK;
+    TRY(partition_gather(p, number, triangles));
     if (!partition_certify(p, triangles->data, triangles->count / 3, guard))
-        goto done;
+        return STARG_OK;
     vec3_copy(guard, it->guard);
     it->radius = radius;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status apply_centers(partition *p, region_scratch *scratch) {
-    starg_status status = STARG_OK;
-    region r = {.vertices = {0}};
-    partition_triangles triangles = {0};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
+    SCOPED partition_triangles triangles = {0};
     for (uint32_t i = 0; i < p->pieces.count; i++)
-        STARG_TRY(center_guard(p, i, &r, &triangles, scratch));
-done:
-    region_free(p->context, &r);
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
+        TRY(center_guard(p, i, &r, &triangles, scratch));
+    return STARG_OK;
 }

@@ -1,13 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Applies a plan of cuts, with proof. */
-#ifndef STARG_STAR_STRICT_PARTITION_APPLY_H
-#define STARG_STAR_STRICT_PARTITION_APPLY_H
+#pragma once
 
 #include "star/strict/partition/partition.h"
-#include "star/strict/search/border.h"
-#include "star/strict/search/repartition.h"
 
-enum { APPLY_MOST = REPARTITION_PARTS_MOST };
+enum { APPLY_MOST = 5, CUT_PLANES_MOST = 64 };
+
+typedef enum cut_end { CUT_GOES_ON, CUT_ENDS_TERM, CUT_ENDS_PART } cut_end;
+
+/* Part after part, each cut from what the former ones leave, which is the last part in the end. A
+ * part is the union of terms, a term what is below all of its planes. */
+typedef struct cut_plan {
+    int count;
+    partition_plane planes[CUT_PLANES_MOST];
+    cut_end ends[CUT_PLANES_MOST]; /* is it the last one of its term, or part? */
+} cut_plan;
 
 /* A piece that was renumbered. */
 typedef struct apply_move {
@@ -24,18 +31,14 @@ typedef struct apply_effect {
  * `count` pieces complete. */
 typedef double (*apply_worth)(const partition *part, size_t count);
 
-/* Joins `count` pieces (at most APPLY_MOST) and cuts their union as planned. Certifies every new
+/* Joins `count` pieces (at most APPLY_MOST) and cuts their union into at most as many parts, as
+ * planned. Certifies every new
  * piece, and every other piece whose facets were split; if one fails, or if `worth`, unless NULL,
  * does not grow, the partition is unchanged. Guards of the new pieces are the centres of their
  * kernels, at least `margin` (unit coordinates) inside. Rebuilds the index. Errors: MEMORY. */
-starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
-                        const repartition_plan *plan, double margin, apply_worth worth,
-                        region_scratch *scratch, apply_effect *effect);
-
-/* The same for parts with borders of several planes, at most as many as pieces. Errors: MEMORY. */
-starg_status apply_borders(partition *p, const uint32_t *pieces, size_t count,
-                           const border_plan *plan, double margin, apply_worth worth,
-                           region_scratch *scratch, apply_effect *effect);
+starg_status apply_cuts(partition *p, const uint32_t *pieces, size_t count, const cut_plan *plan,
+                        double margin, apply_worth worth, region_scratch *scratch,
+                        apply_effect *effect);
 
 /* Distributes pieces as planned; proofs, `margin` and index as above. Errors: MEMORY. */
 starg_status apply_fan(partition *p, const fan_plan *plan, double margin, region_scratch *scratch,
@@ -48,5 +51,3 @@ starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
 
 /* Moves each guard to the centre of its kernel if that is certified and better. Errors: MEMORY. */
 starg_status apply_centers(partition *p, region_scratch *scratch);
-
-#endif

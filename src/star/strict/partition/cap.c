@@ -38,44 +38,38 @@ typedef struct winder {
 
 /* Sets the winding number of a triangle, as seen across one of its edges; it must be consistent. */
 static starg_status give(winder *w, uint32_t number, int32_t winding, bool *done) {
-    starg_status status = STARG_OK;
     if (w->winding[number] != UNKNOWN) {
         *done = *done && w->winding[number] == winding;
         return STARG_OK;
     }
     w->winding[number] = winding;
     *done = *done && (winding == 0 || winding == 1);
-    STARG_PUSH(w->context, "decompose", &w->stack, number);
-done:
-    return status;
+    PUSH(w->context, "decompose", &w->stack, number);
+    return STARG_OK;
 }
 
 static starg_status wind(winder *w, bool *done) {
-    starg_status status = STARG_OK;
     for (uint32_t i = 0; i < w->count; i++)
         w->winding[i] = UNKNOWN;
     for (uint32_t i = 0; i < w->count; i++)
         for (int k = 0; k < 3; k++)
             if (w->triangles[i].beyond[k] == CONSTRAINED_NONE)
-                STARG_TRY(give(w, i, w->triangles[i].turns[k], done));
+                TRY(give(w, i, w->triangles[i].turns[k], done));
     while (w->stack.count > 0) {
         uint32_t number = w->stack.data[--w->stack.count];
         const constrained_triangle *t = &w->triangles[number];
         for (int k = 0; k < 3; k++)
             if (t->beyond[k] != CONSTRAINED_NONE)
-                STARG_TRY(give(w, t->beyond[k], w->winding[number] - t->turns[k], done));
+                TRY(give(w, t->beyond[k], w->winding[number] - t->turns[k], done));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take(const winder *w, cap_indices *triangles) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < w->count; i++)
         for (int k = 0; k < 3 && w->winding[i] == 1; k++)
-            STARG_PUSH(w->context, "decompose", triangles, w->triangles[i].corners[k]);
-done:
-    return status;
+            PUSH(w->context, "decompose", triangles, w->triangles[i].corners[k]);
+    return STARG_OK;
 }
 
 starg_status cap_fill(starg_context *context, const double *points, const double normal[3],
@@ -97,8 +91,6 @@ starg_status cap_fill(starg_context *context, const double *points, const double
     if (*done)
         STARG_TRY(take(&w, triangles));
 done:
-    STARG_ARRAY_FREE(context, &all);
-    STARG_ARRAY_FREE(context, &w.stack);
-    starg_release(context, w.winding);
+    RELEASE(all.data, w.stack.data, w.winding);
     return status;
 }

@@ -4,8 +4,6 @@
  * share faces, because all pieces share the same facets. Cost: linear. */
 #include "star/strict/partition/partition.h"
 
-#include <string.h>
-
 #include "geometry/vec3.h"
 
 typedef struct coner {
@@ -64,9 +62,7 @@ starg_status cone_all(const partition *p, starg_tetmesh **mesh, int32_t **labels
     c.vertices = NULL;
     c.tetrahedra = NULL;
 done:
-    starg_release(p->context, c.vertices);
-    starg_release(p->context, c.tetrahedra);
-    starg_release(p->context, c.number);
+    RELEASE(c.vertices, c.tetrahedra, c.number);
     if (status != STARG_OK) {
         starg_release(p->context, *labels);
         *labels = NULL;

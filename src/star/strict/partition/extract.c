@@ -14,16 +14,11 @@
 #include "star/strict/partition/partition.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
 
 void extract_free(partition_extract *e) {
-    starg_context *context = e->part.context;
-    STARG_ARRAY_FREE(context, &e->facets);
-    STARG_ARRAY_FREE(context, &e->points);
-    STARG_ARRAY_FREE(context, &e->planes);
-    STARG_ARRAY_FREE(context, &e->pieces);
+    RELEASE(e->facets.data, e->points.data, e->planes.data, e->pieces.data);
     partition_free(&e->part);
 }
 
@@ -40,18 +35,15 @@ static bool is_named(const extractor *x, uint32_t owner) {
 }
 
 static starg_status name_pieces(const extractor *x, const uint32_t *pieces, size_t count) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++) {
-        STARG_PUSH(x->p->context, PARTITION_STAGE, &x->e->pieces, pieces[i]);
+        PUSH(x->p->context, PARTITION_STAGE, &x->e->pieces, pieces[i]);
         x->scratch->piece_of.data[pieces[i]] = (uint32_t)x->e->pieces.count;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A facet between two of the pieces is listed for its inner side. */
 static starg_status list_own_facets(const extractor *x) {
-    starg_status status = STARG_OK;
     const partition *p = x->p;
     for (size_t i = 0; i < x->e->pieces.count; i++) {
         uint32_t number = x->e->pieces.data[i];
@@ -60,29 +52,24 @@ static starg_status list_own_facets(const extractor *x) {
             const facet *f = &p->facets.data[entry / 2];
             if (entry % 2 == FACET_OUTER && is_named(x, f->side[FACET_INNER]))
                 continue;
-            STARG_PUSH(p->context, PARTITION_STAGE, &x->e->facets, entry / 2);
+            PUSH(p->context, PARTITION_STAGE, &x->e->facets, entry / 2);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status number_point(const extractor *x, uint32_t point) {
-    starg_status status = STARG_OK;
     if (x->scratch->vertex_of.data[point] != 0)
         return STARG_OK;
-    STARG_PUSH(x->p->context, PARTITION_STAGE, &x->e->points, point);
+    PUSH(x->p->context, PARTITION_STAGE, &x->e->points, point);
     x->scratch->vertex_of.data[point] = (uint32_t)x->e->points.count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status number_points(const extractor *x) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < 3 * x->e->facets.count; i++)
-        STARG_TRY(number_point(x, x->p->facets.data[x->e->facets.data[i / 3]].corners[i % 3]));
-done:
-    return status;
+        TRY(number_point(x, x->p->facets.data[x->e->facets.data[i / 3]].corners[i % 3]));
+    return STARG_OK;
 }
 
 /* Does a facet belong to none of the pieces but have two of their vertices, `corner` being the
@@ -102,15 +89,13 @@ static bool is_beside(const extractor *x, const facet *f, uint32_t corner) {
 
 /* `points` are those of the pieces themselves. */
 static starg_status list_facets_beside(const extractor *x) {
-    starg_status status = STARG_OK;
     const partition *p = x->p;
     for (size_t i = 0; i < x->e->points.count; i++)
         for (uint32_t c = p->first_at.data[x->e->points.data[i]]; c != PARTITION_NO_CORNER;
              c = p->next_at.data[c])
             if (is_beside(x, &p->facets.data[c / 3], c % 3))
-                STARG_PUSH(p->context, PARTITION_STAGE, &x->e->facets, c / 3);
-done:
-    return status;
+                PUSH(p->context, PARTITION_STAGE, &x->e->facets, c / 3);
+    return STARG_OK;
 }
 
 static int ascending(const void *x, const void *y) {
@@ -121,62 +106,52 @@ static int ascending(const void *x, const void *y) {
 /* ---- the part ---- */
 
 static starg_status number_piece(const extractor *x, uint32_t *side) {
-    starg_status status = STARG_OK;
     if (*side == PARTITION_OUTSIDE)
         return STARG_OK;
     if (!is_named(x, *side))
-        STARG_TRY(name_pieces(x, side, 1));
+        TRY(name_pieces(x, side, 1));
     *side = x->scratch->piece_of.data[*side] - 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status number_plane(const extractor *x, uint32_t *plane) {
-    starg_status status = STARG_OK;
     uint32_t *slot = &x->scratch->row_of.data[2 * (size_t)*plane];
     if (*slot == 0) {
-        STARG_PUSH(x->p->context, PARTITION_STAGE, &x->e->planes, *plane);
+        PUSH(x->p->context, PARTITION_STAGE, &x->e->planes, *plane);
         *slot = (uint32_t)x->e->planes.count;
     }
     *plane = *slot - 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_facets(const extractor *x) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < x->e->facets.count; i++) {
         facet f = x->p->facets.data[x->e->facets.data[i]];
         for (int k = 0; k < 3; k++) {
-            STARG_TRY(number_point(x, f.corners[k]));
+            TRY(number_point(x, f.corners[k]));
             f.corners[k] = x->scratch->vertex_of.data[f.corners[k]] - 1;
         }
         for (int side = 0; side < 2; side++)
-            STARG_TRY(number_piece(x, &f.side[side]));
-        STARG_TRY(number_plane(x, &f.plane));
-        STARG_PUSH(x->p->context, PARTITION_STAGE, &x->e->part.facets, f);
+            TRY(number_piece(x, &f.side[side]));
+        TRY(number_plane(x, &f.plane));
+        PUSH(x->p->context, PARTITION_STAGE, &x->e->part.facets, f);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_what_is_listed(const extractor *x) {
-    starg_status status = STARG_OK;
     const partition *p = x->p;
     partition *part = &x->e->part;
     for (size_t i = 0; i < 3 * x->e->points.count; i++) {
         size_t from = 3 * (size_t)x->e->points.data[i / 3] + i % 3;
-        STARG_PUSH(p->context, PARTITION_STAGE, &part->points, p->points.data[from]);
-        STARG_PUSH(p->context, PARTITION_STAGE, &part->unit, p->unit.data[from]);
+        PUSH(p->context, PARTITION_STAGE, &part->points, p->points.data[from]);
+        PUSH(p->context, PARTITION_STAGE, &part->unit, p->unit.data[from]);
     }
     for (size_t i = 0; i < x->e->planes.count; i++)
-        STARG_PUSH(p->context, PARTITION_STAGE, &part->planes,
-                   p->planes.data[x->e->planes.data[i]]);
+        PUSH(p->context, PARTITION_STAGE, &part->planes, p->planes.data[x->e->planes.data[i]]);
     for (size_t i = 0; i < x->e->pieces.count; i++)
-        STARG_PUSH(p->context, PARTITION_STAGE, &part->pieces,
-                   p->pieces.data[x->e->pieces.data[i]]);
-done:
-    return status;
+        PUSH(p->context, PARTITION_STAGE, &part->pieces, p->pieces.data[x->e->pieces.data[i]]);
+    return STARG_OK;
 }
 
 /* The tables are all zero between calls. */
@@ -191,48 +166,44 @@ static void forget(const extractor *x) {
 
 starg_status extract_make(const partition *p, const uint32_t *pieces, size_t count,
                           region_scratch *scratch, partition_extract *out) {
-    starg_status status = STARG_OK;
     const extractor x = {p, scratch, out};
     *out = (partition_extract){.part = {.context = p->context, .stamps = p->stamps}};
     vec3_copy(p->origin, out->part.origin);
     memcpy(out->part.exponents, p->exponents, sizeof p->exponents);
-    STARG_TRY(region_scratch_fit(scratch, p));
-    STARG_TRY(name_pieces(&x, pieces, count));
-    STARG_TRY(list_own_facets(&x));
-    STARG_TRY(number_points(&x));
-    STARG_TRY(list_facets_beside(&x));
+    TRY(region_scratch_fit(scratch, p));
+    TRY(name_pieces(&x, pieces, count));
+    TRY(list_own_facets(&x));
+    TRY(number_points(&x));
+    TRY(list_facets_beside(&x));
     if (out->facets.count > 1)
         qsort(out->facets.data, out->facets.count, sizeof *out->facets.data, ascending);
-    STARG_TRY(add_facets(&x));
-    STARG_TRY(add_what_is_listed(&x));
+    TRY(add_facets(&x));
+    TRY(add_what_is_listed(&x));
     forget(&x);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- return ---- */
 
 static starg_status number_new(partition_extract *e, partition *p) {
-    starg_status status = STARG_OK;
     const partition *part = &e->part;
     for (uint32_t i = (uint32_t)e->points.count; i < part->points.count / 3; i++) {
         uint32_t number;
-        STARG_TRY(partition_add_point(p, partition_point(part, i), &number));
-        STARG_PUSH(p->context, PARTITION_STAGE, &e->points, number);
+        TRY(partition_add_point(p, partition_point(part, i), &number));
+        PUSH(p->context, PARTITION_STAGE, &e->points, number);
     }
     for (size_t i = e->planes.count; i < part->planes.count; i++) {
-        STARG_PUSH(p->context, PARTITION_STAGE, &e->planes, (uint32_t)p->planes.count);
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, part->planes.data[i]);
+        PUSH(p->context, PARTITION_STAGE, &e->planes, (uint32_t)p->planes.count);
+        PUSH(p->context, PARTITION_STAGE, &p->planes, part->planes.data[i]);
     }
     for (size_t i = 0; i < e->pieces.count; i++)
         p->pieces.data[e->pieces.data[i]] = part->pieces.data[i];
     for (size_t i = e->pieces.count; i < part->pieces.count; i++) {
-        STARG_PUSH(p->context, PARTITION_STAGE, &e->pieces, (uint32_t)p->pieces.count);
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->pieces, part->pieces.data[i]);
+        PUSH(p->context, PARTITION_STAGE, &e->pieces, (uint32_t)p->pieces.count);
+        PUSH(p->context, PARTITION_STAGE, &p->pieces, part->pieces.data[i]);
     }
     p->stamps = part->stamps;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static facet in_the_whole(const partition_extract *e, size_t number) {
@@ -258,16 +229,14 @@ static void drop_facets(const partition_extract *e, size_t first, partition *p) 
 }
 
 starg_status extract_return(partition_extract *e, partition *p) {
-    starg_status status = STARG_OK;
     size_t count = e->part.facets.count, places = e->facets.count;
-    STARG_TRY(number_new(e, p));
+    TRY(number_new(e, p));
     for (size_t i = 0; i < count; i++)
         if (i < places)
             p->facets.data[e->facets.data[i]] = in_the_whole(e, i);
         else
-            STARG_PUSH(p->context, PARTITION_STAGE, &p->facets, in_the_whole(e, i));
+            PUSH(p->context, PARTITION_STAGE, &p->facets, in_the_whole(e, i));
     if (count < places)
         drop_facets(e, count, p);
-done:
-    return status;
+    return STARG_OK;
 }

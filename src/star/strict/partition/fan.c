@@ -10,7 +10,6 @@
 #include "star/strict/partition/partition.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
 
@@ -22,10 +21,8 @@ typedef struct fan_edge {
 
 typedef STARG_ARRAY(fan_edge) fan_edges;
 
-void fan_plan_free(starg_context *context, fan_plan *plan) {
-    STARG_ARRAY_FREE(context, &plan->entries);
-    STARG_ARRAY_FREE(context, &plan->takes);
-    STARG_ARRAY_FREE(context, &plan->corners);
+void fan_plan_free(fan_plan *plan) {
+    RELEASE(plan->entries.data, plan->takes.data, plan->corners.data);
     *plan = (fan_plan){.piece_count = 0};
 }
 
@@ -44,31 +41,28 @@ static int compare_facets(const void *left, const void *right) {
 }
 
 starg_status fan_plan_mark(const partition *p, fan_plan *plan) {
-    starg_status status = STARG_OK;
     plan->corners.count = 0;
     for (size_t i = 0; i < plan->entries.count; i++) {
         uint32_t entry = plan->entries.data[i], c[3];
         facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), c);
         for (int k = 0; k < 3; k++)
-            STARG_PUSH(p->context, PARTITION_STAGE, &plan->corners, c[k]);
+            PUSH(p->context, PARTITION_STAGE, &plan->corners, c[k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status fan_plan_find(const partition *p, fan_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
-    STARG_ARRAY(known_facet) facets = {0};
+    SCOPED STARG_ARRAY(known_facet) facets = {0};
     *found = false;
     for (size_t i = 0; i < plan->piece_count; i++)
         for (uint32_t k = p->start.data[plan->pieces[i]]; k < p->start.data[plan->pieces[i] + 1];
              k++) {
             known_facet fresh = {.entry = p->index.data[k]};
             facet_outward(&p->facets.data[fresh.entry / 2], (int)(fresh.entry % 2), fresh.corners);
-            STARG_PUSH(p->context, PARTITION_STAGE, &facets, fresh);
+            PUSH(p->context, PARTITION_STAGE, &facets, fresh);
         }
     if (facets.count == 0)
-        goto done;
+        return STARG_OK;
     qsort(facets.data, facets.count, sizeof *facets.data, compare_facets);
     *found = true;
     for (size_t i = 0; i < plan->entries.count && *found; i++) {
@@ -80,25 +74,21 @@ starg_status fan_plan_find(const partition *p, fan_plan *plan, bool *found) {
         if (*found)
             plan->entries.data[i] = at->entry;
     }
-done:
-    STARG_ARRAY_FREE(p->context, &facets);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the fan ---- */
 
 static starg_status gather_edges(const partition *p, const fan_plan *plan, fan_edges *edges) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < plan->entries.count; i++) {
         uint32_t entry = plan->entries.data[i], c[3];
         facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), c);
         for (int k = 0; k < 3; k++) {
             const fan_edge fresh = {c[k], c[(k + 1) % 3], plan->takes.data[i]};
-            STARG_PUSH(p->context, PARTITION_STAGE, edges, fresh);
+            PUSH(p->context, PARTITION_STAGE, edges, fresh);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Sorts both directions of an edge next to each other. */
@@ -138,7 +128,6 @@ static void drop_inner(partition *p) {
 
 static starg_status add_triangles(partition *p, const fan_plan *plan, const fan_edges *edges,
                                   uint32_t apex) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i + 1 < edges->count; i += 2) {
         const fan_edge *e = &edges->data[i];
         if (e[0].taker == e[1].taker)
@@ -148,27 +137,22 @@ static starg_status add_triangles(partition *p, const fan_plan *plan, const fan_
                    .plane = (uint32_t)p->planes.count};
         partition_plane plane;
         partition_plane_of(p, f.corners, &plane);
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->facets, f);
+        PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
+        PUSH(p->context, PARTITION_STAGE, &p->facets, f);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status partition_fan(partition *p, const fan_plan *plan) {
-    starg_status status = STARG_OK;
-    fan_edges edges = {0};
+    SCOPED fan_edges edges = {0};
     double at[3];
     uint32_t apex;
     partition_from_unit(p, plan->apex, at);
-    STARG_TRY(partition_add_point(p, at, &apex));
-    STARG_TRY(gather_edges(p, plan, &edges));
+    TRY(partition_add_point(p, at, &apex));
+    TRY(gather_edges(p, plan, &edges));
     if (edges.count > 0)
         qsort(edges.data, edges.count, sizeof *edges.data, compare_edges);
     hand_over(p, plan);
     drop_inner(p);
-    STARG_TRY(add_triangles(p, plan, &edges, apex));
-done:
-    STARG_ARRAY_FREE(p->context, &edges);
-    return status;
+    return add_triangles(p, plan, &edges, apex);
 }

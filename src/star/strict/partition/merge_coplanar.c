@@ -19,7 +19,6 @@
 #include "star/strict/partition/partition.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { ROUNDS = 4 };
 
@@ -69,7 +68,6 @@ static bool same_group(const facet *a, const facet *b) {
 }
 
 static starg_status find_groups(tidier *t) {
-    starg_status status = STARG_OK;
     const facet *facets = t->p->facets.data;
     size_t count = t->p->facets.count;
     if (count > 0)
@@ -80,10 +78,9 @@ static starg_status find_groups(tidier *t) {
             continue;
         }
         const group fresh = {.first = (uint32_t)i, .count = 1};
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->groups, fresh);
+        PUSH(t->p->context, PARTITION_STAGE, &t->groups, fresh);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- borders ---- */
@@ -118,14 +115,13 @@ static size_t cancel_pairs(border *edges, size_t count) {
 }
 
 static starg_status find_border(tidier *t, uint32_t number) {
-    starg_status status = STARG_OK;
     group *g = &t->groups.data[number];
     g->border_first = (uint32_t)t->borders.count;
     for (uint32_t i = 0; i < g->count; i++) {
         const uint32_t *k = t->p->facets.data[g->first + i].corners;
         for (int e = 0; e < 3; e++) {
             const border edge = {k[e], k[(e + 1) % 3], number};
-            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->borders, edge);
+            PUSH(t->p->context, PARTITION_STAGE, &t->borders, edge);
         }
     }
     border *edges = t->borders.data + g->border_first;
@@ -133,8 +129,7 @@ static starg_status find_border(tidier *t, uint32_t number) {
     t->borders.count = g->border_first + g->border_count;
     for (uint32_t i = 1; i < g->border_count; i++)
         g->kept = g->kept || edges[i].from == edges[i - 1].from;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- seams ---- */
@@ -170,15 +165,14 @@ static void meet_border(inner_edge *inner, size_t count, const border *edge) {
 
 /* Edges inside one group that are on the border of another. */
 static starg_status find_seams(tidier *t) {
-    starg_status status = STARG_OK;
-    STARG_ARRAY(inner_edge) inner = {0};
+    SCOPED STARG_ARRAY(inner_edge) inner = {0};
     for (uint32_t i = 0; i < t->groups.count; i++) {
         const group *g = &t->groups.data[i];
         for (uint32_t k = 0; g->count > 1 && k < 3 * g->count; k++) {
             const uint32_t *c = t->p->facets.data[g->first + k / 3].corners;
             const inner_edge fresh = {.edge = {c[k % 3], c[(k + 1) % 3], i}};
             if (fresh.edge.from < fresh.edge.to)
-                STARG_PUSH(t->p->context, PARTITION_STAGE, &inner, fresh);
+                PUSH(t->p->context, PARTITION_STAGE, &inner, fresh);
         }
     }
     if (inner.count > 1)
@@ -187,7 +181,7 @@ static starg_status find_seams(tidier *t) {
         meet_border(inner.data, inner.count, &t->borders.data[i]);
     for (size_t i = 0; i < inner.count; i++)
         if (inner.data[i].other && !inner.data[i].own)
-            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->seams, inner.data[i].edge);
+            PUSH(t->p->context, PARTITION_STAGE, &t->seams, inner.data[i].edge);
     if (t->seams.count > 1)
         qsort(t->seams.data, t->seams.count, sizeof *t->seams.data, by_edge_and_group);
     for (size_t i = 0; i < t->seams.count; i++) {
@@ -195,9 +189,7 @@ static starg_status find_seams(tidier *t) {
         g->seam_first = g->seam_count == 0 ? (uint32_t)i : g->seam_first;
         g->seam_count++;
     }
-done:
-    STARG_ARRAY_FREE(t->p->context, &inner);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- needed vertices ---- */
@@ -251,7 +243,6 @@ static uint32_t edge_from(const tidier *t, const group *g, uint32_t vertex) {
 
 /* One loop of a group's border, without the vertices that are not needed. */
 static starg_status trace_loop(tidier *t, const group *g, uint32_t start) {
-    starg_status status = STARG_OK;
     uint32_t first = NONE, last = NONE;
     for (uint32_t at = start; !t->visited[at]; at = edge_from(t, g, t->borders.data[at].to)) {
         uint32_t vertex = t->borders.data[at].from;
@@ -262,33 +253,30 @@ static starg_status trace_loop(tidier *t, const group *g, uint32_t start) {
         if (last == NONE)
             first = vertex;
         else
-            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, edge);
+            PUSH(t->p->context, PARTITION_STAGE, &t->edges, edge);
         last = vertex;
     }
     const constrained_edge closing = {last, first, 1};
     if (last != NONE)
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, closing);
-done:
-    return status;
+        PUSH(t->p->context, PARTITION_STAGE, &t->edges, closing);
+    return STARG_OK;
 }
 
 static starg_status trace(tidier *t, const group *g) {
-    starg_status status = STARG_OK;
     t->edges.count = t->loose.count = t->triangles.count = 0;
     for (uint32_t i = g->border_first; i < g->border_first + g->border_count; i++)
         if (!t->visited[i])
-            STARG_TRY(trace_loop(t, g, i));
+            TRY(trace_loop(t, g, i));
     for (uint32_t i = g->seam_first; i < g->seam_first + g->seam_count; i++) {
         const constrained_edge edge = {t->seams.data[i].from, t->seams.data[i].to, 0};
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, edge);
+        PUSH(t->p->context, PARTITION_STAGE, &t->edges, edge);
     }
     for (uint32_t i = 0; i < 3 * g->count; i++) {
         uint32_t vertex = t->p->facets.data[g->first + i / 3].corners[i % 3];
         if (t->needed[vertex])
-            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->loose, vertex);
+            PUSH(t->p->context, PARTITION_STAGE, &t->loose, vertex);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool all_needed(const tidier *t, const group *g) {
@@ -300,65 +288,56 @@ static bool all_needed(const tidier *t, const group *g) {
 }
 
 static starg_status copy_facets(tidier *t, const group *g) {
-    starg_status status = STARG_OK;
     for (uint32_t i = 0; i < g->count; i++)
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->facets, t->p->facets.data[g->first + i]);
-done:
-    return status;
+        PUSH(t->p->context, PARTITION_STAGE, &t->facets, t->p->facets.data[g->first + i]);
+    return STARG_OK;
 }
 
 static starg_status fill(tidier *t, group *g) {
-    starg_status status = STARG_OK;
     facet fresh = t->p->facets.data[g->first];
     bool done = false;
     if (g->kept || all_needed(t, g))
         return copy_facets(t, g);
-    STARG_TRY(trace(t, g));
-    STARG_TRY(cap_fill(t->p->context, t->p->points.data, t->p->planes.data[fresh.plane].normal,
-                       &t->edges, &t->loose, &t->triangles, &done));
+    TRY(trace(t, g));
+    TRY(cap_fill(t->p->context, t->p->points.data, t->p->planes.data[fresh.plane].normal, &t->edges,
+                 &t->loose, &t->triangles, &done));
     g->kept = !done;
     for (size_t i = 0; done && i + 2 < t->triangles.count; i += 3) {
         memcpy(fresh.corners, t->triangles.data + i, sizeof fresh.corners);
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->facets, fresh);
+        PUSH(t->p->context, PARTITION_STAGE, &t->facets, fresh);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* *again: some group turned out to need all of its vertices. */
 static starg_status fill_all(tidier *t, bool *again) {
-    starg_status status = STARG_OK;
     *again = false;
     t->facets.count = 0;
     memset(t->visited, 0, t->borders.count * sizeof *t->visited);
     for (size_t i = 0; i < t->groups.count; i++) {
         bool kept = t->groups.data[i].kept;
-        STARG_TRY(fill(t, &t->groups.data[i]));
+        TRY(fill(t, &t->groups.data[i]));
         *again = *again || t->groups.data[i].kept != kept;
     }
     if (*again)
         find_needed(t);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the result ---- */
 
 static starg_status take_facets(tidier *t) {
-    starg_status status = STARG_OK;
     t->p->facets.count = 0;
     for (size_t i = 0; i < t->facets.count; i++)
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->p->facets, t->facets.data[i]);
-done:
-    return status;
+        PUSH(t->p->context, PARTITION_STAGE, &t->p->facets, t->facets.data[i]);
+    return STARG_OK;
 }
 
 /* Removes cut planes that contain no facet. */
 static starg_status drop_planes(partition *p) {
-    starg_status status = STARG_OK;
-    uint32_t *number = NULL;
+    SCOPED uint32_t *number = NULL;
     size_t count = p->planes.count, kept = p->first_planes;
-    STARG_NEW_ZERO(p->context, PARTITION_STAGE, number, count);
+    NEW_ZERO(p->context, PARTITION_STAGE, number, count);
     for (size_t i = 0; i < p->facets.count; i++)
         number[p->facets.data[i].plane] = 1;
     for (size_t k = 0; k < count; k++) {
@@ -370,17 +349,14 @@ static starg_status drop_planes(partition *p) {
     p->planes.count = kept;
     for (size_t i = 0; i < p->facets.count; i++)
         p->facets.data[i].plane = number[p->facets.data[i].plane];
-done:
-    starg_release(p->context, number);
-    return status;
+    return STARG_OK;
 }
 
 /* Removes points made by cuts that no facet uses. */
 static starg_status drop_points(partition *p) {
-    starg_status status = STARG_OK;
-    uint32_t *number = NULL;
+    SCOPED uint32_t *number = NULL;
     size_t count = p->points.count / 3, kept = p->first_points;
-    STARG_NEW_ZERO(p->context, PARTITION_STAGE, number, count);
+    NEW_ZERO(p->context, PARTITION_STAGE, number, count);
     for (size_t i = 0; i < 3 * p->facets.count; i++)
         number[p->facets.data[i / 3].corners[i % 3]] = 1;
     for (size_t v = 0; v < count; v++) {
@@ -399,67 +375,50 @@ static starg_status drop_points(partition *p) {
         uint32_t *corner = &p->facets.data[i / 3].corners[i % 3];
         *corner = number[*corner];
     }
-done:
-    starg_release(p->context, number);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status make_anew(tidier *t, bool *done) {
-    starg_status status = STARG_OK;
     size_t vertices = t->p->points.count / 3;
     bool again = true;
-    STARG_NEW(t->p->context, PARTITION_STAGE, t->around, vertices);
-    STARG_NEW_ZERO(t->p->context, PARTITION_STAGE, t->needed, vertices);
+    NEW(t->p->context, PARTITION_STAGE, t->around, vertices);
+    NEW_ZERO(t->p->context, PARTITION_STAGE, t->needed, vertices);
     memset(t->around, 0xff, vertices * sizeof *t->around);
-    STARG_TRY(find_groups(t));
+    TRY(find_groups(t));
     for (uint32_t i = 0; i < t->groups.count; i++)
-        STARG_TRY(find_border(t, i));
-    STARG_TRY(find_seams(t));
+        TRY(find_border(t, i));
+    TRY(find_seams(t));
     find_needed(t);
-    STARG_NEW(t->p->context, PARTITION_STAGE, t->visited, t->borders.count);
+    NEW(t->p->context, PARTITION_STAGE, t->visited, t->borders.count);
     for (int round = 0; round < ROUNDS && again; round++)
-        STARG_TRY(fill_all(t, &again));
+        TRY(fill_all(t, &again));
     *done = !again;
     if (*done)
-        STARG_TRY(take_facets(t));
-done:
-    return status;
+        TRY(take_facets(t));
+    return STARG_OK;
 }
 
 static void tidier_free(tidier *t) {
-    starg_context *context = t->p->context;
-    STARG_ARRAY_FREE(context, &t->groups);
-    STARG_ARRAY_FREE(context, &t->borders);
-    STARG_ARRAY_FREE(context, &t->facets);
-    STARG_ARRAY_FREE(context, &t->seams);
-    STARG_ARRAY_FREE(context, &t->edges);
-    STARG_ARRAY_FREE(context, &t->loose);
-    STARG_ARRAY_FREE(context, &t->triangles);
-    starg_release(context, t->around);
-    starg_release(context, t->needed);
-    starg_release(context, t->visited);
+    RELEASE(t->groups.data, t->borders.data, t->facets.data, t->seams.data, t->edges.data,
+            t->loose.data, t->triangles.data, t->around, t->needed, t->visited);
 }
 
 static starg_status merge_all(partition *p, bool proven) {
-    starg_status status = STARG_OK;
-    partition copy = {.context = p->context};
-    tidier t = {.p = &copy};
+    SCOPED_BY(partition_free) partition copy = {.context = p->context};
+    SCOPED_BY(tidier_free) tidier t = {.p = &copy};
     bool done = false;
-    STARG_TRY(partition_copy(p, &copy));
-    STARG_TRY(make_anew(&t, &done));
+    TRY(partition_copy(p, &copy));
+    TRY(make_anew(&t, &done));
     if (!done)
-        goto done;
-    STARG_TRY(drop_points(&copy));
-    STARG_TRY(drop_planes(&copy));
-    STARG_TRY(partition_build_index(&copy));
+        return STARG_OK;
+    TRY(drop_points(&copy));
+    TRY(drop_planes(&copy));
+    TRY(partition_build_index(&copy));
     if (proven)
-        STARG_TRY(partition_certify_all(&copy, &done));
+        TRY(partition_certify_all(&copy, &done));
     if (done)
         partition_swap(p, &copy);
-done:
-    tidier_free(&t);
-    partition_free(&copy);
-    return status;
+    return STARG_OK;
 }
 
 starg_status merge_coplanar(partition *p) {

@@ -17,8 +17,6 @@
 #include "star/strict/partition/partition.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
@@ -52,16 +50,14 @@ void partition_from_unit(const partition *p, const double unit[3], double out[3]
 }
 
 starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex) {
-    starg_status status = STARG_OK;
     double unit[3];
     partition_to_unit(p, point, unit);
     *vertex = (uint32_t)(p->points.count / 3);
     for (int k = 0; k < 3; k++) {
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->points, point[k]);
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->unit, unit[k]);
+        PUSH(p->context, PARTITION_STAGE, &p->points, point[k]);
+        PUSH(p->context, PARTITION_STAGE, &p->unit, unit[k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The frame of the points that `count` corners name. */
@@ -86,13 +82,11 @@ static void find_frame(const double *vertices, const uint32_t *corners, size_t c
 /* Adds points for the vertices whose number is not NONE, and sets that number. */
 static starg_status add_points(partition *p, const double *vertices, size_t count,
                                uint32_t *numbers) {
-    starg_status status = STARG_OK;
     for (size_t v = 0; v < count; v++)
         if (numbers[v] != NONE)
-            STARG_TRY(partition_add_point(p, vertices + 3 * v, &numbers[v]));
+            TRY(partition_add_point(p, vertices + 3 * v, &numbers[v]));
     p->first_points = p->points.count / 3;
-done:
-    return status;
+    return STARG_OK;
 }
 
 void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane) {
@@ -108,16 +102,14 @@ void partition_plane_of(const partition *p, const uint32_t corners[3], partition
 /* A facet in a plane of its own. */
 static starg_status add_facet(partition *p, const uint32_t corners[3], uint32_t inner,
                               uint32_t outer) {
-    starg_status status = STARG_OK;
     facet f = {.corners = {corners[0], corners[1], corners[2]},
                .side = {inner, outer},
                .plane = (uint32_t)p->planes.count};
     partition_plane plane;
     partition_plane_of(p, f.corners, &plane);
-    STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
-    STARG_PUSH(p->context, PARTITION_STAGE, &p->facets, f);
-done:
-    return status;
+    PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
+    PUSH(p->context, PARTITION_STAGE, &p->facets, f);
+    return STARG_OK;
 }
 
 /* ---- from a surface ---- */
@@ -222,15 +214,8 @@ done:
 }
 
 void partition_free(partition *p) {
-    STARG_ARRAY_FREE(p->context, &p->points);
-    STARG_ARRAY_FREE(p->context, &p->unit);
-    STARG_ARRAY_FREE(p->context, &p->planes);
-    STARG_ARRAY_FREE(p->context, &p->facets);
-    STARG_ARRAY_FREE(p->context, &p->pieces);
-    STARG_ARRAY_FREE(p->context, &p->start);
-    STARG_ARRAY_FREE(p->context, &p->index);
-    STARG_ARRAY_FREE(p->context, &p->first_at);
-    STARG_ARRAY_FREE(p->context, &p->next_at);
+    RELEASE(p->points.data, p->unit.data, p->planes.data, p->facets.data, p->pieces.data,
+            p->start.data, p->index.data, p->first_at.data, p->next_at.data);
     *p = (partition){.context = p->context};
 }
 
@@ -274,14 +259,13 @@ done:
             starg_release((CONTEXT), (TO)->data);                                                  \
             (TO)->data = NULL;                                                                     \
             (TO)->count = (TO)->capacity = 0;                                                      \
-            STARG_NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (COUNT) + (COUNT) / 4);              \
+            NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (COUNT) + (COUNT) / 4);                    \
             (TO)->capacity = (COUNT) + (COUNT) / 4;                                                \
         }                                                                                          \
         (TO)->count = (COUNT);                                                                     \
     } while (0)
 
 static starg_status list_corners(partition *p) {
-    starg_status status = STARG_OK;
     size_t points = p->points.count / 3, corners = 3 * p->facets.count;
     FIT_ARRAY(p->context, &p->first_at, points);
     FIT_ARRAY(p->context, &p->next_at, corners);
@@ -291,12 +275,10 @@ static starg_status list_corners(partition *p) {
         p->next_at.data[c] = *first;
         *first = (uint32_t)c;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status partition_build_index(partition *p) {
-    starg_status status = STARG_OK;
     size_t pieces = p->pieces.count;
     FIT_ARRAY(p->context, &p->start, pieces + 2);
     memset(p->start.data, 0, (pieces + 2) * sizeof *p->start.data);
@@ -316,21 +298,17 @@ starg_status partition_build_index(partition *p) {
             p->index.data[start[owner + 1]++] = (uint32_t)i;
     }
     p->start.count = pieces + 1;
-    STARG_TRY(list_corners(p));
-done:
-    return status;
+    return list_corners(p);
 }
 
 starg_status partition_gather(const partition *p, uint32_t number, partition_triangles *triangles) {
-    starg_status status = STARG_OK;
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
         uint32_t corners[3];
         facet_outward(&p->facets.data[p->index.data[k] / 2], (int)(p->index.data[k] % 2), corners);
         for (int i = 0; i < 3; i++)
-            STARG_PUSH(p->context, PARTITION_STAGE, triangles, corners[i]);
+            PUSH(p->context, PARTITION_STAGE, triangles, corners[i]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 double partition_volume(const partition *p, const uint32_t *triangles, size_t count) {
@@ -343,10 +321,9 @@ double partition_volume(const partition *p, const uint32_t *triangles, size_t co
 }
 
 starg_status partition_find_open(const partition *p, partition_numbers *open) {
-    starg_status status = STARG_OK;
-    uint32_t *root = NULL, *size = NULL;
-    STARG_NEW(p->context, PARTITION_STAGE, root, p->pieces.count);
-    STARG_NEW_ZERO(p->context, PARTITION_STAGE, size, p->pieces.count);
+    SCOPED uint32_t *root = NULL, *size = NULL;
+    NEW(p->context, PARTITION_STAGE, root, p->pieces.count);
+    NEW_ZERO(p->context, PARTITION_STAGE, size, p->pieces.count);
     sets_make(root, p->pieces.count);
     for (size_t i = 0; i < p->facets.count; i++) {
         const uint32_t *side = p->facets.data[i].side;
@@ -357,11 +334,8 @@ starg_status partition_find_open(const partition *p, partition_numbers *open) {
         size[sets_find(root, i)]++;
     for (uint32_t i = 0; i < p->pieces.count; i++)
         if (size[sets_find(root, i)] > 2)
-            STARG_PUSH(p->context, PARTITION_STAGE, open, i);
-done:
-    starg_release(p->context, root);
-    starg_release(p->context, size);
-    return status;
+            PUSH(p->context, PARTITION_STAGE, open, i);
+    return STARG_OK;
 }
 
 void partition_renumber(partition *p, uint32_t from, uint32_t to) {
@@ -382,15 +356,12 @@ bool partition_certify(const partition *p, const uint32_t *triangles, size_t cou
 }
 
 starg_status partition_certify_all(const partition *p, bool *done) {
-    starg_status status = STARG_OK;
-    partition_triangles triangles = {0};
+    SCOPED partition_triangles triangles = {0};
     *done = true;
     for (uint32_t i = 0; i < p->pieces.count && *done; i++) {
         triangles.count = 0;
-        STARG_TRY(partition_gather(p, i, &triangles));
+        TRY(partition_gather(p, i, &triangles));
         *done = partition_certify(p, triangles.data, triangles.count / 3, p->pieces.data[i].guard);
     }
-done:
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
+    return STARG_OK;
 }

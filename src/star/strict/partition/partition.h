@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A solid divided into pieces, each given by its closed surface: triangles in space, each with the
  * pieces on its two sides. */
-#ifndef STARG_STAR_STRICT_PARTITION_PARTITION_H
-#define STARG_STAR_STRICT_PARTITION_PARTITION_H
+#pragma once
 
-#include "core/context.h"
-#include "core/memory.h"
 #include "geometry/constrained.h"
 #include "tetra/tetmesh.h"
 #include "visibility/kernel.h"
@@ -167,7 +164,7 @@ typedef struct region {
     STARG_ARRAY(double) vertices; /* x 3 */
     STARG_ARRAY(region_triangle) triangles;
     STARG_ARRAY(double) rows;   /* x 4: outward normal of length one, offset; one for each plane */
-    STARG_ARRAY(double) blocks; /* the same for the scan (star/strict/search/scan.h) */
+    STARG_ARRAY(double) blocks; /* the same for the scan (star/strict/partition/scan.h) */
     size_t first_rows;          /* number of rows of the first piece, which come first */
 } region;
 
@@ -210,7 +207,7 @@ starg_status region_gather(const partition *p, const uint32_t *pieces, size_t co
  * many): if these leave no room for a guard, all facets leave none. */
 starg_status region_gather_some(const partition *p, const uint32_t *pieces, size_t count,
                                 uint32_t most, region_scratch *scratch, region *out);
-void region_free(starg_context *context, region *r);
+void region_free(region *r);
 
 /* Of the box around all vertices. */
 double region_diagonal(const region *r);
@@ -334,7 +331,7 @@ typedef struct fan_plan {
     STARG_ARRAY(uint32_t) corners; /* for each, x 3: by which it is found again */
 } fan_plan;
 
-void fan_plan_free(starg_context *context, fan_plan *plan);
+void fan_plan_free(fan_plan *plan);
 
 /* Notes the corners of all entries. Errors: MEMORY. */
 starg_status fan_plan_mark(const partition *p, fan_plan *plan);
@@ -373,5 +370,3 @@ starg_status partition_separate(partition *p, uint32_t number);
  * order, then the guards. `labels` (a block of the context) holds the piece of each tetrahedron.
  * Errors: MEMORY. */
 starg_status cone_all(const partition *p, starg_tetmesh **mesh, int32_t **labels);
-
-#endif

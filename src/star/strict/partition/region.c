@@ -21,22 +21,15 @@
  * Cost: linear in the rows for each round of the loop; 5 to 20 rounds as a rule. */
 #include "star/strict/partition/partition.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "geometry/linear_program.h"
 #include "geometry/vec3.h"
-#include "star/strict/search/scan.h"
+#include "star/strict/partition/scan.h"
 
 enum { ROUNDS_MOST = 500, ROW = 4 };
 
 void region_scratch_free(region_scratch *scratch) {
-    STARG_ARRAY_FREE(scratch->context, &scratch->vertex_of);
-    STARG_ARRAY_FREE(scratch->context, &scratch->row_of);
-    STARG_ARRAY_FREE(scratch->context, &scratch->piece_of);
-    STARG_ARRAY_FREE(scratch->context, &scratch->heights);
-    STARG_ARRAY_FREE(scratch->context, &scratch->lowest);
-    STARG_ARRAY_FREE(scratch->context, &scratch->lowest_back);
+    RELEASE(scratch->vertex_of.data, scratch->row_of.data, scratch->piece_of.data,
+            scratch->heights.data, scratch->lowest.data, scratch->lowest_back.data);
 }
 
 starg_status region_make_scratch(starg_context *context, void *shared, void **out) {
@@ -56,11 +49,8 @@ void region_free_scratch(starg_context *context, void *scratch) {
     starg_release(context, scratch);
 }
 
-void region_free(starg_context *context, region *r) {
-    STARG_ARRAY_FREE(context, &r->vertices);
-    STARG_ARRAY_FREE(context, &r->triangles);
-    STARG_ARRAY_FREE(context, &r->rows);
-    STARG_ARRAY_FREE(context, &r->blocks);
+void region_free(region *r) {
+    RELEASE(r->vertices.data, r->triangles.data, r->rows.data, r->blocks.data);
     *r = (region){.vertices = {0}};
 }
 
@@ -68,29 +58,24 @@ void region_free(starg_context *context, region *r) {
 
 static starg_status grow_zero(starg_context *context, uint32_t **data, size_t *count,
                               size_t *capacity, size_t needed) {
-    starg_status status = STARG_OK;
     if (*capacity < needed) {
         starg_release(context, *data);
         *data = NULL;
         *capacity = *count = 0;
-        STARG_NEW_ZERO(context, PARTITION_STAGE, *data, needed + needed / 4);
+        NEW_ZERO(context, PARTITION_STAGE, *data, needed + needed / 4);
         *capacity = needed + needed / 4;
     }
     *count = needed;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status region_scratch_fit(region_scratch *scratch, const partition *p) {
-    starg_status status = STARG_OK;
-    STARG_TRY(grow_zero(p->context, &scratch->vertex_of.data, &scratch->vertex_of.count,
-                        &scratch->vertex_of.capacity, p->points.count / 3));
-    STARG_TRY(grow_zero(p->context, &scratch->row_of.data, &scratch->row_of.count,
-                        &scratch->row_of.capacity, 2 * p->planes.count));
-    STARG_TRY(grow_zero(p->context, &scratch->piece_of.data, &scratch->piece_of.count,
-                        &scratch->piece_of.capacity, p->pieces.count));
-done:
-    return status;
+    TRY(grow_zero(p->context, &scratch->vertex_of.data, &scratch->vertex_of.count,
+                  &scratch->vertex_of.capacity, p->points.count / 3));
+    TRY(grow_zero(p->context, &scratch->row_of.data, &scratch->row_of.count,
+                  &scratch->row_of.capacity, 2 * p->planes.count));
+    return grow_zero(p->context, &scratch->piece_of.data, &scratch->piece_of.count,
+                     &scratch->piece_of.capacity, p->pieces.count);
 }
 
 static bool is_chosen(const uint32_t *pieces, size_t count, uint32_t owner) {
@@ -102,48 +87,42 @@ static bool is_chosen(const uint32_t *pieces, size_t count, uint32_t owner) {
 
 static starg_status gather_vertex(const partition *p, uint32_t vertex, region_scratch *scratch,
                                   region *out, uint32_t *number) {
-    starg_status status = STARG_OK;
     uint32_t *slot = &scratch->vertex_of.data[vertex];
     if (*slot == 0) {
         for (int k = 0; k < 3; k++)
-            STARG_PUSH(p->context, PARTITION_STAGE, &out->vertices, partition_unit(p, vertex)[k]);
+            PUSH(p->context, PARTITION_STAGE, &out->vertices, partition_unit(p, vertex)[k]);
         *slot = (uint32_t)(out->vertices.count / 3);
     }
     *number = *slot - 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status gather_row(const partition *p, uint32_t plane, int side,
                                region_scratch *scratch, region *out, uint32_t *number) {
-    starg_status status = STARG_OK;
     uint32_t *slot = &scratch->row_of.data[2 * (size_t)plane + (size_t)side];
     if (*slot == 0) {
         const partition_plane *from = &p->planes.data[plane];
         double sign = side == FACET_INNER ? 1 : -1;
         for (int k = 0; k < 3; k++)
-            STARG_PUSH(p->context, PARTITION_STAGE, &out->rows, sign * from->normal[k]);
-        STARG_PUSH(p->context, PARTITION_STAGE, &out->rows, sign * from->offset);
+            PUSH(p->context, PARTITION_STAGE, &out->rows, sign * from->normal[k]);
+        PUSH(p->context, PARTITION_STAGE, &out->rows, sign * from->offset);
         *slot = (uint32_t)(out->rows.count / ROW);
     }
     *number = *slot - 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status gather_facet(const partition *p, uint32_t entry, region_scratch *scratch,
                                  region *out) {
-    starg_status status = STARG_OK;
     const facet *f = &p->facets.data[entry / 2];
     region_triangle fresh;
     uint32_t corners[3];
     facet_outward(f, (int)(entry % 2), corners);
     for (int k = 0; k < 3; k++)
-        STARG_TRY(gather_vertex(p, corners[k], scratch, out, &fresh.corners[k]));
-    STARG_TRY(gather_row(p, f->plane, (int)(entry % 2), scratch, out, &fresh.row));
-    STARG_PUSH(p->context, PARTITION_STAGE, &out->triangles, fresh);
-done:
-    return status;
+        TRY(gather_vertex(p, corners[k], scratch, out, &fresh.corners[k]));
+    TRY(gather_row(p, f->plane, (int)(entry % 2), scratch, out, &fresh.row));
+    PUSH(p->context, PARTITION_STAGE, &out->triangles, fresh);
+    return STARG_OK;
 }
 
 /* The stride between the visited facets of a piece. */
@@ -168,38 +147,33 @@ static void forget(const partition *p, const uint32_t *pieces, size_t count, uin
 
 /* The last block is padded with rows that nothing violates. */
 starg_status region_make_blocks(starg_context *context, region *r) {
-    starg_status status = STARG_OK;
     size_t rows = r->rows.count / ROW, blocks = (rows + SCAN_BLOCK - 1) / SCAN_BLOCK;
     r->blocks.count = 0;
     for (size_t i = 0; i < blocks * SCAN_SIZE; i++)
-        STARG_PUSH(context, PARTITION_STAGE, &r->blocks, i % SCAN_SIZE < 3 * SCAN_BLOCK ? 0 : 16);
+        PUSH(context, PARTITION_STAGE, &r->blocks, i % SCAN_SIZE < 3 * SCAN_BLOCK ? 0 : 16);
     for (size_t i = 0; i < rows; i++)
         for (size_t k = 0; k < ROW; k++)
             r->blocks.data[i / SCAN_BLOCK * SCAN_SIZE + k * SCAN_BLOCK + i % SCAN_BLOCK] =
                 r->rows.data[ROW * i + k];
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status region_gather_some(const partition *p, const uint32_t *pieces, size_t count,
                                 uint32_t most, region_scratch *scratch, region *out) {
-    starg_status status = STARG_OK;
     out->vertices.count = out->triangles.count = out->rows.count = 0;
-    STARG_TRY(region_scratch_fit(scratch, p));
+    TRY(region_scratch_fit(scratch, p));
     for (size_t i = 0; i < count; i++)
         for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1];
              k += stride_of(p, pieces[i], most)) {
             uint32_t entry = p->index.data[k];
             if (!is_chosen(pieces, count, p->facets.data[entry / 2].side[1 - entry % 2]))
-                STARG_TRY(gather_facet(p, entry, scratch, out));
+                TRY(gather_facet(p, entry, scratch, out));
             if (i == 0)
                 out->first_rows = out->rows.count / ROW;
         }
     scratch->work += 4 * out->triangles.count;
     forget(p, pieces, count, most, scratch);
-    STARG_TRY(region_make_blocks(p->context, out));
-done:
-    return status;
+    return region_make_blocks(p->context, out);
 }
 
 starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
@@ -259,33 +233,29 @@ static void clip_triangle(const clipper *c, const region_triangle *t, clipped *o
 }
 
 static starg_status add_vertex(const clipper *c, const double at[3], uint32_t *number) {
-    starg_status status = STARG_OK;
     *number = (uint32_t)(c->out->vertices.count / 3);
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(c->context, PARTITION_STAGE, &c->out->vertices, at[k]);
-done:
-    return status;
+        PUSH(c->context, PARTITION_STAGE, &c->out->vertices, at[k]);
+    return STARG_OK;
 }
 
 static starg_status add_clipped(const clipper *c, const clipped *polygon, uint32_t row) {
-    starg_status status = STARG_OK;
     uint32_t number[4], on_plane[2] = {0, 0};
     int cuts = 0;
     for (int k = 0; k < polygon->count; k++) {
-        STARG_TRY(add_vertex(c, polygon->corners[k], &number[k]));
+        TRY(add_vertex(c, polygon->corners[k], &number[k]));
         if (polygon->cut[k] && cuts < 2)
             on_plane[cuts++] = number[k];
     }
     for (int k = 2; k < polygon->count; k++) {
         const region_triangle t = {{number[0], number[k - 1], number[k]}, row};
-        STARG_PUSH(c->context, PARTITION_STAGE, &c->out->triangles, t);
+        PUSH(c->context, PARTITION_STAGE, &c->out->triangles, t);
     }
     if (cuts == 2) {
         const region_triangle segment = {{on_plane[0], on_plane[1], on_plane[1]}, c->cap};
-        STARG_PUSH(c->context, PARTITION_STAGE, &c->out->triangles, segment);
+        PUSH(c->context, PARTITION_STAGE, &c->out->triangles, segment);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 double region_volume_above(const region *part, const double normal[3], double height) {
@@ -304,7 +274,6 @@ double region_volume_above(const region *part, const double normal[3], double he
 
 starg_status region_clip(starg_context *context, const region *from, const double normal[3],
                          double height, region *out) {
-    starg_status status = STARG_OK;
     clipper c = {.context = context,
                  .from = from,
                  .out = out,
@@ -313,45 +282,40 @@ starg_status region_clip(starg_context *context, const region *from, const doubl
                  .cap = (uint32_t)(from->rows.count / ROW)};
     out->vertices.count = out->triangles.count = out->rows.count = 0;
     for (size_t i = 0; i < from->rows.count; i++)
-        STARG_PUSH(context, PARTITION_STAGE, &out->rows, from->rows.data[i]);
+        PUSH(context, PARTITION_STAGE, &out->rows, from->rows.data[i]);
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(context, PARTITION_STAGE, &out->rows, -normal[k]);
-    STARG_PUSH(context, PARTITION_STAGE, &out->rows, -height);
+        PUSH(context, PARTITION_STAGE, &out->rows, -normal[k]);
+    PUSH(context, PARTITION_STAGE, &out->rows, -height);
     for (size_t i = 0; i < from->triangles.count; i++) {
         clipped polygon;
         clip_triangle(&c, &from->triangles.data[i], &polygon);
-        STARG_TRY(add_clipped(&c, &polygon, from->triangles.data[i].row));
+        TRY(add_clipped(&c, &polygon, from->triangles.data[i].row));
     }
-    STARG_TRY(region_make_blocks(context, out));
-done:
-    return status;
+    return region_make_blocks(context, out);
 }
 
 /* ---- rows along a direction ---- */
 
 /* `count` values, each infinite. */
 static starg_status reset(starg_context *context, region_values *out, size_t count) {
-    starg_status status = STARG_OK;
     if (out->capacity < count) {
         starg_release(context, out->data);
         *out = (region_values){.capacity = 0};
-        STARG_NEW(context, PARTITION_STAGE, out->data, 2 * count);
+        NEW(context, PARTITION_STAGE, out->data, 2 * count);
         out->capacity = 2 * count;
     }
     for (size_t i = 0; i < count; i++)
         out->data[i] = INFINITY;
     out->count = count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status find_heights(const region *r, const double normal[3], region_scratch *scratch) {
-    starg_status status = STARG_OK;
     size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
     scratch->work += vertices + r->triangles.count;
-    STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
-    STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
-    STARG_TRY(reset(scratch->context, &scratch->lowest_back, padded));
+    TRY(reset(scratch->context, &scratch->heights, vertices));
+    TRY(reset(scratch->context, &scratch->lowest, padded));
+    TRY(reset(scratch->context, &scratch->lowest_back, padded));
     double *height = scratch->heights.data;
     for (size_t i = 0; i < vertices; i++)
         height[i] = vec3_dot(normal, r->vertices.data + 3 * i);
@@ -365,8 +329,7 @@ static starg_status find_heights(const region *r, const double normal[3], region
         *lowest = low < *lowest ? low : *lowest;
         *back = -high < *back ? -high : *back;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the loop ---- */
@@ -462,9 +425,8 @@ static void find_reach(ball_search *w, double margin, region_reach *out) {
 
 starg_status region_find_reach(const region *r, const double normal[3], double margin,
                                region_scratch *scratch, region_reach *up, region_reach *down) {
-    starg_status status = STARG_OK;
     double back[3] = {-normal[0], -normal[1], -normal[2]};
-    STARG_TRY(find_heights(r, normal, scratch));
+    TRY(find_heights(r, normal, scratch));
     ball_search w = {.r = r,
                      .work = &scratch->work,
                      .normal = normal,
@@ -472,25 +434,23 @@ starg_status region_find_reach(const region *r, const double normal[3], double m
                      .bound = INFINITY};
     find_reach(&w, margin, up);
     if (down == NULL || up->height == -INFINITY)
-        goto done;
+        return STARG_OK;
     w = (ball_search){.r = r,
                       .work = &scratch->work,
                       .normal = back,
                       .lowest = scratch->lowest_back.data,
                       .bound = INFINITY};
     find_reach(&w, margin, down);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Distances of vertices from a point, in place of heights. */
 static starg_status find_distances(const region *r, const double center[3],
                                    region_scratch *scratch) {
-    starg_status status = STARG_OK;
     size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
     scratch->work += vertices + r->triangles.count;
-    STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
-    STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
+    TRY(reset(scratch->context, &scratch->heights, vertices));
+    TRY(reset(scratch->context, &scratch->lowest, padded));
     double *distance = scratch->heights.data;
     for (size_t i = 0; i < vertices; i++)
         distance[i] = vec3_distance_squared(center, r->vertices.data + 3 * i);
@@ -501,8 +461,7 @@ static starg_status find_distances(const region *r, const double center[3],
             if (distance[t->corners[k]] < *lowest)
                 *lowest = distance[t->corners[k]];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* By the distances found, with some set to -INFINITY. */
@@ -515,44 +474,37 @@ static void find_reach_near(const region *r, double margin, region_scratch *scra
 
 starg_status region_find_reach_about(const region *r, const double center[3], double margin,
                                      region_scratch *scratch, region_reach *out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(find_distances(r, center, scratch));
+    TRY(find_distances(r, center, scratch));
     find_reach_near(r, margin, scratch, out);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status region_find_reach_beyond(const region *r, const double center[3], double margin,
                                       region_scratch *scratch, region_reach *out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(find_distances(r, center, scratch));
+    TRY(find_distances(r, center, scratch));
     for (size_t i = 0; i < r->first_rows; i++)
         scratch->lowest.data[i] = -INFINITY;
     find_reach_near(r, margin, scratch, out);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status region_find_reach_for(const region *r, const double center[3], const double other[3],
                                    double margin, region_scratch *scratch, region_reach *out) {
-    starg_status status = STARG_OK;
-    STARG_TRY(find_distances(r, center, scratch));
+    TRY(find_distances(r, center, scratch));
     for (size_t i = 0; i < r->rows.count / ROW; i++) {
         const double *row = r->rows.data + ROW * i;
         if (row[3] - vec3_dot(row, other) < margin)
             scratch->lowest.data[i] = -INFINITY;
     }
     find_reach_near(r, margin, scratch, out);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status region_find_center(const region *r, const double *normal, double height,
                                 region_scratch *scratch, double center[3], double *radius) {
-    starg_status status = STARG_OK;
     static const double anywhere[3] = {0, 0, 0};
     *radius = -1;
-    STARG_TRY(find_heights(r, normal == NULL ? anywhere : normal, scratch));
+    TRY(find_heights(r, normal == NULL ? anywhere : normal, scratch));
     ball_search w = {.r = r,
                      .work = &scratch->work,
                      .normal = normal,
@@ -562,13 +514,12 @@ starg_status region_find_center(const region *r, const double *normal, double he
     for (int round = 0; round < 4 * ROUNDS_MOST && w.ball.radius > 0; round++) {
         int added = add_violated(&w, w.ball.radius - 1e-9);
         if (added < 0)
-            goto done;
+            return STARG_OK;
         if (added == 0) {
             vec3_copy(w.ball.center, center);
             *radius = w.ball.radius - 1e-9;
-            goto done;
+            return STARG_OK;
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }

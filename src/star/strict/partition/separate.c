@@ -47,10 +47,9 @@ static uint32_t low_end(const uint32_t *c, int k) {
 
 /* Counting sort by the lower end, which usually has few edges; these are sorted directly. */
 static starg_status list_edges(separator *s) {
-    starg_status status = STARG_OK;
     size_t vertices = s->p->points.count / 3;
-    STARG_NEW_ZERO(s->p->context, PARTITION_STAGE, s->start, vertices + 2);
-    STARG_NEW(s->p->context, PARTITION_STAGE, s->edges, 3 * s->count);
+    NEW_ZERO(s->p->context, PARTITION_STAGE, s->start, vertices + 2);
+    NEW(s->p->context, PARTITION_STAGE, s->edges, 3 * s->count);
     for (size_t i = 0; i < 3 * s->count; i++)
         s->start[low_end(corners_of(s, i / 3), (int)(i % 3)) + 2]++;
     for (size_t v = 2; v < vertices + 2; v++)
@@ -66,8 +65,7 @@ static starg_status list_edges(separator *s) {
         if (s->start[v + 1] - s->start[v] > 1)
             qsort(s->edges + s->start[v], s->start[v + 1] - s->start[v], sizeof *s->edges,
                   compare_edges);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static uint32_t find_leader(uint32_t *leader, uint32_t i) {
@@ -87,22 +85,20 @@ static void link_neighbours(separator *s) {
 }
 
 static starg_status number_parts(separator *s) {
-    starg_status status = STARG_OK;
     partition *p = s->p;
     for (uint32_t i = 0; i < s->count; i++) {
         uint32_t entry = p->index.data[p->start.data[s->number] + i], c[3];
         facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), c);
         uint32_t *part = &s->part[find_leader(s->leader, i)];
         if (*part == 0) {
-            STARG_PUSH(p->context, PARTITION_STAGE, &s->volumes, 0);
+            PUSH(p->context, PARTITION_STAGE, &s->volumes, 0);
             *part = (uint32_t)s->volumes.count;
         }
         s->volumes.data[*part - 1] +=
             vec3_triple(partition_unit(p, c[0]), partition_unit(p, c[1]), partition_unit(p, c[2])) /
             6;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool has_cavity(const separator *s) {
@@ -113,12 +109,11 @@ static bool has_cavity(const separator *s) {
 }
 
 static starg_status hand_out(separator *s) {
-    starg_status status = STARG_OK;
     partition *p = s->p;
     uint32_t first = (uint32_t)p->pieces.count - 1; /* the second part's number is one more */
     for (size_t i = 1; i < s->volumes.count; i++) {
         const piece fresh = {.volume = s->volumes.data[i], .stamp = ++p->stamps};
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->pieces, fresh);
+        PUSH(p->context, PARTITION_STAGE, &p->pieces, fresh);
     }
     p->pieces.data[s->number].volume = s->volumes.data[0];
     for (uint32_t i = 0; i < s->count; i++) {
@@ -127,9 +122,7 @@ static starg_status hand_out(separator *s) {
         if (part > 0)
             p->facets.data[entry / 2].side[entry % 2] = first + part;
     }
-    STARG_TRY(partition_build_index(p));
-done:
-    return status;
+    return partition_build_index(p);
 }
 
 starg_status partition_separate(partition *p, uint32_t number) {
@@ -146,10 +139,6 @@ starg_status partition_separate(partition *p, uint32_t number) {
     else if (!has_cavity(&s))
         STARG_TRY(hand_out(&s));
 done:
-    starg_release(p->context, s.start);
-    starg_release(p->context, s.edges);
-    starg_release(p->context, s.leader);
-    starg_release(p->context, s.part);
-    STARG_ARRAY_FREE(p->context, &s.volumes);
+    RELEASE(s.start, s.edges, s.leader, s.part, s.volumes.data);
     return status;
 }

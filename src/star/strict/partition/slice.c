@@ -20,9 +20,7 @@
 #include "star/strict/partition/partition.h"
 
 #include <float.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/rng.h"
 #include "geometry/predicates.h"
@@ -154,21 +152,18 @@ static bool is_crossed(const slicer *s, uint32_t a, uint32_t b) {
 }
 
 static starg_status add_crossing(slicer *s, uint32_t a, uint32_t b, size_t slot) {
-    starg_status status = STARG_OK;
     crossing fresh = {.ends = {a, b}};
     double t = s->height[a] / (s->height[a] - s->height[b]), point[3];
     const double *from = partition_point(s->p, a), *to = partition_point(s->p, b);
     for (int k = 0; k < 3; k++)
         point[k] = from[k] + t * (to[k] - from[k]);
-    STARG_TRY(partition_add_point(s->p, point, &fresh.vertex));
-    STARG_PUSH(s->p->context, PARTITION_STAGE, &s->crossings, fresh);
+    TRY(partition_add_point(s->p, point, &fresh.vertex));
+    PUSH(s->p->context, PARTITION_STAGE, &s->crossings, fresh);
     s->table[slot] = (uint32_t)s->crossings.count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status find_crossings(slicer *s) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < s->p->facets.count; i++) {
         const facet f = s->p->facets.data[i];
         if (side_of_piece(s, &f) < 0)
@@ -179,24 +174,21 @@ static starg_status find_crossings(slicer *s) {
                 continue;
             size_t slot = a < b ? slot_of(s, a, b) : slot_of(s, b, a);
             if (s->table[slot] == 0)
-                STARG_TRY(add_crossing(s, a < b ? a : b, a < b ? b : a, slot));
+                TRY(add_crossing(s, a < b ? a : b, a < b ? b : a, slot));
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- splitting ---- */
 
 static starg_status add_facet(slicer *s, const facet *parent, uint32_t a, uint32_t b, uint32_t c) {
-    starg_status status = STARG_OK;
     facet child = *parent;
     child.corners[0] = a;
     child.corners[1] = b;
     child.corners[2] = c;
-    STARG_PUSH(s->p->context, PARTITION_STAGE, &s->p->facets, child);
-done:
-    return status;
+    PUSH(s->p->context, PARTITION_STAGE, &s->p->facets, child);
+    return STARG_OK;
 }
 
 static double gap(const slicer *s, uint32_t a, uint32_t b) {
@@ -206,22 +198,19 @@ static double gap(const slicer *s, uint32_t a, uint32_t b) {
 /* Facet (a, b, c) with new vertices m on ab and n on ca: separates the corner at a, and splits the
  * quadrangle along its shorter diagonal. */
 static starg_status split_in_three(slicer *s, const facet *f, int k, uint32_t m, uint32_t n) {
-    starg_status status = STARG_OK;
     uint32_t a = f->corners[k], b = f->corners[(k + 1) % 3], c = f->corners[(k + 2) % 3];
-    STARG_TRY(add_facet(s, f, a, m, n));
+    TRY(add_facet(s, f, a, m, n));
     if (gap(s, m, c) < gap(s, b, n)) {
-        STARG_TRY(add_facet(s, f, m, b, c));
-        STARG_TRY(add_facet(s, f, m, c, n));
+        TRY(add_facet(s, f, m, b, c));
+        TRY(add_facet(s, f, m, c, n));
     } else {
-        STARG_TRY(add_facet(s, f, m, b, n));
-        STARG_TRY(add_facet(s, f, b, c, n));
+        TRY(add_facet(s, f, m, b, n));
+        TRY(add_facet(s, f, b, c, n));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status split_facet(slicer *s, size_t i, bool *split) {
-    starg_status status = STARG_OK;
     const facet f = s->p->facets.data[i];
     crossing *on[3];
     int count = 0, apex = 0, edge = 0;
@@ -235,24 +224,22 @@ static starg_status split_facet(slicer *s, size_t i, bool *split) {
     *split = count > 0;
     if (count == 1) {
         uint32_t m = on[edge]->vertex, c = f.corners[(edge + 2) % 3];
-        STARG_TRY(add_facet(s, &f, f.corners[edge], m, c));
-        STARG_TRY(add_facet(s, &f, m, f.corners[(edge + 1) % 3], c));
+        TRY(add_facet(s, &f, f.corners[edge], m, c));
+        TRY(add_facet(s, &f, m, f.corners[(edge + 1) % 3], c));
     } else if (count == 2) {
         while (on[apex] == NULL || on[(apex + 2) % 3] == NULL)
             apex++;
-        STARG_TRY(split_in_three(s, &f, apex, on[apex]->vertex, on[(apex + 2) % 3]->vertex));
+        TRY(split_in_three(s, &f, apex, on[apex]->vertex, on[(apex + 2) % 3]->vertex));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Appends the children, then removes their parents. */
 static starg_status split_facets(slicer *s) {
-    starg_status status = STARG_OK;
     size_t count = s->p->facets.count, kept = 0;
     for (size_t i = 0; i < count; i++) {
         bool split;
-        STARG_TRY(split_facet(s, i, &split));
+        TRY(split_facet(s, i, &split));
         if (!split)
             s->p->facets.data[kept++] = s->p->facets.data[i];
     }
@@ -260,8 +247,7 @@ static starg_status split_facets(slicer *s) {
     memmove(s->p->facets.data + kept, s->p->facets.data + count,
             children * sizeof *s->p->facets.data);
     s->p->facets.count = kept + children;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the graph in the plane ---- */
@@ -278,7 +264,6 @@ static bool is_lid(const slicer *s, const facet *f, int side) {
 
 /* Adds the edges of a facet of the piece that lie in the plane. */
 static starg_status add_seams(slicer *s, const facet *f, int side, bool is_low, bool is_flat) {
-    starg_status status = STARG_OK;
     uint32_t c[3];
     facet_outward(f, side, c);
     for (int k = 0; k < 3; k++) {
@@ -286,7 +271,7 @@ static starg_status add_seams(slicer *s, const facet *f, int side, bool is_low, 
         if (height_of(s, a) != 0)
             continue;
         if (!is_flat && a < s->old_vertices)
-            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->loose, a);
+            PUSH(s->p->context, PARTITION_STAGE, &s->loose, a);
         if (height_of(s, b) != 0)
             continue;
         /* opposite to the facets of the lower part */
@@ -294,15 +279,13 @@ static starg_status add_seams(slicer *s, const facet *f, int side, bool is_low, 
                             .high = a < b ? b : a,
                             .turns = is_low ? (a < b ? -1 : 1) : 0,
                             .needed = !is_flat};
-        STARG_PUSH(s->p->context, PARTITION_STAGE, &s->seams, fresh);
+        PUSH(s->p->context, PARTITION_STAGE, &s->seams, fresh);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Reassigns the facets above the plane. */
 static starg_status hand_over(slicer *s) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < s->p->facets.count; i++) {
         facet *f = &s->p->facets.data[i];
         int side = side_of_piece(s, f);
@@ -310,12 +293,11 @@ static starg_status hand_over(slicer *s) {
             continue;
         int above = side_of_plane(s, f);
         bool is_low = above < 0 || (above == 0 && is_lid(s, f, side));
-        STARG_TRY(add_seams(s, f, side, is_low, above == 0));
+        TRY(add_seams(s, f, side, is_low, above == 0));
         if (!is_low)
             f->side[side] = s->high;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static int compare_seams(const void *x, const void *y) {
@@ -325,7 +307,6 @@ static int compare_seams(const void *x, const void *y) {
 
 /* Combines all seams of an edge. Inside facets in the plane there is nothing to fill. */
 static starg_status join_seams(slicer *s) {
-    starg_status status = STARG_OK;
     size_t count = s->seams.count;
     if (count > 1)
         qsort(s->seams.data, count, sizeof *s->seams.data, compare_seams);
@@ -337,24 +318,21 @@ static starg_status join_seams(slicer *s) {
         }
         const constrained_edge edge = {all.low, all.high, all.turns};
         if (all.turns != 0 || all.needed)
-            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->edges, edge);
+            PUSH(s->p->context, PARTITION_STAGE, &s->edges, edge);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_cap(slicer *s, bool *done) {
-    starg_status status = STARG_OK;
     facet f = {.side = {s->low, s->high}, .plane = (uint32_t)s->p->planes.count};
-    STARG_TRY(join_seams(s));
-    STARG_TRY(cap_fill(s->p->context, s->p->points.data, s->plane.normal, &s->edges, &s->loose,
-                       &s->triangles, done));
-    STARG_PUSH(s->p->context, PARTITION_STAGE, &s->p->planes, s->plane);
+    TRY(join_seams(s));
+    TRY(cap_fill(s->p->context, s->p->points.data, s->plane.normal, &s->edges, &s->loose,
+                 &s->triangles, done));
+    PUSH(s->p->context, PARTITION_STAGE, &s->p->planes, s->plane);
     for (size_t i = 0; i + 2 < s->triangles.count; i += 3)
-        STARG_TRY(add_facet(s, &f, s->triangles.data[i], s->triangles.data[i + 1],
-                            s->triangles.data[i + 2]));
-done:
-    return status;
+        TRY(add_facet(s, &f, s->triangles.data[i], s->triangles.data[i + 1],
+                      s->triangles.data[i + 2]));
+    return STARG_OK;
 }
 
 int partition_sides(const partition *p, uint32_t number, const partition_plane *plane) {
@@ -393,12 +371,7 @@ starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
     STARG_TRY(hand_over(&s));
     STARG_TRY(add_cap(&s, done));
 done:
-    starg_release(p->context, s.height);
-    starg_release(p->context, s.table);
-    STARG_ARRAY_FREE(p->context, &s.crossings);
-    STARG_ARRAY_FREE(p->context, &s.seams);
-    STARG_ARRAY_FREE(p->context, &s.edges);
-    STARG_ARRAY_FREE(p->context, &s.loose);
-    STARG_ARRAY_FREE(p->context, &s.triangles);
+    RELEASE(s.height, s.table, s.crossings.data, s.seams.data, s.edges.data, s.loose.data,
+            s.triangles.data);
     return status;
 }

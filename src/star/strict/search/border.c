@@ -22,9 +22,8 @@
  * which it was decided but the shared ones, which it passes through.
  *
  * Cost: some hundred planes, each linear in the vertices ten to a hundred times. */
-#include "star/strict/search/border.h"
+#include "star/strict/search/search.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
@@ -45,7 +44,7 @@ typedef struct ranked {
 typedef struct maker {
     const border_task *task;
     parting parting;
-    fence fences[BORDER_PLANES_MOST];
+    fence fences[CUT_PLANES_MOST];
     int fence_count;
     parting_triangles members; /* of the term                              */
     parting_triangles left;    /* of A, in no term yet                     */
@@ -55,12 +54,9 @@ typedef struct maker {
 
 static void maker_free(maker *m) {
     starg_context *context = m->parting.scratch->context;
-    for (int i = 0; i < BORDER_PLANES_MOST; i++)
+    for (int i = 0; i < CUT_PLANES_MOST; i++)
         STARG_ARRAY_FREE(context, &m->fences[i].above);
-    STARG_ARRAY_FREE(context, &m->members);
-    STARG_ARRAY_FREE(context, &m->left);
-    STARG_ARRAY_FREE(context, &m->rest);
-    STARG_ARRAY_FREE(context, &m->order);
+    RELEASE(m->members.data, m->left.data, m->rest.data, m->order.data);
     parting_free(&m->parting);
 }
 
@@ -90,35 +86,32 @@ static int by_reach(const void *x, const void *y) {
 }
 
 static starg_status rank(maker *m, const parting_triangles *triangles, const fence *above) {
-    starg_status status = STARG_OK;
     m->order.count = 0;
     for (size_t i = 0; i < triangles->count; i++) {
         uint32_t t = triangles->data[i];
         const ranked fresh = {
             above != NULL ? reach(m->task->r, &above->plane, t, -1) : reach_of_term(m, t), t};
-        STARG_PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->order, fresh);
+        PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->order, fresh);
     }
     if (m->order.count > 1)
         qsort(m->order.data, m->order.count, sizeof *m->order.data, by_reach);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- a term ---- */
 
 /* The rest of B, nearest first: what can be above the fence too is added there. */
 static starg_status fill_fence(maker *m, fence *f) {
-    starg_status status = STARG_OK;
     int misses = 0;
-    STARG_TRY(rank(m, &m->rest, f));
+    TRY(rank(m, &m->rest, f));
     m->rest.count = 0;
     for (size_t i = 0; i < m->order.count; i++) {
         uint32_t triangle = m->order.data[i].triangle;
         bool fits = reach(m->task->r, &f->plane, triangle, -1) < -m->task->gap;
-        STARG_PUSH(m->parting.scratch->context, PARTITION_STAGE, &f->above, triangle);
+        PUSH(m->parting.scratch->context, PARTITION_STAGE, &f->above, triangle);
         if (!fits && misses < MISSES_MOST) {
             partition_plane turned;
-            STARG_TRY(parting_find(&m->parting, &m->members, &f->above, &turned, &fits));
+            TRY(parting_find(&m->parting, &m->members, &f->above, &turned, &fits));
             if (fits)
                 f->plane = turned;
             misses += !fits;
@@ -126,8 +119,7 @@ static starg_status fill_fence(maker *m, fence *f) {
         if (!fits)
             m->rest.data[m->rest.count++] = f->above.data[--f->above.count];
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static uint32_t take_one(parting_triangles *from, starg_rng *rng) {
@@ -139,117 +131,108 @@ static uint32_t take_one(parting_triangles *from, starg_rng *rng) {
 
 /* A fence, until all of B is above some. */
 static starg_status fence_in(maker *m, uint32_t first, starg_rng *rng, bool *done) {
-    starg_status status = STARG_OK;
     starg_context *context = m->parting.scratch->context;
     m->fence_count = 0;
     m->members.count = m->rest.count = 0;
     *done = true;
-    STARG_PUSH(context, PARTITION_STAGE, &m->members, first);
+    PUSH(context, PARTITION_STAGE, &m->members, first);
     for (size_t i = 0; i < m->task->others.count; i++)
-        STARG_PUSH(context, PARTITION_STAGE, &m->rest, m->task->others.data[i]);
+        PUSH(context, PARTITION_STAGE, &m->rest, m->task->others.data[i]);
     do {
-        *done = m->fence_count < BORDER_PLANES_MOST;
+        *done = m->fence_count < CUT_PLANES_MOST;
         if (!*done)
             break;
         fence *f = &m->fences[m->fence_count++];
         f->above.count = 0;
         if (m->rest.count > 0)
-            STARG_PUSH(context, PARTITION_STAGE, &f->above, take_one(&m->rest, rng));
-        STARG_TRY(parting_find(&m->parting, &m->members, &f->above, &f->plane, done));
+            PUSH(context, PARTITION_STAGE, &f->above, take_one(&m->rest, rng));
+        TRY(parting_find(&m->parting, &m->members, &f->above, &f->plane, done));
         if (*done)
-            STARG_TRY(fill_fence(m, f));
+            TRY(fill_fence(m, f));
     } while (*done && m->rest.count > 0);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Can the term have this triangle too? Then its planes are turned. */
 static starg_status take(maker *m, uint32_t triangle, bool *taken) {
-    starg_status status = STARG_OK;
-    partition_plane turned[BORDER_PLANES_MOST];
+    partition_plane turned[CUT_PLANES_MOST];
     *taken = true;
-    STARG_PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->members, triangle);
+    PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->members, triangle);
     for (int i = 0; i < m->fence_count && *taken; i++) {
         turned[i] = m->fences[i].plane;
         if (reach(m->task->r, &turned[i], triangle, 1) >= -m->task->gap)
-            STARG_TRY(
-                parting_find(&m->parting, &m->members, &m->fences[i].above, &turned[i], taken));
+            TRY(parting_find(&m->parting, &m->members, &m->fences[i].above, &turned[i], taken));
     }
     for (int i = 0; i < m->fence_count && *taken; i++)
         m->fences[i].plane = turned[i];
     m->members.count -= !*taken;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* What is left of A, nearest first. */
 static starg_status take_more(maker *m) {
-    starg_status status = STARG_OK;
     int misses = 0;
-    STARG_TRY(rank(m, &m->left, NULL));
+    TRY(rank(m, &m->left, NULL));
     m->left.count = 0;
     for (size_t i = 0; i < m->order.count; i++) {
         uint32_t triangle = m->order.data[i].triangle;
         bool taken = reach_of_term(m, triangle) < -m->task->gap;
         if (taken)
-            STARG_PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->members, triangle);
+            PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->members, triangle);
         else if (misses < MISSES_MOST)
-            STARG_TRY(take(m, triangle, &taken));
+            TRY(take(m, triangle, &taken));
         if (taken)
             continue;
         misses++;
         m->left.data[m->left.count++] = triangle;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the border ---- */
 
-static bool add_term(const maker *m, border_plan *plan) {
-    if (plan->count + m->fence_count > BORDER_PLANES_MOST)
+static bool add_term(const maker *m, cut_plan *plan) {
+    if (plan->count + m->fence_count > CUT_PLANES_MOST)
         return false;
     for (int i = 0; i < m->fence_count; i++) {
-        plan->ends[plan->count] = i + 1 < m->fence_count ? BORDER_GOES_ON : BORDER_ENDS_TERM;
+        plan->ends[plan->count] = i + 1 < m->fence_count ? CUT_GOES_ON : CUT_ENDS_TERM;
         plan->planes[plan->count++] = m->fences[i].plane;
     }
     return true;
 }
 
-static starg_status find(maker *m, starg_rng *rng, border_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
+static starg_status find(maker *m, starg_rng *rng, cut_plan *plan, bool *found) {
     int before = plan->count;
     *found = m->task->own.count > 0;
     for (size_t i = 0; i < m->task->own.count; i++)
-        STARG_PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->left, m->task->own.data[i]);
+        PUSH(m->parting.scratch->context, PARTITION_STAGE, &m->left, m->task->own.data[i]);
     while (*found && m->left.count > 0) {
-        STARG_TRY(fence_in(m, take_one(&m->left, rng), rng, found));
+        TRY(fence_in(m, take_one(&m->left, rng), rng, found));
         if (!*found)
             break;
-        STARG_TRY(take_more(m));
+        TRY(take_more(m));
         *found = add_term(m, plan);
     }
     if (*found)
-        plan->ends[plan->count - 1] = BORDER_ENDS_PART;
+        plan->ends[plan->count - 1] = CUT_ENDS_PART;
     else
         plan->count = before;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status border_find(const border_task *task, starg_rng *rng, region_scratch *scratch,
-                         border_plan *plan, bool *found) {
+                         cut_plan *plan, bool *found) {
     maker m = {.task = task, .parting = border_parting(task, scratch)};
     starg_status status = find(&m, rng, plan, found);
     maker_free(&m);
     return status;
 }
 
-bool border_holds(const region *r, const border_plan *plan, uint32_t triangle) {
+bool border_holds(const region *r, const cut_plan *plan, uint32_t triangle) {
     bool below = true;
     for (int i = 0; i < plan->count; i++) {
         below = below && reach(r, &plan->planes[i], triangle, 1) <= 0;
-        if (plan->ends[i] == BORDER_GOES_ON)
+        if (plan->ends[i] == CUT_GOES_ON)
             continue;
         if (below)
             return true;

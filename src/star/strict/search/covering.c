@@ -20,14 +20,9 @@
  * Cost: where there is no hope, twenty small linear programs, and looks along a tree of the
  * triangles that end early; else up to a hundred looks at all vertices, and crossings as long as
  * MOVES_WORK. */
-#include "star/strict/search/covering.h"
+#include "star/strict/search/search.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "geometry/bvh.h"
 #include "geometry/vec3.h"
-#include "star/strict/search/crossings.h"
 
 enum {
     PLACES = 12,
@@ -90,33 +85,25 @@ static size_t find_stride(size_t count) {
 }
 
 static starg_status begin(searcher *s) {
-    starg_status status = STARG_OK;
     starg_context *context = s->scratch->context;
     const region *r = s->r;
     s->corners = 3 * r->triangles.count;
     s->words = (s->corners + 63) / 64;
     s->stride = find_stride(s->corners);
-    STARG_NEW(context, PARTITION_STAGE, s->faces, s->corners);
-    STARG_NEW(context, PARTITION_STAGE, s->sight, r->vertices.count / 3);
-    STARG_NEW(context, PARTITION_STAGE, s->bits, VIEWS * s->words);
+    NEW(context, PARTITION_STAGE, s->faces, s->corners);
+    NEW(context, PARTITION_STAGE, s->sight, r->vertices.count / 3);
+    NEW(context, PARTITION_STAGE, s->bits, VIEWS * s->words);
     for (size_t i = 0; i < VIEWS; i++)
         s->views[i].seen = s->bits + i * s->words;
     for (size_t i = 0; i < s->corners; i++)
         s->faces[i] = r->triangles.data[i / 3].corners[i % 3];
     s->size = region_diagonal(r);
-    STARG_TRY(bvh_create(context, r->vertices.data, s->faces, r->triangles.count, &s->tree));
-done:
-    return status;
+    return bvh_create(context, r->vertices.data, s->faces, r->triangles.count, &s->tree);
 }
 
 static void end(searcher *s) {
-    starg_context *context = s->scratch->context;
     bvh_free(s->tree);
-    starg_release(context, s->faces);
-    starg_release(context, s->sight);
-    starg_release(context, s->bits);
-    STARG_ARRAY_FREE(context, &s->task.own);
-    STARG_ARRAY_FREE(context, &s->task.others);
+    RELEASE(s->faces, s->sight, s->bits, s->task.own.data, s->task.others.data);
 }
 
 static const double *vertex(const searcher *s, uint32_t number) {
@@ -222,7 +209,6 @@ static void take_place(const searcher *s, const double place[3], view *out) {
 
 /* Somewhere between a start and a vertex, then inside all rows that are near. */
 static starg_status find_place(searcher *s, view *out) {
-    starg_status status = STARG_OK;
     const covering_options *o = s->options;
     const double *start = o->starts[starg_rng_below(s->rng, o->start_count)];
     double to[3], place[3];
@@ -230,43 +216,38 @@ static starg_status find_place(searcher *s, view *out) {
     vec3_subtract(vertex(s, (uint32_t)starg_rng_below(s->rng, s->r->vertices.count / 3)), start,
                   to);
     vec3_along(start, 0.95 * starg_rng_unit(s->rng), to, place);
-    STARG_TRY(region_find_reach_about(s->r, place, o->margin, s->scratch, &reach));
+    TRY(region_find_reach_about(s->r, place, o->margin, s->scratch, &reach));
     take_place(s, reach.height > -INFINITY ? reach.guard : place, out);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A place inside what another is not inside of, near a corner that it does not see. */
 static starg_status find_mate(searcher *s, const view *of, view *out, bool *found) {
-    starg_status status = STARG_OK;
     region_reach reach;
     size_t at = starg_rng_below(s->rng, s->corners);
     for (size_t i = 0; i < s->corners && (of->seen[at / 64] >> at % 64 & 1); i++)
         at = at + 1 < s->corners ? at + 1 : 0;
-    STARG_TRY(region_find_reach_for(s->r, vertex(s, s->faces[at]), of->place, s->options->margin,
-                                    s->scratch, &reach));
+    TRY(region_find_reach_for(s->r, vertex(s, s->faces[at]), of->place, s->options->margin,
+                              s->scratch, &reach));
     *found = reach.height > -INFINITY;
     if (*found)
         take_place(s, reach.guard, out);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status fill_pool(searcher *s, size_t *count) {
-    starg_status status = STARG_OK;
     const covering_options *o = s->options;
     for (*count = 0; *count < PLACES; ++*count)
         if (*count < o->start_count)
             take_place(s, o->starts[*count], &s->views[*count]);
         else
-            STARG_TRY(find_place(s, &s->views[*count]));
+            TRY(find_place(s, &s->views[*count]));
     for (size_t i = 0; i < MATES; i++) {
         bool found;
-        STARG_TRY(find_mate(s, &s->views[i], &s->views[*count], &found));
+        TRY(find_mate(s, &s->views[i], &s->views[*count], &found));
         *count += found;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_among(view *const *chosen, size_t count, const view *v) {
@@ -384,20 +365,18 @@ static size_t climb(searcher *s, view **chosen, size_t most) {
 }
 
 static starg_status find_places(searcher *s, bool *found) {
-    starg_status status = STARG_OK;
     view *chosen[COVERING_MOST];
     size_t pool;
     *found = false;
-    STARG_TRY(fill_pool(s, &pool));
+    TRY(fill_pool(s, &pool));
     size_t least = s->corners > MISSED_MOST ? s->corners - MISSED_MOST : 0;
     size_t most = choose(s, pool, chosen, least);
     if (most < least)
-        goto done;
+        return STARG_OK;
     *found = climb(s, chosen, most) == s->corners;
     for (size_t i = 0; i < s->guards; i++)
         vec3_copy(chosen[i]->place, s->places[i]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- parts ---- */
@@ -405,8 +384,7 @@ done:
 /* The task for the part of guard `first`, cut from what former ones leave: triangles that none of
  * the later guards is inside of, and those that it is not, but a later one is. Those in `plan` are
  * left out. *all is false if there are triangles that no guard is inside of. */
-static starg_status share_out(searcher *s, size_t first, const border_plan *plan, bool *all) {
-    starg_status status = STARG_OK;
+static starg_status share_out(searcher *s, size_t first, const cut_plan *plan, bool *all) {
     border_task *task = &s->task;
     task->r = s->r;
     task->guards = (const double(*)[3])(s->places + first);
@@ -424,42 +402,38 @@ static starg_status share_out(searcher *s, size_t first, const border_plan *plan
         *all = *all && (former || own || later);
         if (own == later || (plan != NULL && border_holds(s->r, plan, t)))
             continue;
-        STARG_PUSH(s->scratch->context, PARTITION_STAGE, own ? &task->own : &task->others, t);
+        PUSH(s->scratch->context, PARTITION_STAGE, own ? &task->own : &task->others, t);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Of all parts, up to `most`; as many where there are too many pairs to look at. */
 static starg_status count_crossings(searcher *s, size_t most, size_t *count) {
-    starg_status status = STARG_OK;
     *count = 0;
     for (size_t i = 0; i + 1 < s->guards && *count < most; i++) {
         size_t more = 0;
         bool all;
-        STARG_TRY(share_out(s, i, NULL, &all));
+        TRY(share_out(s, i, NULL, &all));
         all = all && (uint64_t)s->task.own.count * s->task.others.count <= PAIRS_MOST;
         if (all)
-            STARG_TRY(crossings_count(&s->task, most - *count, s->scratch, &more));
+            TRY(crossings_count(&s->task, most - *count, s->scratch, &more));
         *count += all ? more : most;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Moves the guards until no cones cross, or so long. */
 static starg_status disentangle(searcher *s, bool *done) {
-    starg_status status = STARG_OK;
     size_t crossings;
     int idle = 0;
     const uint64_t limit = s->scratch->work + MOVES_WORK;
-    STARG_TRY(count_crossings(s, TANGLED, &crossings));
+    TRY(count_crossings(s, TANGLED, &crossings));
     while (crossings > 0 && idle < MOVES_IDLE && s->scratch->work < limit) {
         double *place = s->places[starg_rng_below(s->rng, s->guards)], former[3];
         size_t now;
         vec3_copy(place, former);
         random_step(s, former, place);
-        STARG_TRY(count_crossings(s, crossings + 1, &now));
+        TRY(count_crossings(s, crossings + 1, &now));
         idle = now < crossings ? 0 : idle + 1;
         if (now > crossings)
             vec3_copy(former, place);
@@ -467,25 +441,21 @@ static starg_status disentangle(searcher *s, bool *done) {
             crossings = now;
     }
     *done = crossings == 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status find_borders(searcher *s, border_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
+static starg_status find_borders(searcher *s, cut_plan *plan, bool *found) {
     plan->count = 0;
     for (size_t i = 0; i + 1 < s->guards && *found; i++) {
-        STARG_TRY(share_out(s, i, plan, found));
+        TRY(share_out(s, i, plan, found));
         if (*found)
-            STARG_TRY(border_find(&s->task, s->rng, s->scratch, plan, found));
+            TRY(border_find(&s->task, s->rng, s->scratch, plan, found));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status covering_find(const region *r, size_t guards, const covering_options *options,
-                           starg_rng *rng, region_scratch *scratch, border_plan *plan,
-                           bool *found) {
+                           starg_rng *rng, region_scratch *scratch, cut_plan *plan, bool *found) {
     starg_status status = STARG_OK;
     searcher s = {.r = r, .guards = guards, .options = options, .rng = rng, .scratch = scratch};
     *found = false;

@@ -8,7 +8,7 @@
  * unless there is a plane between the cones that keeps the gap: a few that touch count, too.
  *
  * Cost: for each pair four planes at most, and for few of them a search. */
-#include "star/strict/search/crossings.h"
+#include "star/strict/search/search.h"
 
 #include "geometry/vec3.h"
 
@@ -55,23 +55,20 @@ static bool is_beyond(const parting *p, const partition_plane *side, uint32_t ow
 
 static starg_status cross(parting *p, const cone_sides *cone, uint32_t own, uint32_t other,
                           bool *crossed) {
-    starg_status status = STARG_OK;
     const parting_triangles low = {.data = &own, .count = 1}, high = {.data = &other, .count = 1};
     partition_plane plane;
     *crossed = false;
     for (int i = 0; i < 4; i++)
         if (is_beyond(p, &cone->planes[i], own, other))
             return STARG_OK;
-    STARG_TRY(parting_find(p, &low, &high, &plane, crossed));
+    TRY(parting_find(p, &low, &high, &plane, crossed));
     *crossed = !*crossed;
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status crossings_count(const border_task *task, size_t most, region_scratch *scratch,
                              size_t *count) {
-    starg_status status = STARG_OK;
-    parting p = border_parting(task, scratch);
+    SCOPED_BY(parting_free) parting p = border_parting(task, scratch);
     *count = 0;
     for (size_t i = 0; i < task->own.count && *count < most; i++) {
         cone_sides cone;
@@ -79,11 +76,9 @@ starg_status crossings_count(const border_task *task, size_t most, region_scratc
         scratch->work += PAIR_WORK * task->others.count;
         for (size_t k = 0; k < task->others.count && *count < most; k++) {
             bool crossed;
-            STARG_TRY(cross(&p, &cone, task->own.data[i], task->others.data[k], &crossed));
+            TRY(cross(&p, &cone, task->own.data[i], task->others.data[k], &crossed));
             *count += crossed;
         }
     }
-done:
-    parting_free(&p);
-    return status;
+    return STARG_OK;
 }

@@ -20,11 +20,9 @@
  * Invariants: rounded throughout; surfaces that are no manifold are left alone. Cost: a search for
  * a guard for each neighbour, linear in its facets; for each apex linear in edges x takers, and the
  * labelling. */
-#include "star/strict/search/eliminate.h"
+#include "star/strict/search/search.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
 #include "star/strict/start/start.h"
@@ -66,9 +64,8 @@ typedef struct eliminator {
 } eliminator;
 
 static void eliminator_free(eliminator *d) {
-    region_free(d->p->context, &d->own);
-    STARG_ARRAY_FREE(d->p->context, &d->entries);
-    STARG_ARRAY_FREE(d->p->context, &d->edges);
+    region_free(&d->own);
+    RELEASE(d->entries.data, d->edges.data);
     labelling_free(&d->labelling);
 }
 
@@ -110,21 +107,18 @@ static void add_taker(eliminator *d, uint32_t number, const double guard[3]) {
 
 /* That sees all of the neighbour, and of the union what is about a random place. */
 static starg_status add_guard_beyond(eliminator *d, uint32_t neighbour) {
-    starg_status status = STARG_OK;
     uint32_t all[FAN_PIECES_MOST + 1] = {neighbour};
-    region r = {.vertices = {0}};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     region_reach reach;
     double place[3];
     for (size_t i = 0; i < d->task->piece_count; i++)
         all[i + 1] = d->task->pieces[i];
-    STARG_TRY(region_gather(d->p, all, d->task->piece_count + 1, d->scratch, &r));
+    TRY(region_gather(d->p, all, d->task->piece_count + 1, d->scratch, &r));
     random_point(d, random_facet(d), place);
-    STARG_TRY(region_find_reach_beyond(&r, place, d->task->margin, d->scratch, &reach));
+    TRY(region_find_reach_beyond(&r, place, d->task->margin, d->scratch, &reach));
     if (reach.height > -INFINITY)
         add_taker(d, neighbour, reach.guard);
-done:
-    region_free(d->p->context, &r);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_neighbour(eliminator *d, uint32_t neighbour) {
@@ -138,48 +132,42 @@ static starg_status add_neighbour(eliminator *d, uint32_t neighbour) {
 
 /* A guard for a piece that is made anew, about a random place. */
 static starg_status add_kept(eliminator *d, uint32_t number) {
-    starg_status status = STARG_OK;
     region_reach reach;
     double place[3];
     random_point(d, random_facet(d), place);
-    STARG_TRY(region_find_reach_about(&d->own, place, d->task->margin, d->scratch, &reach));
+    TRY(region_find_reach_about(&d->own, place, d->task->margin, d->scratch, &reach));
     if (reach.height > -INFINITY)
         add_taker(d, number, reach.guard);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_takers(eliminator *d) {
-    starg_status status = STARG_OK;
     size_t count = d->task->neighbour_count, first = 0;
     if (count > NEIGHBOURS_MOST) {
         first = starg_rng_below(d->rng, count);
         count = NEIGHBOURS_MOST;
     }
     for (size_t i = 0; i < count; i++)
-        STARG_TRY(add_neighbour(d, d->task->neighbours[(first + i) % d->task->neighbour_count]));
+        TRY(add_neighbour(d, d->task->neighbours[(first + i) % d->task->neighbour_count]));
     for (size_t i = 0; i < d->task->kept; i++)
-        STARG_TRY(add_kept(d, d->task->pieces[i]));
-done:
-    return status;
+        TRY(add_kept(d, d->task->pieces[i]));
+    return STARG_OK;
 }
 
 /* ---- the union ---- */
 
 /* In the order of region_gather. */
 static starg_status gather_entries(eliminator *d) {
-    starg_status status = STARG_OK;
     const partition *p = d->p;
     for (size_t i = 0; i < d->task->piece_count; i++) {
         uint32_t number = d->task->pieces[i];
         for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
             uint32_t entry = p->index.data[k];
             if (!is_own(d, p->facets.data[entry / 2].side[1 - entry % 2]))
-                STARG_PUSH(p->context, PARTITION_STAGE, &d->entries, entry);
+                PUSH(p->context, PARTITION_STAGE, &d->entries, entry);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Takers that see a facet, or are beyond it: for these it vanishes. One that is beyond it and not
@@ -202,16 +190,14 @@ static label_set takers_of(const eliminator *d, size_t facet_number) {
 
 /* *fine is false when no taker will do for some facet. */
 static starg_status find_takers(eliminator *d, bool *fine) {
-    starg_status status = STARG_OK;
     *fine = true;
     d->scratch->work += d->entries.count * d->taker_count;
     for (size_t i = 0; i < d->entries.count && *fine; i++) {
         label_set set = takers_of(d, i);
         *fine = set != 0;
-        STARG_PUSH(d->p->context, PARTITION_STAGE, &d->labelling.given, set);
+        PUSH(d->p->context, PARTITION_STAGE, &d->labelling.given, set);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static int compare_edges(const void *left, const void *right) {
@@ -243,13 +229,12 @@ static void sort_few(union_edge *edges, size_t count) {
 
 /* By their ends, then facets: filed by the lower end, then sorted there. */
 static starg_status sort_edges(eliminator *d) {
-    starg_status status = STARG_OK;
     starg_context *context = d->p->context;
     size_t vertices = d->own.vertices.count / 3, count = d->edges.count;
-    uint32_t *next = NULL;
-    union_edge *filed = NULL;
-    STARG_NEW_ZERO(context, PARTITION_STAGE, next, vertices + 1);
-    STARG_NEW(context, PARTITION_STAGE, filed, count);
+    SCOPED uint32_t *next = NULL;
+    SCOPED union_edge *filed = NULL;
+    NEW_ZERO(context, PARTITION_STAGE, next, vertices + 1);
+    NEW(context, PARTITION_STAGE, filed, count);
     for (size_t i = 0; i < count; i++)
         next[lower_end(&d->edges.data[i]) + 1]++;
     for (size_t v = 0; v < vertices; v++)
@@ -260,10 +245,7 @@ static starg_status sort_edges(eliminator *d) {
         sort_few(filed + first, next[v] - first);
     if (count > 0)
         memcpy(d->edges.data, filed, count * sizeof *filed);
-done:
-    starg_release(context, next);
-    starg_release(context, filed);
-    return status;
+    return STARG_OK;
 }
 
 /* Pairs of edges become one. False where an edge has other than two facets. */
@@ -280,27 +262,25 @@ static bool pair_edges(union_edge *edges, size_t count) {
 }
 
 static starg_status find_edges(eliminator *d, bool *fine) {
-    starg_status status = STARG_OK;
     starg_context *context = d->p->context;
     d->scratch->work += SORTING * d->entries.count;
     for (uint32_t i = 0; i < d->entries.count; i++)
         for (int k = 0; k < 3; k++) {
             const uint32_t *c = d->own.triangles.data[i].corners;
             const union_edge half = {c[k], c[(k + 1) % 3], {i, i}};
-            STARG_PUSH(context, PARTITION_STAGE, &d->edges, half);
+            PUSH(context, PARTITION_STAGE, &d->edges, half);
         }
-    STARG_TRY(sort_edges(d));
+    TRY(sort_edges(d));
     *fine = pair_edges(d->edges.data, d->edges.count);
     d->edges.count /= 2;
     for (size_t i = 0; i < d->edges.count && *fine; i++) {
         const uint32_t *facets = d->edges.data[i].facets;
         const labelling_edge edge = {.nodes = {facets[0], facets[1]}};
-        STARG_PUSH(context, PARTITION_STAGE, &d->labelling.edges, edge);
+        PUSH(context, PARTITION_STAGE, &d->labelling.edges, edge);
     }
     if (*fine)
-        STARG_TRY(labelling_prepare(&d->labelling));
-done:
-    return status;
+        TRY(labelling_prepare(&d->labelling));
+    return STARG_OK;
 }
 
 /* ---- the apex ---- */
@@ -350,7 +330,6 @@ static uint8_t number_of(label_set single) {
 }
 
 static starg_status make_plan(const eliminator *d, fan_plan *plan) {
-    starg_status status = STARG_OK;
     uint8_t place[FAN_TAKERS_MOST];
     bool used[FAN_TAKERS_MOST] = {false};
     plan->piece_count = d->task->piece_count;
@@ -365,11 +344,10 @@ static starg_status make_plan(const eliminator *d, fan_plan *plan) {
             place[label] = (uint8_t)plan->taker_count;
             plan->takers[plan->taker_count++] = d->takers[label].piece;
         }
-        STARG_PUSH(d->p->context, PARTITION_STAGE, &plan->takes, place[label]);
-        STARG_PUSH(d->p->context, PARTITION_STAGE, &plan->entries, d->entries.data[i]);
+        PUSH(d->p->context, PARTITION_STAGE, &plan->takes, place[label]);
+        PUSH(d->p->context, PARTITION_STAGE, &plan->entries, d->entries.data[i]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool takes_part(const fan_plan *plan, uint32_t number) {
@@ -406,18 +384,16 @@ static bool will_do(const eliminator *d, const fan_plan *plan) {
 }
 
 static starg_status try_apex(eliminator *d, fan_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
     choose_apex(d, plan->apex);
     d->scratch->work += d->edges.count * (LABELLING + d->taker_count);
     for (size_t i = 0; i < d->edges.count; i++)
         find_fits(d, plan->apex, &d->edges.data[i], &d->labelling.edges.data[i]);
-    STARG_TRY(labelling_solve(&d->labelling, d->rng, found));
+    TRY(labelling_solve(&d->labelling, d->rng, found));
     if (!*found)
-        goto done;
-    STARG_TRY(make_plan(d, plan));
+        return STARG_OK;
+    TRY(make_plan(d, plan));
     *found = will_do(d, plan);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status eliminate_find(const partition *p, const eliminate_task *task, starg_rng *rng,
@@ -439,7 +415,7 @@ starg_status eliminate_find(const partition *p, const eliminate_task *task, star
         STARG_TRY(try_apex(&d, plan, found));
 done:
     if (status != STARG_OK || !*found)
-        fan_plan_free(p->context, plan);
+        fan_plan_free(plan);
     eliminator_free(&d);
     return status;
 }

@@ -21,14 +21,9 @@
  * threads. Cost: a trial looks at the facets of its union some hundred times. */
 #include "star/strict/search/improve.h"
 
-#include <math.h>
-
 #include "core/parallel.h"
-#include "core/rng.h"
 #include "star/strict/partition/apply.h"
-#include "star/strict/partition/partition.h"
-#include "star/strict/search/covering.h"
-#include "star/strict/search/eliminate.h"
+#include "star/strict/search/search.h"
 
 enum { BATCH = 16, UNION_MOST = APPLY_MOST };
 
@@ -49,28 +44,12 @@ static const double USUAL_WORK = 1e5, USUAL_SAVED = 1, USUAL_SPENT = 3e7;
  * than proofs do, for they are rounded. */
 static const double MARGIN = 4e-6, REPARTITION_MARGIN = 1e-5, ELIMINATE_MARGIN = 5e-6;
 
-/* By planes, by guards first, or by sharing out pieces among those around. */
-typedef enum way { BY_PLANES, BY_GUARDS, BY_FANS } way;
-
-/* What a trial looks for. */
-typedef struct sort {
-    size_t count, parts; /* pieces before and after */
-    way how;
-    double share; /* of the work, or 0: by what it saves */
-} sort;
-
-static const sort SORTS[IMPROVE_SORTS] = {
-    {2, 2, BY_PLANES, 0.12}, {1, 1, BY_FANS, 0.1}, {3, 2, BY_PLANES, 0},   {4, 3, BY_PLANES, 0},
-    {1, 0, BY_FANS, 0},      {2, 1, BY_FANS, 0},   {3, 2, BY_GUARDS, 0.4}, {4, 3, BY_GUARDS, 0},
-};
-
 typedef struct trial {
     size_t sort;
     uint32_t pieces[UNION_MOST];
-    size_t count;
-    repartition_plan plan; /* by planes */
-    border_plan borders;   /* by guards */
-    fan_plan fan;          /* by fans   */
+    size_t count, parts; /* pieces before and after */
+    cut_plan cuts;
+    fan_plan fan; /* instead of cuts */
     bool found;
     uint64_t work;
 } trial;
@@ -93,73 +72,67 @@ typedef struct improver {
 /* ---- neighbours ---- */
 
 static starg_status find_contacts(improver *m) {
-    starg_status status = STARG_OK;
     const partition *p = m->p;
     size_t open = 0;
     m->neighbours.count = m->first.count = m->met.count = m->seeds.count = 0;
     for (uint32_t i = 0; i < p->pieces.count; i++)
-        STARG_PUSH(p->context, PARTITION_STAGE, &m->met, 0);
-    STARG_TRY(partition_find_open(p, &m->seeds));
+        PUSH(p->context, PARTITION_STAGE, &m->met, 0);
+    TRY(partition_find_open(p, &m->seeds));
     for (size_t i = 0; i < m->seeds.count; i++)
         if (p->pieces.data[m->seeds.data[i]].stamp > m->options->since)
             m->seeds.data[open++] = m->seeds.data[i];
     m->seeds.count = open;
     for (uint32_t a = 0; a < p->pieces.count; a++) {
-        STARG_PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
+        PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
         for (uint32_t k = p->start.data[a]; k < p->start.data[a + 1]; k++) {
             uint32_t entry = p->index.data[k], b = p->facets.data[entry / 2].side[1 - entry % 2];
             if (b == PARTITION_OUTSIDE || m->met.data[b] == a + 1)
                 continue;
             m->met.data[b] = a + 1;
-            STARG_PUSH(p->context, PARTITION_STAGE, &m->neighbours, b);
+            PUSH(p->context, PARTITION_STAGE, &m->neighbours, b);
         }
     }
-    STARG_PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
-done:
-    return status;
+    PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
+    return STARG_OK;
 }
 
 /* ---- joins ---- */
 
 /* Joins one piece with a neighbour if it can be done. */
 static starg_status join_one(improver *m, uint32_t a, bool *done) {
-    starg_status status = STARG_OK;
     piece *pieces = m->p->pieces.data;
     *done = false;
     for (uint32_t i = m->first.data[a]; i < m->first.data[a + 1] && !*done; i++) {
         uint32_t b = m->neighbours.data[i];
         bool known = pieces[a].stamp <= pieces[a].checked && pieces[b].stamp <= pieces[a].checked;
         if (!known)
-            STARG_TRY(apply_join(m->p, a, b, MARGIN, &m->scratch, done));
+            TRY(apply_join(m->p, a, b, MARGIN, &m->scratch, done));
     }
     if (*done) {
         m->report->joins++;
-        STARG_TRY(find_contacts(m));
+        TRY(find_contacts(m));
     } else {
         m->p->pieces.data[a].checked = m->p->stamps;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Until no two neighbours can be joined. */
 static starg_status join_all(improver *m) {
-    starg_status status = STARG_OK;
     bool any = true;
     while (any && !starg_time_is_over(m->p->context)) {
         any = false;
         for (uint32_t a = 0; a < m->p->pieces.count; a++) {
             bool done = true;
-            STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
+            TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
             starg_progress_step(m->p->context, a, m->p->pieces.count);
             while (done && a < m->p->pieces.count && !starg_time_is_over(m->p->context)) {
-                STARG_TRY(join_one(m, a, &done));
+                TRY(join_one(m, a, &done));
                 any = any || done;
             }
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- trials ---- */
@@ -209,59 +182,46 @@ static double unevenness(const partition *part, size_t count) {
 
 /* Would a move make the pieces more uneven? */
 static starg_status is_uneven(const improver *m, const region *r, const trial *t, bool *better) {
-    starg_status status = STARG_OK;
-    const partition_plane *plane = &t->plan.planes[0];
-    region above = {.vertices = {0}};
+    const partition_plane *plane = &t->cuts.planes[0];
+    SCOPED_BY(region_free) region above = {.vertices = {0}};
     double a = m->p->pieces.data[t->pieces[0]].volume, b = m->p->pieces.data[t->pieces[1]].volume;
-    STARG_TRY(region_clip(m->p->context, r, plane->normal, plane->offset, &above));
+    TRY(region_clip(m->p->context, r, plane->normal, plane->offset, &above));
     double high = region_volume_above(&above, plane->normal, plane->offset), low = a + b - high;
     *better = square(high) + square(low) > square(a) + square(b);
-done:
-    region_free(m->p->context, &above);
-    return status;
+    return STARG_OK;
 }
 
-static bool is_move(const sort *what) {
-    return what->parts == what->count;
+static bool saves(const trial *t) {
+    return t->parts < t->count;
 }
 
-static starg_status try_repartition(const improver *m, starg_rng *rng, region_scratch *scratch,
-                                    trial *t) {
-    starg_status status = STARG_OK;
-    const sort *what = &SORTS[t->sort];
-    region r = {.vertices = {0}};
+static starg_status find_planes(const improver *m, starg_rng *rng, region_scratch *scratch,
+                                trial *t) {
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     const repartition_options options = {
-        .margin = REPARTITION_MARGIN, .directions = 24, .steps = 16, .anywhere = is_move(what)};
-    STARG_TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
-    STARG_TRY(repartition_find(&r, (int)what->parts, &options, rng, scratch, &t->plan, &t->found));
-    if (is_move(what) && t->found)
-        STARG_TRY(is_uneven(m, &r, t, &t->found));
-done:
-    region_free(m->p->context, &r);
-    return status;
+        .margin = REPARTITION_MARGIN, .directions = 24, .steps = 16, .anywhere = !saves(t)};
+    TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
+    TRY(repartition_find(&r, (int)t->parts, &options, rng, scratch, &t->cuts, &t->found));
+    if (!saves(t) && t->found)
+        TRY(is_uneven(m, &r, t, &t->found));
+    return STARG_OK;
 }
 
-static starg_status try_covering(const improver *m, starg_rng *rng, region_scratch *scratch,
+static starg_status find_borders(const improver *m, starg_rng *rng, region_scratch *scratch,
                                  trial *t) {
-    starg_status status = STARG_OK;
-    region r = {.vertices = {0}};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     double starts[UNION_MOST][3];
     for (size_t i = 0; i < t->count; i++)
         partition_to_unit(m->p, m->p->pieces.data[t->pieces[i]].guard, starts[i]);
     const covering_options options = {.margin = REPARTITION_MARGIN,
                                       .starts = (const double(*)[3])starts,
                                       .start_count = t->count};
-    STARG_TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
-    STARG_TRY(
-        covering_find(&r, SORTS[t->sort].parts, &options, rng, scratch, &t->borders, &t->found));
-done:
-    region_free(m->p->context, &r);
-    return status;
+    TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
+    return covering_find(&r, t->parts, &options, rng, scratch, &t->cuts, &t->found);
 }
 
 /* What touches the pieces of a trial. */
 static starg_status gather_around(const improver *m, const trial *t, partition_numbers *out) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < t->count; i++)
         for (uint32_t k = m->first.data[t->pieces[i]]; k < m->first.data[t->pieces[i] + 1]; k++) {
             uint32_t next = m->neighbours.data[k];
@@ -269,80 +229,70 @@ static starg_status gather_around(const improver *m, const trial *t, partition_n
             for (size_t n = 0; n < out->count && !known; n++)
                 known = out->data[n] == next;
             if (!known)
-                STARG_PUSH(m->p->context, PARTITION_STAGE, out, next);
+                PUSH(m->p->context, PARTITION_STAGE, out, next);
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status try_eliminate(const improver *m, starg_rng *rng, region_scratch *scratch,
-                                  trial *t) {
-    starg_status status = STARG_OK;
-    partition_numbers around = {0};
-    STARG_TRY(gather_around(m, t, &around));
+static starg_status find_fan(const improver *m, starg_rng *rng, region_scratch *scratch, trial *t) {
+    SCOPED partition_numbers around = {0};
+    TRY(gather_around(m, t, &around));
     const eliminate_task task = {.pieces = t->pieces,
                                  .piece_count = t->count,
-                                 .kept = SORTS[t->sort].parts,
+                                 .kept = t->parts,
                                  .neighbours = around.data,
                                  .neighbour_count = around.count,
                                  .margin = ELIMINATE_MARGIN};
-    STARG_TRY(eliminate_find(m->p, &task, rng, scratch, &t->fan, &t->found));
-done:
-    STARG_ARRAY_FREE(m->p->context, &around);
-    return status;
+    return eliminate_find(m->p, &task, rng, scratch, &t->fan, &t->found);
 }
 
+/* What a trial looks for. */
+static const struct sort {
+    size_t count, parts; /* pieces before and after */
+    starg_status (*find)(const improver *m, starg_rng *rng, region_scratch *scratch, trial *t);
+    double share; /* of the work, or 0: by what it saves */
+} SORTS[IMPROVE_SORTS] = {
+    {2, 2, find_planes, 0.12}, {1, 1, find_fan, 0.1},   {3, 2, find_planes, 0},
+    {4, 3, find_planes, 0},    {1, 0, find_fan, 0},     {2, 1, find_fan, 0},
+    {3, 2, find_borders, 0.4}, {4, 3, find_borders, 0},
+};
+
 static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
-    starg_status status = STARG_OK;
     improver *m = shared;
     trial *t = &m->trials[item];
-    const sort *what = &SORTS[t->sort];
     starg_rng rng = starg_rng_make(context->seed, 77, m->options->first + m->report->trials + item);
     region_scratch *own = scratch;
     uint64_t before = own->work;
-    choose_union(m, &rng, what->count, t, &t->found);
+    choose_union(m, &rng, SORTS[t->sort].count, t, &t->found);
+    t->parts = SORTS[t->sort].parts;
     t->work = TRIAL_WORK;
     if (!t->found)
         return STARG_OK;
-    if (what->how == BY_FANS)
-        STARG_TRY(try_eliminate(m, &rng, own, t));
-    else if (what->how == BY_GUARDS)
-        STARG_TRY(try_covering(m, &rng, own, t));
-    else
-        STARG_TRY(try_repartition(m, &rng, own, t));
-done:
+    starg_status status = SORTS[t->sort].find(m, &rng, own, t);
     t->work = own->work - before;
     return status;
 }
 
-static bool saves(const trial *t) {
-    return SORTS[t->sort].parts < SORTS[t->sort].count;
+static bool is_fan(const trial *t) {
+    return SORTS[t->sort].find == find_fan;
 }
 
 static starg_status carry_out(improver *m, const trial *t, apply_effect *effect) {
-    starg_status status = STARG_OK;
-    const sort *what = &SORTS[t->sort];
-    const apply_worth worth = saves(t) ? NULL : unevenness;
-    if (what->how == BY_FANS)
-        STARG_TRY(apply_fan(m->p, &t->fan, MARGIN, &m->scratch, effect));
-    else if (what->how == BY_GUARDS)
-        STARG_TRY(apply_borders(m->p, t->pieces, t->count, &t->borders, MARGIN, worth, &m->scratch,
-                                effect));
+    if (is_fan(t))
+        TRY(apply_fan(m->p, &t->fan, MARGIN, &m->scratch, effect));
     else
-        STARG_TRY(
-            apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, worth, &m->scratch, effect));
+        TRY(apply_cuts(m->p, t->pieces, t->count, &t->cuts, MARGIN, saves(t) ? NULL : unevenness,
+                       &m->scratch, effect));
     if (!effect->done) {
         m->report->refused++;
-        goto done;
+        return STARG_OK;
     }
-    m->report->moves += is_move(what);
-    *(what->how == BY_FANS ? &m->report->eliminated : &m->report->repartitions) +=
-        what->count - what->parts;
-    m->options->tallies->of[t->sort].saved += (double)(what->count - what->parts);
+    m->report->moves += !saves(t);
+    *(is_fan(t) ? &m->report->eliminated : &m->report->repartitions) += t->count - t->parts;
+    m->options->tallies->of[t->sort].saved += (double)(t->count - t->parts);
     if (saves(t))
         m->stalled = 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool concerns(const trial *t, uint32_t number) {
@@ -374,21 +324,18 @@ static void renumber(uint32_t *pieces, size_t count, const apply_effect *effect)
  * carrying out five times as many left as many pieces as before. */
 static starg_status follow(improver *m, size_t count, const trial *done,
                            const apply_effect *effect) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++) {
         trial *t = &m->trials[i];
-        bool is_fan = SORTS[t->sort].how == BY_FANS;
-        t->found = t->found && !meet(t, done) && (saves(t) || !is_fan);
+        t->found = t->found && !meet(t, done) && (saves(t) || !is_fan(t));
         if (!t->found)
             continue;
         renumber(t->pieces, t->count, effect);
         renumber(t->fan.pieces, t->fan.piece_count, effect);
         renumber(t->fan.takers, t->fan.taker_count, effect);
-        if (is_fan)
-            STARG_TRY(fan_plan_find(m->p, &t->fan, &t->found));
+        if (is_fan(t))
+            TRY(fan_plan_find(m->p, &t->fan, &t->found));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status merge_if_crowded(improver *m) {
@@ -401,29 +348,27 @@ static starg_status merge_if_crowded(improver *m) {
 
 /* Those that save a piece first. */
 static starg_status carry_out_batch(improver *m, size_t count) {
-    starg_status status = STARG_OK;
     bool any = false;
     for (size_t i = 0; i < count; i++)
-        if (m->trials[i].found && SORTS[m->trials[i].sort].how == BY_FANS)
-            STARG_TRY(fan_plan_mark(m->p, &m->trials[i].fan));
+        if (m->trials[i].found && is_fan(&m->trials[i]))
+            TRY(fan_plan_mark(m->p, &m->trials[i].fan));
     for (int fewer = 1; fewer >= 0; fewer--)
         for (size_t i = 0; i < count; i++) {
             trial *t = &m->trials[i];
             apply_effect effect;
             if (!t->found || saves(t) != (fewer == 1))
                 continue;
-            STARG_TRY(carry_out(m, t, &effect));
+            TRY(carry_out(m, t, &effect));
             t->found = false;
             if (effect.done)
-                STARG_TRY(follow(m, count, t, &effect));
+                TRY(follow(m, count, t, &effect));
             any = any || effect.done;
         }
     if (any) {
-        STARG_TRY(merge_if_crowded(m));
-        STARG_TRY(find_contacts(m));
+        TRY(merge_if_crowded(m));
+        TRY(find_contacts(m));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- sorts ---- */
@@ -496,48 +441,39 @@ static starg_status run_batch(improver *m) {
     STARG_TRY(carry_out_batch(m, BATCH));
 done:
     for (int i = 0; i < BATCH; i++)
-        fan_plan_free(m->p->context, &m->trials[i].fan);
+        fan_plan_free(&m->trials[i].fan);
     return status;
 }
 
 /* Until there are few enough, or trials, work, time or patience are at an end. */
 static starg_status search(improver *m) {
-    starg_status status = STARG_OK;
     const improve_options *options = m->options;
     improve_report *report = m->report;
     report->time_limited = m->p->pieces.count > 1 && starg_time_is_over(m->p->context);
     while (!report->time_limited && m->p->pieces.count > options->enough && m->seeds.count > 0 &&
            report->trials < options->trials && report->work < options->work &&
            m->stalled < options->patience) {
-        STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
-        STARG_TRY(run_batch(m));
+        TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
+        TRY(run_batch(m));
         report->time_limited = starg_time_is_over(m->p->context);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void improver_free(improver *m) {
     region_scratch_free(&m->scratch);
-    STARG_ARRAY_FREE(m->p->context, &m->neighbours);
-    STARG_ARRAY_FREE(m->p->context, &m->met);
-    STARG_ARRAY_FREE(m->p->context, &m->first);
-    STARG_ARRAY_FREE(m->p->context, &m->seeds);
+    RELEASE(m->neighbours.data, m->met.data, m->first.data, m->seeds.data);
 }
 
 starg_status improve_join(partition *p) {
-    starg_status status = STARG_OK;
     const improve_options options = {.since = 0};
     improve_report report = {.trials = 0};
+    SCOPED_BY(improver_free)
     improver m = {
         .p = p, .options = &options, .report = &report, .scratch = {.context = p->context}};
-    starg_progress_begin(p->context, "join");
-    STARG_TRY(find_contacts(&m));
-    STARG_TRY(join_all(&m));
-done:
-    starg_progress_end(p->context);
-    improver_free(&m);
-    return status;
+    IN_STAGE(p->context, "join");
+    TRY(find_contacts(&m));
+    return join_all(&m);
 }
 
 starg_status improve(partition *p, const improve_options *options, improve_report *report) {

@@ -11,9 +11,7 @@
  *
  * Invariants: all that it was decided on is at least `gap` away from the plane, but for shared
  * vertices, which it passes through. Cost: linear in the vertices, ten to a hundred times. */
-#include "star/strict/search/parting.h"
-
-#include <math.h>
+#include "star/strict/search/search.h"
 
 #include "geometry/vec3.h"
 
@@ -26,10 +24,7 @@ enum {
 static const double GOOD = 0.6;
 
 void parting_free(parting *p) {
-    starg_context *context = p->scratch->context;
-    STARG_ARRAY_FREE(context, &p->low);
-    STARG_ARRAY_FREE(context, &p->high);
-    STARG_ARRAY_FREE(context, &p->marks);
+    RELEASE(p->low.data, p->high.data, p->marks.data);
 }
 
 /* ---- what is below and above ---- */
@@ -37,11 +32,9 @@ void parting_free(parting *p) {
 enum { IN_LOW = 1, IN_HIGH = 2, LISTED = 4 };
 
 static starg_status add_point(const parting *p, parting_points *to, const double at[3]) {
-    starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(p->scratch->context, PARTITION_STAGE, to, at[k]);
-done:
-    return status;
+        PUSH(p->scratch->context, PARTITION_STAGE, to, at[k]);
+    return STARG_OK;
 }
 
 static void mark(const parting *p, const parting_triangles *triangles, uint32_t bit) {
@@ -55,7 +48,6 @@ static void mark(const parting *p, const parting_triangles *triangles, uint32_t 
 /* Vertices of one side alone; those of both are touched. */
 static starg_status list_vertices(parting *p, const parting_triangles *triangles, uint32_t bit,
                                   parting_points *to) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < triangles->count; i++)
         for (int k = 0; k < 3; k++) {
             uint32_t v = p->r->triangles.data[triangles->data[i]].corners[k];
@@ -64,32 +56,29 @@ static starg_status list_vertices(parting *p, const parting_triangles *triangles
                 continue;
             p->marks.data[v] |= LISTED;
             if (is == bit)
-                STARG_TRY(add_point(p, to, parting_vertex(p->r, triangles->data[i], k)));
+                TRY(add_point(p, to, parting_vertex(p->r, triangles->data[i], k)));
             else if (p->touched_count++ < PARTING_TOUCHED_MOST)
                 p->touched[p->touched_count - 1] = v;
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status set_sides(parting *p, const parting_triangles *low,
                               const parting_triangles *high) {
-    starg_status status = STARG_OK;
     p->low.count = p->high.count = 0;
     p->touched_count = 0;
     while (p->marks.count < p->r->vertices.count / 3)
-        STARG_PUSH(p->scratch->context, PARTITION_STAGE, &p->marks, 0);
-    STARG_TRY(add_point(p, &p->low, p->guards[0]));
+        PUSH(p->scratch->context, PARTITION_STAGE, &p->marks, 0);
+    TRY(add_point(p, &p->low, p->guards[0]));
     for (size_t i = 1; i < p->guard_count; i++)
-        STARG_TRY(add_point(p, &p->high, p->guards[i]));
+        TRY(add_point(p, &p->high, p->guards[i]));
     mark(p, low, IN_LOW);
     mark(p, high, IN_HIGH);
-    STARG_TRY(list_vertices(p, low, IN_LOW, &p->low));
-    STARG_TRY(list_vertices(p, high, IN_HIGH, &p->high));
+    TRY(list_vertices(p, low, IN_LOW, &p->low));
+    TRY(list_vertices(p, high, IN_HIGH, &p->high));
     mark(p, low, 0);
     mark(p, high, 0);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- a plane between two sets ---- */
@@ -206,13 +195,11 @@ static bool find_plane_touching(parting *p, partition_plane *out) {
 
 starg_status parting_find(parting *p, const parting_triangles *low, const parting_triangles *high,
                           partition_plane *out, bool *found) {
-    starg_status status = STARG_OK;
     *found = false;
-    STARG_TRY(set_sides(p, low, high));
+    TRY(set_sides(p, low, high));
     if (p->touched_count == 0)
         *found = find_free_plane(p, out);
     else if (p->touched_count <= PARTING_TOUCHED_MOST)
         *found = find_plane_touching(p, out);
-done:
-    return status;
+    return STARG_OK;
 }

@@ -9,9 +9,8 @@
  * that fails, by rounding, is not found again soon, for all is random.
  *
  * Cost: that of sorting, and some passes over the vertices. */
-#include "star/strict/search/reflex_plane.h"
+#include "star/strict/search/search.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
@@ -41,18 +40,16 @@ static bool same_edge(const ridge *a, const ridge *b) {
 }
 
 static starg_status list_edges(ridges *e, starg_context *context) {
-    starg_status status = STARG_OK;
     for (uint32_t i = 0; i < e->r->triangles.count; i++) {
         const uint32_t *c = e->r->triangles.data[i].corners;
         for (int k = 0; k < 3; k++) {
             const ridge fresh = {{c[k], c[(k + 1) % 3]}, i};
-            STARG_PUSH(context, PARTITION_STAGE, &e->all, fresh);
+            PUSH(context, PARTITION_STAGE, &e->all, fresh);
         }
     }
     if (e->all.count > 1)
         qsort(e->all.data, e->all.count, sizeof *e->all.data, compare);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static const double *row_of(const ridges *e, const ridge *at) {
@@ -71,7 +68,6 @@ static double rise(const ridges *e, const ridge *above, const ridge *of) {
 }
 
 static starg_status list_reflex(ridges *e, starg_context *context) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < e->all.count;) {
         const ridge *first = &e->all.data[i];
         size_t count = 1;
@@ -79,11 +75,10 @@ static starg_status list_reflex(ridges *e, starg_context *context) {
             count++;
         if (count > 2 ||
             (count == 2 && fmax(rise(e, first, first + 1), rise(e, first + 1, first)) > FLAT))
-            STARG_PUSH(context, PARTITION_STAGE, &e->reflex, (uint32_t)i);
+            PUSH(context, PARTITION_STAGE, &e->reflex, (uint32_t)i);
         i += count;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Between the planes of the first two triangles; either of them, the middle, or any. */
@@ -142,7 +137,6 @@ starg_status reflex_plane_find(const region *r, starg_rng *rng, region_scratch *
         }
     }
 done:
-    STARG_ARRAY_FREE(context, &e.all);
-    STARG_ARRAY_FREE(context, &e.reflex);
+    RELEASE(e.all.data, e.reflex.data);
     return status;
 }

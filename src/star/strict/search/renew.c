@@ -10,10 +10,8 @@
  * another start.
  *
  * Cost: that of a start and of a search for the pieces, and some passes over the partition. */
-#include "star/strict/search/renew.h"
+#include "star/strict/search/improve.h"
 
-#include "core/rng.h"
-#include "star/strict/partition/partition.h"
 #include "star/strict/start/start.h"
 
 enum {
@@ -39,11 +37,10 @@ static bool is_in(const group *g, uint32_t number) {
 /* What is beyond a random facet of a random piece of the group, until there are enough. The first
  * is one of which there may be fewer. */
 static starg_status choose_group(const partition *p, starg_rng *rng, group *g) {
-    starg_status status = STARG_OK;
-    partition_numbers open = {0};
+    SCOPED partition_numbers open = {0};
     size_t wanted = PIECES_LEAST + starg_rng_below(rng, PIECES_MOST - PIECES_LEAST + 1);
     g->count = 0;
-    STARG_TRY(partition_find_open(p, &open));
+    TRY(partition_find_open(p, &open));
     if (open.count > 0)
         g->pieces[g->count++] = open.data[starg_rng_below(rng, open.count)];
     for (size_t attempt = 0; attempt < 40 * wanted && g->count > 0 && g->count < wanted;
@@ -55,14 +52,11 @@ static starg_status choose_group(const partition *p, starg_rng *rng, group *g) {
         if (next != PARTITION_OUTSIDE && !is_in(g, next))
             g->pieces[g->count++] = next;
     }
-done:
-    STARG_ARRAY_FREE(p->context, &open);
-    return status;
+    return STARG_OK;
 }
 
 /* The number of the piece that all have become; the last numbers take the place of the others. */
 static starg_status join(partition *p, const group *g, uint32_t *whole) {
-    starg_status status = STARG_OK;
     group left = *g;
     partition_join(p, g->pieces, g->count);
     *whole = g->pieces[0];
@@ -77,26 +71,22 @@ static starg_status join(partition *p, const group *g, uint32_t *whole) {
         if (*whole == last)
             *whole = hole;
     }
-    STARG_TRY(partition_build_index(p));
-done:
-    return status;
+    return partition_build_index(p);
 }
 
 static starg_status cut_anew(partition *copy, const group *g, const renew_options *options,
                              renew_report *report, bool *done) {
-    starg_status status = STARG_OK;
     bsp_report cut;
     uint32_t whole;
-    STARG_TRY(join(copy, g, &whole));
+    TRY(join(copy, g, &whole));
     const bsp_options start = {.stream = options->round,
                                .budget = EVALUATIONS_EACH * g->count,
                                .pieces = &whole,
                                .piece_count = 1};
-    STARG_TRY(bsp_start(copy, &start, &cut));
+    TRY(bsp_start(copy, &start, &cut));
     report->work += cut.work;
     *done = cut.done;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status search(partition *copy, const group *g, uint64_t since,

@@ -15,11 +15,9 @@
  *
  * Invariants: planes keep away from all vertices of the region by PLANE_ROOM; both sides were
  * checked by the program at the very plane. Cost: two reaches for each direction. */
-#include "star/strict/search/repartition.h"
+#include "star/strict/search/search.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "geometry/vec3.h"
 
@@ -98,18 +96,16 @@ typedef struct place {
 /* Are both sides (or the low one alone) star-shaped with the plane exactly there? */
 static starg_status check_place(const searcher *s, const double normal[3], double height, bool both,
                                 bool *fine) {
-    starg_status status = STARG_OK;
     double center[3], down[3], radius;
     negate(normal, down);
     *fine = false;
-    STARG_TRY(region_find_center(s->r, normal, height, s->scratch, center, &radius));
+    TRY(region_find_center(s->r, normal, height, s->scratch, center, &radius));
     if (radius < s->options->margin)
-        goto done;
+        return STARG_OK;
     if (both)
-        STARG_TRY(region_find_center(s->r, down, -height, s->scratch, center, &radius));
+        TRY(region_find_center(s->r, down, -height, s->scratch, center, &radius));
     *fine = radius >= s->options->margin;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static double widest_gap(const double *heights, size_t count) {
@@ -149,89 +145,83 @@ static int find_places(const searcher *s, const direction *d, place places[PLACE
 }
 
 static starg_status find_heights_of(const searcher *s, const double normal[3]) {
-    starg_status status = STARG_OK;
     s->scratch->heights.count = 0;
     for (size_t i = 0; i < s->r->vertices.count / 3; i++)
-        STARG_PUSH(s->scratch->context, PARTITION_STAGE, &s->scratch->heights,
-                   vec3_dot(normal, s->r->vertices.data + 3 * i));
-done:
-    return status;
+        PUSH(s->scratch->context, PARTITION_STAGE, &s->scratch->heights,
+             vec3_dot(normal, s->r->vertices.data + 3 * i));
+    return STARG_OK;
 }
 
 /* ---- two parts ---- */
 
 static starg_status measure_overlap(const searcher *s, direction *d) {
-    starg_status status = STARG_OK;
     region_reach up, down;
     d->score = -INFINITY;
     d->low = d->high = 0;
-    STARG_TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up, &down));
+    TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up, &down));
     if (up.height == -INFINITY)
-        goto done;
+        return STARG_OK;
     d->high = up.height;
     d->low = -down.height;
     d->score = d->high - d->low;
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status try_cut(const searcher *s, const direction *d, repartition_plan *plan,
-                            bool *found) {
-    starg_status status = STARG_OK;
+static void add_part(cut_plan *plan, const double normal[3], double offset) {
+    partition_plane *plane = &plan->planes[plan->count];
+    vec3_copy(normal, plane->normal);
+    plane->offset = offset;
+    plan->ends[plan->count++] = CUT_ENDS_PART;
+}
+
+static starg_status try_cut(const searcher *s, const direction *d, cut_plan *plan, bool *found) {
     place places[PLACES];
-    STARG_TRY(find_heights_of(s, d->normal));
+    TRY(find_heights_of(s, d->normal));
     int count = find_places(s, d, places);
     for (int i = 0; i < count && !*found; i++) {
-        STARG_TRY(check_place(s, d->normal, places[i].height, true, found));
+        TRY(check_place(s, d->normal, places[i].height, true, found));
         if (*found) {
-            partition_plane *plane = &plan->planes[plan->cuts++];
-            vec3_copy(d->normal, plane->normal);
-            plane->offset = places[i].height;
+            add_part(plan, d->normal, places[i].height);
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status climb(const searcher *s, direction *best, repartition_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
+static starg_status climb(const searcher *s, direction *best, cut_plan *plan, bool *found) {
     double angle = 0.5;
     for (int step = 0; step < s->options->steps && !*found; step++) {
         direction next;
         turn_a_little(best->normal, angle, s->rng, next.normal);
-        STARG_TRY(measure_overlap(s, &next));
+        TRY(measure_overlap(s, &next));
         if (next.score > best->score)
             *best = next;
         else
             angle *= 0.8;
         if (next.score > 0)
-            STARG_TRY(try_cut(s, &next, plan, found));
+            TRY(try_cut(s, &next, plan, found));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
-static starg_status find_two(const searcher *s, repartition_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
+static starg_status find_two(const searcher *s, cut_plan *plan, bool *found) {
     direction best[CLIMBERS];
     int count = 0;
     double size = region_diagonal(s->r);
     for (int i = 0; i < s->options->directions && !*found; i++) {
         direction fresh;
         propose(s, fresh.normal);
-        STARG_TRY(measure_overlap(s, &fresh));
+        TRY(measure_overlap(s, &fresh));
         if (fresh.score > 0)
-            STARG_TRY(try_cut(s, &fresh, plan, found));
+            TRY(try_cut(s, &fresh, plan, found));
         if (fresh.score > -INFINITY)
             insert(best, CLIMBERS, &count, &fresh);
         if (3 * (i + 1) == s->options->directions &&
             (count == 0 || best[0].score < HOPELESS * size))
-            goto done;
+            return STARG_OK;
     }
     for (int i = 0; i < count && !*found && best[i].score > CLIMBABLE * size; i++)
-        STARG_TRY(climb(s, &best[i], plan, found));
-done:
-    return status;
+        TRY(climb(s, &best[i], plan, found));
+    return STARG_OK;
 }
 
 /* ---- more parts ---- */
@@ -250,23 +240,20 @@ static double area_below(const region *r, const double *heights, double height) 
 }
 
 static starg_status measure_peel(const searcher *s, direction *d) {
-    starg_status status = STARG_OK;
     region_reach up;
     d->score = -INFINITY;
-    STARG_TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up, NULL));
+    TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up, NULL));
     if (up.height == -INFINITY)
-        goto done;
+        return STARG_OK;
     d->high = up.height;
     d->low = -INFINITY;
     d->score = area_below(s->r, s->scratch->heights.data, up.height);
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* The highest place below the reach with room for the plane. */
 static starg_status place_peel(const searcher *s, const direction *d, double *height, bool *found) {
-    starg_status status = STARG_OK;
-    STARG_TRY(find_heights_of(s, d->normal));
+    TRY(find_heights_of(s, d->normal));
     double *heights = s->scratch->heights.data, top = -INFINITY;
     size_t count = 0;
     for (size_t i = 0; i < s->scratch->heights.count; i++)
@@ -281,49 +268,40 @@ static starg_status place_peel(const searcher *s, const direction *d, double *he
             top = 0.5 * (heights[i] + heights[i - 1]);
     *found = false;
     if (top == -INFINITY)
-        goto done;
+        return STARG_OK;
     *height = top;
-    STARG_TRY(check_place(s, d->normal, top, false, found));
-done:
-    return status;
+    return check_place(s, d->normal, top, false, found);
 }
 
-static starg_status cut_off(const searcher *s, const direction *d, int parts,
-                            repartition_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
-    region rest = {.vertices = {0}};
+static starg_status cut_off(const searcher *s, const direction *d, int parts, cut_plan *plan,
+                            bool *found) {
+    SCOPED_BY(region_free) region rest = {.vertices = {0}};
     double height = 0;
     bool placed;
-    STARG_TRY(place_peel(s, d, &height, &placed));
+    TRY(place_peel(s, d, &height, &placed));
     if (!placed)
-        goto done;
-    STARG_TRY(region_clip(s->scratch->context, s->r, d->normal, height, &rest));
-    partition_plane *plane = &plan->planes[plan->cuts++];
-    vec3_copy(d->normal, plane->normal);
-    plane->offset = height;
-    STARG_TRY(repartition_find(&rest, parts - 1, s->options, s->rng, s->scratch, plan, found));
+        return STARG_OK;
+    TRY(region_clip(s->scratch->context, s->r, d->normal, height, &rest));
+    add_part(plan, d->normal, height);
+    TRY(repartition_find(&rest, parts - 1, s->options, s->rng, s->scratch, plan, found));
     if (!*found)
-        plan->cuts--;
-done:
-    region_free(s->scratch->context, &rest);
-    return status;
+        plan->count--;
+    return STARG_OK;
 }
 
-static starg_status find_more(const searcher *s, int parts, repartition_plan *plan, bool *found) {
-    starg_status status = STARG_OK;
+static starg_status find_more(const searcher *s, int parts, cut_plan *plan, bool *found) {
     direction best[PEELS];
     int count = 0;
     for (int i = 0; i < s->options->directions; i++) {
         direction fresh;
         propose(s, fresh.normal);
-        STARG_TRY(measure_peel(s, &fresh));
+        TRY(measure_peel(s, &fresh));
         if (fresh.score > -INFINITY)
             insert(best, PEELS, &count, &fresh);
     }
     for (int i = 0; i < count && !*found; i++)
-        STARG_TRY(cut_off(s, &best[i], parts, plan, found));
-done:
-    return status;
+        TRY(cut_off(s, &best[i], parts, plan, found));
+    return STARG_OK;
 }
 
 static starg_status find_one(const searcher *s, bool *found) {
@@ -334,7 +312,7 @@ static starg_status find_one(const searcher *s, bool *found) {
 }
 
 starg_status repartition_find(const region *r, int parts, const repartition_options *options,
-                              starg_rng *rng, region_scratch *scratch, repartition_plan *plan,
+                              starg_rng *rng, region_scratch *scratch, cut_plan *plan,
                               bool *found) {
     const searcher s = {r, options, rng, scratch};
     *found = false;

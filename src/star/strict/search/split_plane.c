@@ -17,9 +17,8 @@
  *
  * Invariants: rounded throughout; a plane through no edge keeps to the widest gap between heights
  * of vertices near the best place. Cost: guards x triangles missed x directions, a few million. */
-#include "star/strict/search/split_plane.h"
+#include "star/strict/search/search.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
@@ -72,12 +71,8 @@ typedef struct plane_search {
 } plane_search;
 
 static void plane_search_free(plane_search *d) {
-    STARG_ARRAY_FREE(d->context, &d->areas);
-    STARG_ARRAY_FREE(d->context, &d->row_is_missed);
-    STARG_ARRAY_FREE(d->context, &d->sides);
-    STARG_ARRAY_FREE(d->context, &d->bins);
-    STARG_ARRAY_FREE(d->context, &d->missed);
-    STARG_ARRAY_FREE(d->context, &d->places);
+    RELEASE(d->areas.data, d->row_is_missed.data, d->sides.data, d->bins.data, d->missed.data,
+            d->places.data);
 }
 
 static const double *corner(const plane_search *d, const region_triangle *t, int k) {
@@ -98,7 +93,6 @@ static void normalize(double v[3]) {
 /* ---- preparation ---- */
 
 static starg_status measure(plane_search *d) {
-    starg_status status = STARG_OK;
     double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < d->r->vertices.count; i++) {
         lower[i % 3] = fmin(lower[i % 3], d->r->vertices.data[i]);
@@ -107,23 +101,21 @@ static starg_status measure(plane_search *d) {
     d->size = vec3_distance(lower, upper);
     for (size_t i = 0; i < d->r->triangles.count; i++) {
         const region_triangle *t = &d->r->triangles.data[i];
-        STARG_PUSH(d->context, PARTITION_STAGE, &d->areas,
-                   vec3_triangle_area(corner(d, t, 0), corner(d, t, 1), corner(d, t, 2)));
-        STARG_PUSH(d->context, PARTITION_STAGE, &d->bins, 0);
-        STARG_PUSH(d->context, PARTITION_STAGE, &d->bins, 0);
+        PUSH(d->context, PARTITION_STAGE, &d->areas,
+             vec3_triangle_area(corner(d, t, 0), corner(d, t, 1), corner(d, t, 2)));
+        PUSH(d->context, PARTITION_STAGE, &d->bins, 0);
+        PUSH(d->context, PARTITION_STAGE, &d->bins, 0);
     }
     for (size_t i = 0; i < d->r->vertices.count / 3; i++)
-        STARG_PUSH(d->context, PARTITION_STAGE, &d->sides, 0);
+        PUSH(d->context, PARTITION_STAGE, &d->sides, 0);
     for (size_t i = 0; i < d->r->rows.count / 4; i++)
-        STARG_PUSH(d->context, PARTITION_STAGE, &d->row_is_missed, 0);
-done:
-    return status;
+        PUSH(d->context, PARTITION_STAGE, &d->row_is_missed, 0);
+    return STARG_OK;
 }
 
 /* ---- places ---- */
 
 static starg_status add_place(plane_search *d, const double at[3]) {
-    starg_status status = STARG_OK;
     place fresh = {.first = d->missed.count};
     vec3_copy(at, fresh.at);
     d->scratch->work += d->row_is_missed.count + d->r->triangles.count;
@@ -134,42 +126,37 @@ static starg_status add_place(plane_search *d, const double at[3]) {
     for (size_t i = 0; i < d->r->triangles.count; i++) {
         if (!d->row_is_missed.data[d->r->triangles.data[i].row])
             continue;
-        STARG_PUSH(d->context, PARTITION_STAGE, &d->missed, (uint32_t)i);
+        PUSH(d->context, PARTITION_STAGE, &d->missed, (uint32_t)i);
         fresh.missed += d->areas.data[i];
     }
     fresh.count = d->missed.count - fresh.first;
-    STARG_PUSH(d->context, PARTITION_STAGE, &d->places, fresh);
+    PUSH(d->context, PARTITION_STAGE, &d->places, fresh);
     if (fresh.missed < d->places.data[d->best_place].missed)
         d->best_place = d->places.count - 1;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_reach_along(plane_search *d) {
-    starg_status status = STARG_OK;
     region_reach reach;
     double direction[3];
     starg_rng_direction(d->rng, direction);
-    STARG_TRY(region_find_reach(d->r, direction, d->options->margin, d->scratch, &reach, NULL));
+    TRY(region_find_reach(d->r, direction, d->options->margin, d->scratch, &reach, NULL));
     if (reach.height > -INFINITY)
-        STARG_TRY(add_place(d, reach.guard));
-done:
-    return status;
+        TRY(add_place(d, reach.guard));
+    return STARG_OK;
 }
 
 /* About the middle of a triangle, moved by `offset`. */
 static starg_status add_reach_about(plane_search *d, size_t triangle, const double offset[3]) {
-    starg_status status = STARG_OK;
     const region_triangle *t = &d->r->triangles.data[triangle];
     region_reach reach;
     double center[3];
     for (int k = 0; k < 3; k++)
         center[k] = (corner(d, t, 0)[k] + corner(d, t, 1)[k] + corner(d, t, 2)[k]) / 3 + offset[k];
-    STARG_TRY(region_find_reach_about(d->r, center, d->options->margin, d->scratch, &reach));
+    TRY(region_find_reach_about(d->r, center, d->options->margin, d->scratch, &reach));
     if (reach.height > -INFINITY)
-        STARG_TRY(add_place(d, reach.guard));
-done:
-    return status;
+        TRY(add_place(d, reach.guard));
+    return STARG_OK;
 }
 
 /* About a place on the surface, or some way below it. */
@@ -201,20 +188,18 @@ static starg_status add_reach_needed(plane_search *d, bool nearby) {
 }
 
 static starg_status add_places(plane_search *d) {
-    starg_status status = STARG_OK;
     int count = tries(d, GUARDS), needed = tries(d, NEEDED);
     for (size_t i = 0; i < d->options->place_count; i++)
-        STARG_TRY(add_place(d, d->options->places + 3 * i));
+        TRY(add_place(d, d->options->places + 3 * i));
     for (int i = 0; i < count; i++) {
         if (i % 4 == 0)
-            STARG_TRY(add_reach_along(d));
+            TRY(add_reach_along(d));
         else
-            STARG_TRY(add_reach_below(d, i % 4 == 1));
+            TRY(add_reach_below(d, i % 4 == 1));
     }
     for (int i = 0; i < needed && d->places.count > 0; i++)
-        STARG_TRY(add_reach_needed(d, i % 2 == 1));
-done:
-    return status;
+        TRY(add_reach_needed(d, i % 2 == 1));
+    return STARG_OK;
 }
 
 /* ---- all heights along a direction ---- */
@@ -472,24 +457,22 @@ static void choose(const plane_search *d, partition_plane *plane, bool *found) {
 
 /* Every n-th triangle, with all vertices and rows. */
 static starg_status take_sample(starg_context *context, const region *from, region *out) {
-    starg_status status = STARG_OK;
     size_t step = (from->triangles.count + SAMPLE - 1) / SAMPLE;
     for (size_t i = 0; i < from->vertices.count; i++)
-        STARG_PUSH(context, PARTITION_STAGE, &out->vertices, from->vertices.data[i]);
+        PUSH(context, PARTITION_STAGE, &out->vertices, from->vertices.data[i]);
     for (size_t i = 0; i < from->triangles.count; i += step)
-        STARG_PUSH(context, PARTITION_STAGE, &out->triangles, from->triangles.data[i]);
+        PUSH(context, PARTITION_STAGE, &out->triangles, from->triangles.data[i]);
     for (size_t i = 0; i < from->rows.count; i++)
-        STARG_PUSH(context, PARTITION_STAGE, &out->rows, from->rows.data[i]);
+        PUSH(context, PARTITION_STAGE, &out->rows, from->rows.data[i]);
     for (size_t i = 0; i < from->blocks.count; i++)
-        STARG_PUSH(context, PARTITION_STAGE, &out->blocks, from->blocks.data[i]);
-done:
-    return status;
+        PUSH(context, PARTITION_STAGE, &out->blocks, from->blocks.data[i]);
+    return STARG_OK;
 }
 
 starg_status split_plane_find(const region *r, const split_plane_options *options, starg_rng *rng,
                               region_scratch *scratch, partition_plane *plane, bool *found) {
-    starg_status status = STARG_OK;
-    region sample = {.vertices = {0}};
+    SCOPED_BY(region_free) region sample = {.vertices = {0}};
+    SCOPED_BY(plane_search_free)
     plane_search d = {.context = scratch->context,
                       .r = r,
                       .options = options,
@@ -499,21 +482,18 @@ starg_status split_plane_find(const region *r, const split_plane_options *option
                       .fair = {.cost = INFINITY}};
     *found = false;
     if (r->triangles.count > SAMPLE) {
-        STARG_TRY(take_sample(scratch->context, r, &sample));
+        TRY(take_sample(scratch->context, r, &sample));
         d.r = &sample;
     }
-    STARG_TRY(measure(&d));
-    STARG_TRY(add_places(&d));
+    TRY(measure(&d));
+    TRY(add_places(&d));
     if (d.places.count == 0)
-        goto done;
+        return STARG_OK;
     try_directions(&d);
     if (options->demand != SPLIT_PLANE_HALVE) {
         turn_best(&d);
         try_edges(&d);
     }
     choose(&d, plane, found);
-done:
-    region_free(scratch->context, &sample);
-    plane_search_free(&d);
-    return status;
+    return STARG_OK;
 }

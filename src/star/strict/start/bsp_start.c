@@ -29,14 +29,9 @@
  * about as many rounds as twice the depth of the tree. */
 #include "star/strict/start/start.h"
 
-#include <math.h>
-
 #include "core/parallel.h"
-#include "core/rng.h"
 #include "geometry/vec3.h"
-#include "star/strict/partition/partition.h"
-#include "star/strict/search/reflex_plane.h"
-#include "star/strict/search/split_plane.h"
+#include "star/strict/search/search.h"
 
 enum { FAIR_FROM = 1, HALVE_FROM = 4, REFLEX_FROM = 8, ATTEMPTS_MOST = 60, EFFORT_MOST = 3 };
 enum { PROOFS_MOST = 40 }; /* rounds of them */
@@ -118,21 +113,18 @@ static starg_status find_plane(const bsp_builder *b, job *j, const region *r, st
 
 /* A guard for a piece too thin for rounded programs, by exact proof. */
 static starg_status find_kernel(const partition *p, job *j) {
-    starg_status status = STARG_OK;
-    partition_triangles triangles = {0};
+    SCOPED partition_triangles triangles = {0};
     kernel_faces surface = {.vertices = p->points.data};
     starg_kernel_result result;
-    STARG_TRY(partition_gather(p, j->number, &triangles));
+    TRY(partition_gather(p, j->number, &triangles));
     surface.faces = triangles.data;
     surface.count = triangles.count / 3;
-    STARG_TRY(kernel_find(p->context, &surface, &result));
+    TRY(kernel_find(p->context, &surface, &result));
     if (result.verdict == STARG_KERNEL_INTERIOR) {
         vec3_copy(result.guard, j->guard);
         j->radius = ldexp(fabs(result.radius), -partition_exponent(p));
     }
-done:
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
+    return STARG_OK;
 }
 
 /* The heights of a guard's planes above it, times the areas of the facets on them, sum to three
@@ -153,26 +145,23 @@ static double largest_radius(const region *r) {
 
 static starg_status find_guard(const partition *p, const region *r, job *j,
                                region_scratch *scratch) {
-    starg_status status = STARG_OK;
     double center[3];
-    STARG_TRY(region_find_center(r, NULL, 0, scratch, center, &j->radius));
+    TRY(region_find_center(r, NULL, 0, scratch, center, &j->radius));
     if (j->radius > 0)
         partition_from_unit(p, center, j->guard);
     bool thin = j->most < MARGIN;
     if ((j->attempts >= HALVE_FROM || thin) && j->radius < margin_of(j)) {
         j->radius = -1;
-        STARG_TRY(find_kernel(p, j));
+        TRY(find_kernel(p, j));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Where a sample of the facets leaves no room for a guard, the sample serves for the plane, too. */
 static starg_status look_at(starg_context *context, void *shared, void *scratch, size_t item) {
-    starg_status status = STARG_OK;
     bsp_builder *b = shared;
     job *j = &b->jobs.data[item];
-    region r = {.vertices = {0}};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     starg_rng rng =
         starg_rng_make(context->seed, 78 + STREAMS * b->options->stream, b->done + item);
     uint32_t facets = b->p->start.data[j->number + 1] - b->p->start.data[j->number];
@@ -180,18 +169,16 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     uint64_t before = own->work;
     j->found = false;
     for (int all = facets < 2 * SAMPLE || j->attempts >= HALVE_FROM; all < 2; all++) {
-        STARG_TRY(region_gather_some(b->p, &j->number, 1, all ? UINT32_MAX : SAMPLE, scratch, &r));
+        TRY(region_gather_some(b->p, &j->number, 1, all ? UINT32_MAX : SAMPLE, scratch, &r));
         j->most = all ? largest_radius(&r) : INFINITY;
-        STARG_TRY(find_guard(b->p, &r, j, scratch));
+        TRY(find_guard(b->p, &r, j, scratch));
         if (!is_star(j))
             break;
     }
     if (!is_star(j))
-        STARG_TRY(find_plane(b, j, &r, &rng, scratch));
+        TRY(find_plane(b, j, &r, &rng, scratch));
     j->work = own->work - before;
-done:
-    region_free(context, &r);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- cutting ---- */
@@ -199,18 +186,15 @@ done:
 /* A part so small that no later cut will make anything of it. */
 static starg_status is_small_component(bsp_builder *b, partition *p, uint32_t number, const job *j,
                                        bool *small) {
-    starg_status status = STARG_OK;
-    region r = {.vertices = {0}};
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     double center[3], radius;
     *small = false;
     if (j->attempts >= REFLEX_FROM || p->pieces.data[number].volume >= SMALL_COMPONENT * ease_of(j))
-        goto done;
-    STARG_TRY(region_gather(p, &number, 1, &b->scratch, &r));
-    STARG_TRY(region_find_center(&r, NULL, 0, &b->scratch, center, &radius));
+        return STARG_OK;
+    TRY(region_gather(p, &number, 1, &b->scratch, &r));
+    TRY(region_find_center(&r, NULL, 0, &b->scratch, center, &radius));
     *small = radius < margin_of(j);
-done:
-    region_free(p->context, &r);
-    return status;
+    return STARG_OK;
 }
 
 /* Facets that a cut has made keep the plane of what they were part of; where rounding has turned
@@ -241,37 +225,33 @@ static starg_status renew_index(bsp_builder *b) {
 
 /* In the extract: the piece cut, and both sides parted into what is connected. */
 static starg_status cut(bsp_builder *b, const job *j, partition_extract *e, bool *done) {
-    starg_status status = STARG_OK;
     const piece fresh = {.stamp = ++b->p->stamps};
     partition *part = &e->part;
-    STARG_TRY(renew_index(b));
-    STARG_TRY(extract_make(b->p, &j->number, 1, &b->scratch, e));
+    TRY(renew_index(b));
+    TRY(extract_make(b->p, &j->number, 1, &b->scratch, e));
     uint32_t first = (uint32_t)part->pieces.count;
-    STARG_PUSH(part->context, PARTITION_STAGE, &part->pieces, fresh);
-    STARG_TRY(partition_slice(part, 0, first, &j->plane, done));
+    PUSH(part->context, PARTITION_STAGE, &part->pieces, fresh);
+    TRY(partition_slice(part, 0, first, &j->plane, done));
     *done = *done && is_flat(part, e->points.count, fmin(TURN / ease_of(j), TURN_MOST));
     if (!*done)
-        goto done;
-    STARG_TRY(partition_build_index(part));
-    STARG_TRY(partition_separate(part, 0));
-    STARG_TRY(partition_separate(part, first));
+        return STARG_OK;
+    TRY(partition_build_index(part));
+    TRY(partition_separate(part, 0));
+    TRY(partition_separate(part, first));
     for (uint32_t i = 0; i < part->pieces.count && *done; i = i < first ? first : i + 1) {
         bool small;
-        STARG_TRY(is_small_component(b, part, i, j, &small));
+        TRY(is_small_component(b, part, i, j, &small));
         *done = !small;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status open_piece(bsp_builder *b, uint32_t number, int attempts) {
-    starg_status status = STARG_OK;
     if (b->p->pieces.count > b->many && attempts < REFLEX_FROM)
         attempts = REFLEX_FROM;
     const job fresh = {.number = number, .attempts = attempts};
-    STARG_PUSH(b->p->context, PARTITION_STAGE, &b->next, fresh);
-done:
-    return status;
+    PUSH(b->p->context, PARTITION_STAGE, &b->next, fresh);
+    return STARG_OK;
 }
 
 static starg_status try_again(bsp_builder *b, const job *j) {
@@ -280,24 +260,21 @@ static starg_status try_again(bsp_builder *b, const job *j) {
 }
 
 static starg_status carry_out(bsp_builder *b, const job *j) {
-    starg_status status = STARG_OK;
-    partition_extract e = {.part = {.context = b->p->context}};
+    SCOPED_BY(extract_free) partition_extract e = {.part = {.context = b->p->context}};
     bool done = false;
     if (j->found)
-        STARG_TRY(cut(b, j, &e, &done));
+        TRY(cut(b, j, &e, &done));
     if (!done) {
-        STARG_TRY(try_again(b, j));
-        goto done;
+        TRY(try_again(b, j));
+        return STARG_OK;
     }
     uint32_t first = (uint32_t)b->p->pieces.count;
-    STARG_TRY(extract_return(&e, b->p));
+    TRY(extract_return(&e, b->p));
     b->stale = true;
-    STARG_TRY(open_piece(b, j->number, j->attempts / 2));
+    TRY(open_piece(b, j->number, j->attempts / 2));
     for (uint32_t i = first; i < b->p->pieces.count; i++)
-        STARG_TRY(open_piece(b, i, j->attempts / 2));
-done:
-    extract_free(&e);
-    return status;
+        TRY(open_piece(b, i, j->attempts / 2));
+    return STARG_OK;
 }
 
 static void settle(bsp_builder *b, const job *j) {
@@ -321,7 +298,6 @@ static starg_status merge_if_crowded(bsp_builder *b) {
 }
 
 static starg_status run_round(bsp_builder *b) {
-    starg_status status = STARG_OK;
     const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
                                       .count = b->jobs.count,
                                       .shared = b,
@@ -330,13 +306,13 @@ static starg_status run_round(bsp_builder *b) {
                                       .free_scratch = region_free_scratch,
                                       .silent = true};
     b->hurry = starg_time_is_over(b->p->context);
-    STARG_TRY(starg_parallel_for(b->p->context, &loop));
+    TRY(starg_parallel_for(b->p->context, &loop));
     b->done += b->jobs.count;
     b->next.count = 0;
     for (size_t i = 0; i < b->jobs.count; i++) {
         const job *j = &b->jobs.data[i];
         b->work += j->work;
-        STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
+        TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
         if (b->options->to_the_end && starg_time_is_long_over(b->p->context))
             return starg_fail_time(b->p->context, PARTITION_STAGE);
         if (b->hopeless)
@@ -344,12 +320,10 @@ static starg_status run_round(bsp_builder *b) {
         if (is_star(j))
             settle(b, j);
         else
-            STARG_TRY(carry_out(b, j));
+            TRY(carry_out(b, j));
     }
-    STARG_TRY(renew_index(b));
-    STARG_TRY(merge_if_crowded(b));
-done:
-    return status;
+    TRY(renew_index(b));
+    return merge_if_crowded(b);
 }
 
 static void swap_lists(bsp_builder *b) {
@@ -380,53 +354,46 @@ static starg_status reopen(bsp_builder *b, uint32_t number, int round) {
 
 /* Pieces whose guard does not see them: neighbours' cuts have split their facets since. */
 static starg_status certify(bsp_builder *b, int round) {
-    starg_status status = STARG_OK;
-    partition_triangles triangles = {0};
+    SCOPED partition_triangles triangles = {0};
     partition *p = b->p;
     b->next.count = 0;
     for (uint32_t i = 0; i < p->pieces.count; i++) {
         triangles.count = 0;
-        STARG_TRY(partition_gather(p, i, &triangles));
+        TRY(partition_gather(p, i, &triangles));
         size_t count = triangles.count / 3;
         if (p->pieces.data[i].stamp > b->began)
             p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
         if (!partition_certify(p, triangles.data, count, p->pieces.data[i].guard))
-            STARG_TRY(reopen(b, i, round));
+            TRY(reopen(b, i, round));
     }
     b->hopeless = round == PROOFS_MOST && b->next.count > 0;
-done:
-    STARG_ARRAY_FREE(p->context, &triangles);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status open_all(bsp_builder *b) {
-    starg_status status = STARG_OK;
     size_t given = b->p->pieces.count, chosen = b->options->piece_count;
     size_t count = b->options->pieces != NULL ? chosen : given;
     b->many = given + MANY_LEAST + b->p->facets.count / 2;
     for (size_t i = 0; i < count; i++) {
         uint32_t number = b->options->pieces != NULL ? b->options->pieces[i] : (uint32_t)i;
-        STARG_TRY(partition_separate(b->p, number));
-        STARG_TRY(open_piece(b, number, 0));
+        TRY(partition_separate(b->p, number));
+        TRY(open_piece(b, number, 0));
     }
     for (size_t i = given; i < b->p->pieces.count; i++)
-        STARG_TRY(open_piece(b, (uint32_t)i, 0));
+        TRY(open_piece(b, (uint32_t)i, 0));
     for (size_t i = 0; i < b->next.count; i++)
         b->volume += b->p->pieces.data[b->next.data[i].number].volume;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status take_hints(bsp_builder *b) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < b->options->guard_count; i++) {
         double unit[3];
         partition_to_unit(b->p, b->options->guards + 3 * i, unit);
         for (int k = 0; k < 3; k++)
-            STARG_PUSH(b->p->context, PARTITION_STAGE, &b->hints, unit[k]);
+            PUSH(b->p->context, PARTITION_STAGE, &b->hints, unit[k]);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *report) {
@@ -453,8 +420,6 @@ starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *rep
 done:
     p->context->work += b.work / PARTITION_WORK;
     region_scratch_free(&b.scratch);
-    STARG_ARRAY_FREE(p->context, &b.hints);
-    STARG_ARRAY_FREE(p->context, &b.jobs);
-    STARG_ARRAY_FREE(p->context, &b.next);
+    RELEASE(b.hints.data, b.jobs.data, b.next.data);
     return status;
 }

@@ -17,8 +17,6 @@
  * Cost: linear in the nodes for each choice that is no consequence of others. */
 #include "star/strict/start/start.h"
 
-#include <string.h>
-
 enum { DEGREE = 3 };
 
 static const uint32_t NO_EDGE = UINT32_MAX;
@@ -26,22 +24,17 @@ static const uint32_t NO_EDGE = UINT32_MAX;
 #define LABELLING_STAGE "decompose"
 
 void labelling_free(labelling *l) {
-    STARG_ARRAY_FREE(l->context, &l->given);
-    STARG_ARRAY_FREE(l->context, &l->edges);
-    STARG_ARRAY_FREE(l->context, &l->left);
-    STARG_ARRAY_FREE(l->context, &l->edges_of);
-    STARG_ARRAY_FREE(l->context, &l->queue);
-    STARG_ARRAY_FREE(l->context, &l->changed);
+    RELEASE(l->given.data, l->edges.data, l->left.data, l->edges_of.data, l->queue.data,
+            l->changed.data);
     *l = (labelling){.context = l->context};
 }
 
 starg_status labelling_prepare(labelling *l) {
-    starg_status status = STARG_OK;
     l->left.count = l->edges_of.count = 0;
     for (size_t i = 0; i < l->given.count; i++)
-        STARG_PUSH(l->context, LABELLING_STAGE, &l->left, l->given.data[i]);
+        PUSH(l->context, LABELLING_STAGE, &l->left, l->given.data[i]);
     for (size_t i = 0; i < DEGREE * l->given.count; i++)
-        STARG_PUSH(l->context, LABELLING_STAGE, &l->edges_of, NO_EDGE);
+        PUSH(l->context, LABELLING_STAGE, &l->edges_of, NO_EDGE);
     for (uint32_t i = 0; i < l->edges.count; i++)
         for (int end = 0; end < 2; end++) {
             uint32_t *slot = &l->edges_of.data[DEGREE * (size_t)l->edges.data[i].nodes[end]];
@@ -49,8 +42,7 @@ starg_status labelling_prepare(labelling *l) {
                 slot++;
             *slot = i;
         }
-done:
-    return status;
+    return STARG_OK;
 }
 
 static bool is_single(label_set set) {
@@ -67,13 +59,11 @@ static int size_of(label_set set) {
 /* ---- striking out ---- */
 
 static starg_status set_labels(labelling *l, uint32_t node, label_set set) {
-    starg_status status = STARG_OK;
-    STARG_PUSH(l->context, LABELLING_STAGE, &l->changed, node);
-    STARG_PUSH(l->context, LABELLING_STAGE, &l->changed, l->left.data[node]);
-    STARG_PUSH(l->context, LABELLING_STAGE, &l->queue, node);
+    PUSH(l->context, LABELLING_STAGE, &l->changed, node);
+    PUSH(l->context, LABELLING_STAGE, &l->changed, l->left.data[node]);
+    PUSH(l->context, LABELLING_STAGE, &l->queue, node);
     l->left.data[node] = set;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Those of the node at an end of an edge that go with something at the other end. */
@@ -84,7 +74,6 @@ static label_set supported(const labelling *l, const labelling_edge *edge, int e
 
 /* Until nothing changes; *fine is false when a node is left without a label. */
 static starg_status strike_out(labelling *l, bool *fine) {
-    starg_status status = STARG_OK;
     *fine = true;
     while (l->queue.count > 0 && *fine) {
         uint32_t from = l->queue.data[--l->queue.count];
@@ -96,12 +85,11 @@ static starg_status strike_out(labelling *l, bool *fine) {
             if (set == l->left.data[edge->nodes[end]])
                 continue;
             *fine = set != 0;
-            STARG_TRY(set_labels(l, edge->nodes[end], set));
+            TRY(set_labels(l, edge->nodes[end], set));
         }
     }
     l->queue.count = 0;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void go_back(labelling *l) {
@@ -115,17 +103,14 @@ static void go_back(labelling *l) {
 
 /* Settles a node with a label, or, where that cannot be, without it. */
 static starg_status settle(labelling *l, uint32_t node, label_set label, bool *fine) {
-    starg_status status = STARG_OK;
     l->changed.count = 0;
-    STARG_TRY(set_labels(l, node, label));
-    STARG_TRY(strike_out(l, fine));
+    TRY(set_labels(l, node, label));
+    TRY(strike_out(l, fine));
     if (*fine)
-        goto done;
+        return STARG_OK;
     go_back(l);
-    STARG_TRY(set_labels(l, node, l->left.data[node] & ~label));
-    STARG_TRY(strike_out(l, fine));
-done:
-    return status;
+    TRY(set_labels(l, node, l->left.data[node] & ~label));
+    return strike_out(l, fine);
 }
 
 static void find_ranked(labelling *l) {
@@ -170,17 +155,15 @@ static label_set choose_label(const labelling *l, label_set set, starg_rng *rng)
 
 /* Nodes next to settled ones, in their order. */
 static starg_status spread(labelling *l, bool *any, bool *fine) {
-    starg_status status = STARG_OK;
     *any = false;
     for (uint32_t i = 0; i < l->left.count && *fine; i++) {
         label_set label = is_single(l->left.data[i]) ? 0 : label_nearby(l, i);
         if (label == 0)
             continue;
         *any = true;
-        STARG_TRY(settle(l, i, label, fine));
+        TRY(settle(l, i, label, fine));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A node with the fewest labels, but more than one. */
@@ -201,7 +184,6 @@ static starg_status settle_one(labelling *l, starg_rng *rng, bool *any, bool *fi
 }
 
 starg_status labelling_solve(labelling *l, starg_rng *rng, bool *found) {
-    starg_status status = STARG_OK;
     bool any = true, fine = true;
     *found = false;
     l->queue.count = l->changed.count = 0;
@@ -209,16 +191,15 @@ starg_status labelling_solve(labelling *l, starg_rng *rng, bool *found) {
     for (uint32_t i = 0; i < l->left.count; i++) {
         l->left.data[i] = l->given.data[i];
         fine = fine && l->given.data[i] != 0;
-        STARG_PUSH(l->context, LABELLING_STAGE, &l->queue, i);
+        PUSH(l->context, LABELLING_STAGE, &l->queue, i);
     }
     if (fine)
-        STARG_TRY(strike_out(l, &fine));
+        TRY(strike_out(l, &fine));
     while (fine && any) {
-        STARG_TRY(spread(l, &any, &fine));
+        TRY(spread(l, &any, &fine));
         if (fine && !any)
-            STARG_TRY(settle_one(l, rng, &any, &fine));
+            TRY(settle_one(l, rng, &any, &fine));
     }
     *found = fine;
-done:
-    return status;
+    return STARG_OK;
 }

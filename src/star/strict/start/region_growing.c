@@ -25,9 +25,6 @@
  * falls with the size of the component, so that a component costs at most about EFFORT steps. */
 #include "star/strict/start/region_growing.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "geometry/predicates.h"
@@ -115,12 +112,10 @@ static uint8_t count_dependencies(const growing *c, uint32_t t, const guard_pair
 }
 
 static starg_status add(const growing *c, grower *grow, uint32_t t, double *volume) {
-    starg_status status = STARG_OK;
     grow->missing[t] = 0xff;
     *volume += c->volumes[t];
-    STARG_PUSH(c->context, STAGE, &grow->set, t);
-done:
-    return status;
+    PUSH(c->context, STAGE, &grow->set, t);
+    return STARG_OK;
 }
 
 /* u depends on a tetrahedron that was added: it waits for one less. */
@@ -138,23 +133,21 @@ static starg_status reach(const growing *c, grower *grow, uint32_t u, const guar
 /* Grows the region of g from tetrahedron t, which holds it strictly inside. */
 static starg_status grow_region(const growing *c, grower *grow, uint32_t t, const guard_pair *g,
                                 double *volume) {
-    starg_status status = STARG_OK;
     grow->now++;
     grow->set.count = 0;
     *volume = 0;
     grow->epoch[t] = grow->now;
-    STARG_TRY(add(c, grow, t, volume));
+    TRY(add(c, grow, t, volume));
     for (size_t i = 0; i < grow->set.count; i++) {
         uint32_t s = grow->set.data[i];
         for (int face = 0; face < 4; face++) {
             /* where g is strictly inside of this face, it is strictly outside of it for u */
             uint32_t u = c->mesh->neighbours[4 * (size_t)s + (size_t)face];
             if (is_free(c, u) && pair_looks_away(c, s, face, g))
-                STARG_TRY(reach(c, grow, u, g, volume));
+                TRY(reach(c, grow, u, g, volume));
         }
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* ---- climbing ---- */
@@ -281,13 +274,11 @@ done:
 }
 
 static void free_grower(starg_context *context, void *scratch) {
+    (void)context;
     grower *grow = scratch;
     if (grow == NULL)
         return;
-    starg_release(context, grow->epoch);
-    starg_release(context, grow->missing);
-    STARG_ARRAY_FREE(context, &grow->set);
-    starg_release(context, grow);
+    RELEASE(grow->epoch, grow->missing, grow->set.data, grow);
 }
 
 static starg_status make_grower(starg_context *context, void *shared, void **out) {
@@ -314,30 +305,27 @@ static bool is_member(const growing *c, uint32_t t) {
 
 /* Fills the members with the free tetrahedra that hang together with t, as a new region. */
 static starg_status gather(growing *c, uint32_t t) {
-    starg_status status = STARG_OK;
     c->regions++;
     c->members.count = 0;
     c->region[t] = c->regions;
-    STARG_PUSH(c->context, STAGE, &c->members, t);
+    PUSH(c->context, STAGE, &c->members, t);
     for (size_t i = 0; i < c->members.count; i++)
         for (size_t face = 0; face < 4; face++) {
             uint32_t u = c->mesh->neighbours[4 * (size_t)c->members.data[i] + face];
             if (!is_free(c, u) || is_member(c, u))
                 continue;
             c->region[u] = c->regions;
-            STARG_PUSH(c->context, STAGE, &c->members, u);
+            PUSH(c->context, STAGE, &c->members, u);
         }
     for (size_t i = 0; i < c->members.count; i++)
         c->running[i] = (i > 0 ? c->running[i - 1] : 0) + c->volumes[c->members.data[i]];
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A guard that sees all of the component at hand, if there is one. */
 static starg_status find_kernel(const growing *c, guard_pair *guard, bool *found) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *const meshes[2] = {c->mesh, c->image};
-    index_list faces = {0};
+    SCOPED index_list faces = {0};
     *found = true;
     for (size_t i = 0; i < c->members.count; i++)
         for (size_t face = 0; face < 4; face++) {
@@ -345,34 +333,30 @@ static starg_status find_kernel(const growing *c, guard_pair *guard, bool *found
             if (is_member(c, c->mesh->neighbours[4 * (size_t)t + face]))
                 continue;
             for (int k = 0; k < 3; k++)
-                STARG_PUSH(c->context, STAGE, &faces,
-                           c->mesh->tetrahedra[4 * (size_t)t + (size_t)TETMESH_FACE[face][k]]);
+                PUSH(c->context, STAGE, &faces,
+                     c->mesh->tetrahedra[4 * (size_t)t + (size_t)TETMESH_FACE[face][k]]);
         }
     for (int i = 0; i < 2 && meshes[i] != NULL && *found; i++) {
         const kernel_faces surface = {meshes[i]->vertices, faces.data, faces.count / 3};
         starg_kernel_result kernel;
-        STARG_TRY(kernel_find(c->context, &surface, &kernel));
+        TRY(kernel_find(c->context, &surface, &kernel));
         vec3_copy(kernel.guard, guard->at[i]);
         *found = kernel.verdict == STARG_KERNEL_INTERIOR;
     }
-done:
-    STARG_ARRAY_FREE(c->context, &faces);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_piece(grown_regions *out, growing *c, const guard_pair *guard,
                               const uint32_t *set, size_t count) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++)
         c->labels[set[i]] = (uint32_t)out->count;
     c->assigned += count;
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(c->context, STAGE, &out->guards, guard->at[0][k]);
+        PUSH(c->context, STAGE, &out->guards, guard->at[0][k]);
     for (int k = 0; k < 3 && c->image != NULL; k++)
-        STARG_PUSH(c->context, STAGE, &out->counterparts, guard->at[1][k]);
+        PUSH(c->context, STAGE, &out->counterparts, guard->at[1][k]);
     out->count++;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static const climber *best_climber(const growing *c) {
@@ -452,24 +436,21 @@ static void locate_hints(growing *c) {
 /* The regions of `former` that are kept, in their order. */
 static starg_status keep(growing *c, const grown_regions *former, const uint8_t *dropped,
                          grown_regions *out) {
-    starg_status status = STARG_OK;
-    uint32_t *numbers = NULL;
-    STARG_NEW(c->context, STAGE, numbers, former->count);
+    SCOPED uint32_t *numbers = NULL;
+    NEW(c->context, STAGE, numbers, former->count);
     for (size_t p = 0; p < former->count; p++) {
         numbers[p] = dropped[p] ? UNASSIGNED : (uint32_t)out->count;
         out->count += !dropped[p];
         for (size_t k = 3 * p; k < 3 * p + 3 && !dropped[p]; k++) {
-            STARG_PUSH(c->context, STAGE, &out->guards, former->guards.data[k]);
-            STARG_PUSH(c->context, STAGE, &out->counterparts, former->counterparts.data[k]);
+            PUSH(c->context, STAGE, &out->guards, former->guards.data[k]);
+            PUSH(c->context, STAGE, &out->counterparts, former->counterparts.data[k]);
         }
     }
     for (size_t t = 0; t < c->mesh->count; t++) {
         c->labels[t] = numbers[former->labels[t]];
         c->assigned += c->labels[t] != UNASSIGNED;
     }
-done:
-    starg_release(c->context, numbers);
-    return status;
+    return STARG_OK;
 }
 
 /* Of `former`, NULL or regions without those dropped. */
@@ -504,14 +485,9 @@ static starg_status run(growing *c, const grown_regions *former, const uint8_t *
 done:
     starg_progress_end(context);
     free_grower(context, scratch);
-    starg_release(context, c->volumes);
-    starg_release(context, c->running);
-    starg_release(context, c->region);
-    starg_release(context, c->hint_at);
-    starg_release(context, c->labels);
-    STARG_ARRAY_FREE(context, &c->members);
+    RELEASE(c->volumes, c->running, c->region, c->hint_at, c->labels, c->members.data);
     if (status != STARG_OK)
-        grown_regions_free(context, out);
+        grown_regions_free(out);
     return status;
 }
 
@@ -534,9 +510,7 @@ starg_status grow_compatible_again(starg_context *context, const starg_tetmesh *
     return run(&c, former, dropped, out);
 }
 
-void grown_regions_free(starg_context *context, grown_regions *regions) {
-    starg_release(context, regions->labels);
-    STARG_ARRAY_FREE(context, &regions->guards);
-    STARG_ARRAY_FREE(context, &regions->counterparts);
+void grown_regions_free(grown_regions *regions) {
+    RELEASE(regions->labels, regions->guards.data, regions->counterparts.data);
     *regions = (grown_regions){.count = 0};
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A first division of tetrahedra into star-shaped sets. */
-#ifndef STARG_STAR_STRICT_START_REGION_GROWING_H
-#define STARG_STAR_STRICT_START_REGION_GROWING_H
+#pragma once
 
-#include "core/context.h"
-#include "core/memory.h"
 #include "tetra/tetmesh.h"
 
 typedef struct grown_regions {
@@ -31,6 +28,4 @@ starg_status grow_compatible_regions(starg_context *context, const starg_tetmesh
 starg_status grow_compatible_again(starg_context *context, const starg_tetmesh *mesh,
                                    const starg_tetmesh *image, const grown_regions *former,
                                    const uint8_t *dropped, uint64_t round, grown_regions *out);
-void grown_regions_free(starg_context *context, grown_regions *regions);
-
-#endif
+void grown_regions_free(grown_regions *regions);

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Initial partitions. */
-#ifndef STARG_STAR_STRICT_START_START_H
-#define STARG_STAR_STRICT_START_START_H
+#pragma once
 
-#include "core/memory.h"
 #include "core/rng.h"
 #include "star/strict/partition/partition.h"
 
@@ -67,5 +65,3 @@ starg_status labelling_prepare(labelling *l);
 /* *found is false when there is no solution, and sometimes when there is one that is hard to find.
  * Another state of `rng` gives another solution. Errors: MEMORY. */
 starg_status labelling_solve(labelling *l, starg_rng *rng, bool *found);
-
-#endif

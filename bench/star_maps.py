@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures maps and morphs between the 90 ordered pairs of ten plain star-shaped solids.
+
+usage: star_maps.py STARGUARD [--turned SEED] [--detail N] [--only WORD]
+
+The solids are those of tests/cli/star_solids.py. Each pair is mapped by `map --solid` and morphed by
+`morph --method solid`, both by default, and both results are verified against B. Columns: tetrahedra; pieces;
+mean and worst ratio of singular values; keys of the morph; whether `verify` accepts map and morph; processor
+seconds of `map` and of `morph`. A pair that is refused has the reason instead. The last row counts.
+"""
+import argparse
+import itertools
+import os
+import random
+import subprocess
+import sys
+import tempfile
+
+import morph
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tests", "cli"))
+import star_solids  # noqa: E402  pylint: disable=wrong-import-position
+
+
+def attempt(program, files, out, *words):
+    """The report or None, the reason, whether it is verified, and seconds."""
+    try:
+        report, seconds = morph.seconds(program, *words)
+    except SystemExit as error:
+        return None, str(error).split(": ", 1)[1], False, 0
+    verified = subprocess.run([program, "verify", *files, out, "--quiet"], check=False,
+                              capture_output=True).returncode == 0
+    return report, "yes" if verified else "no", verified, seconds
+
+
+def measure(program, folder, files):
+    out, path = os.path.join(folder, "map.vtu"), os.path.join(folder, "path.vtu")
+    mapped, map_words, map_holds, map_seconds = attempt(program, files, out, "map", "--solid", *files, "-o", out)
+    path_report, path_words, path_holds, path_seconds = attempt(
+        program, files, path, "morph", *files, "--method", "solid", "--frames", "2", "-o",
+        os.path.join(folder, "frames"), "--certificate", path)
+    row = ["", "", "", ""]
+    if mapped is not None:
+        row = [mapped["tetrahedra"], mapped["pieces"], f"{mapped['distortion']['mean']:.2f}",
+               f"{mapped['distortion']['worst']:.1f}"]
+    row.append(path_report["solid"]["keys"] if path_report is not None else "")
+    return [*row, map_words, path_words, f"{map_seconds:.2f}", f"{path_seconds:.2f}"], map_holds, path_holds
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("starguard")
+    parser.add_argument("--turned", type=int, help="turn, move and stretch the solids at random")
+    parser.add_argument("--detail", type=int, default=1, help="finer round solids")
+    parser.add_argument("--only", default="", help="pairs whose names hold this word")
+    arguments = parser.parse_args()
+    rng = random.Random(arguments.turned) if arguments.turned is not None else None
+    print("| pair | tetrahedra | pieces | mean | worst | keys | map | morph | s | s |")
+    print("|---" + "|--:" * 5 + "|---|---|--:|--:|")
+    counts = [0, 0, 0]
+    with tempfile.TemporaryDirectory() as folder:
+        listed = star_solids.solids(rng, arguments.detail)
+        for name, solid in listed:
+            star_solids.write(os.path.join(folder, f"{name}.off"), solid)
+        for a, b in itertools.permutations([name for name, _ in listed], 2):
+            name = f"{a} to {b}"
+            if arguments.only not in name:
+                continue
+            files = [os.path.join(folder, f"{solid}.off") for solid in (a, b)]
+            row, *holds = measure(arguments.starguard, folder, files)
+            counts = [counts[0] + 1, counts[1] + holds[0], counts[2] + holds[1]]
+            print(f"| {name} | " + " | ".join(str(value) for value in row) + " |", flush=True)
+    print(f"| {counts[0]} pairs | | | | | | {counts[1]} | {counts[2]} | | |")
+
+
+if __name__ == "__main__":
+    main()

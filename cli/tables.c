@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "tables.h"
+
+#include <string.h>
+
+starg_status cli_tables_announce(cli_session *session, const cli_tables *tables) {
+    TRY(cli_announce_with_extension(session, "--table", tables->table, ".csv"));
+    TRY(cli_announce_with_extension(session, "--summary", tables->summary, ".csv"));
+    return STARG_OK;
+}
+
+/* Those of a model's file; from standard input, or of another number of faces, there are none. */
+static starg_status read_groups(cli_session *session, starg_face_groups *groups, bool *any) {
+    *any = strcmp(session->operands[0], "-") != 0;
+    if (*any)
+        TRY(starg_face_groups_read(session->context, session->operands[0], groups));
+    *any = *any && groups->face_count == starg_space_model_faces(session->solid);
+    return STARG_OK;
+}
+
+starg_status cli_tables_write(cli_session *session, const cli_tables *tables,
+                              const starg_guards *guards) {
+    starg_status status = STARG_OK;
+    starg_face_groups groups = {0};
+    bool any = false;
+    if (!cli_tables_wanted(tables))
+        return STARG_OK;
+    CLI_TRY(read_groups(session, &groups, &any));
+    const starg_face_groups *used = any ? &groups : NULL;
+    if (tables->table != NULL)
+        CLI_TRY(starg_guards_write_table(session->context, session->solid, guards, used,
+                                         cli_outputs_place(&session->outputs, tables->table)));
+    if (tables->summary != NULL)
+        CLI_TRY(starg_guards_write_summary(session->context, session->solid, guards, used,
+                                           cli_outputs_place(&session->outputs, tables->summary)));
+done:
+    starg_face_groups_free(session->context, &groups);
+    return status;
+}

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes as people have them: voxel bodies with T-junctions, solids to be united, formats of scenes."""
+import os
+import random
+import shutil
+import subprocess
+import sys
+
+from support import BUILD, SHARED, Case, main
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bench"))
+import families  # noqa: E402
+
+
+class Families(Case):
+    """Small parts of the families of bench/families.py, with its own counts of volume and area."""
+
+    def check_case(self, case, *options):
+        families.write(self.path("in.off"), case.vertices, case.faces)
+        self.run_text("repair", "in.off", "-o", "out.off", *options)
+        self.assertEqual(case.faults(*families.read(self.path("out.off"))), [])
+
+    def test_voxels(self):
+        for seed in range(12):
+            with self.subTest(seed=seed):
+                self.check_case(families.voxels(random.Random(seed), 8 + 12 * seed, seed % 2 == 1))
+
+    def test_pairs(self):
+        for seed in range(16):
+            with self.subTest(seed=seed):
+                self.check_case(families.pair(random.Random(seed)), "--union")
+
+
+class Scenes(Case):
+    """Scenes by starguard-import, and what happens without it or with broken files."""
+
+    def setUp(self):
+        super().setUp()
+        self.glb = os.path.join(SHARED, "data", "plain", "tetra.glb")
+        if not os.path.exists(os.path.join(BUILD, "starguard-import")):
+            self.skipTest("starguard-import is not built: libassimp-dev is missing")
+
+    def test_round_trip(self):
+        self.run_text("sample", "gallery", "-o", "gallery.off")
+        self.run_text("guard", "gallery.off", "-o", "g.json", "--method", "greedy", "--quiet")
+        self.run_text("export", "g.json", "-o", "gallery.glb")
+        self.run_text("check", "gallery.glb")
+
+    def test_damaged(self):
+        if not os.path.exists(self.glb):
+            self.skipTest(f"no {self.glb}")
+        with open(self.glb, "rb") as file:
+            data = file.read()
+        rng = random.Random(1)
+        for _ in range(20):
+            bytes_ = bytearray(data[:rng.randint(20, len(data))] if rng.random() < 0.3 else data)
+            for _ in range(rng.randint(1, 8)):
+                bytes_[rng.randrange(12, len(bytes_))] = rng.randrange(256)
+            self.write("bad.glb", bytes(bytes_))
+            with self.start("repair", "bad.glb", "-o", "out.off") as process:
+                process.communicate()
+            self.assertIn(process.returncode, (0, 2))
+            self.assertEqual(self.names(), ["bad.glb", "out.off"] if process.returncode == 0 else ["bad.glb"])
+            if process.returncode == 0:
+                os.remove(self.path("out.off"))
+
+    def test_missing_program(self):
+        os.makedirs(self.path("bin"))
+        shutil.copy(os.path.join(BUILD, "starguard"), self.path("bin"))
+        self.write("room.glb", b"glTF    ")
+        result = subprocess.run([self.path("bin/starguard"), "check", self.path("room.glb")], env={"PATH": "/nowhere"},
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("libassimp-dev", result.stderr)
+
+
+if __name__ == "__main__":
+    main()
