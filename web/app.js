@@ -4,9 +4,13 @@
 import { commandLine, element, facts, heading, note, say } from "../viewer/panel.js";
 import { amount, count, percent } from "../viewer/text.js";
 import "../viewer/theme.js";
+import { extension, isForeign, toPly } from "./foreign.js";
+import { guardForm, pieceForm } from "./form.js";
 import { Cancelled, Run } from "./program.js";
 import samples from "samples";
-import { join, safeName, split, stem } from "./words.js";
+import { join, quote, safeName, stem } from "./words.js";
+
+const MESHES = ["off", "obj", "ply", "stl", "vtk", "vtp", "glb", "3mf"];
 
 const at = (id) => document.getElementById(id);
 const decoder = new TextDecoder();
@@ -15,17 +19,22 @@ function button(text, act, main = false) {
     return element("button", { type: "button", className: main ? "main" : "", onclick: act }, text);
 }
 
-/** A line of options, as typed after a command. */
-function optionLine(name, hint) {
-    const input = element("input", { type: "text", placeholder: hint, spellcheck: false });
-    input.setAttribute("aria-label", name);
-    return input;
+/** A button that opens a file dialogue; `take` gets the files. */
+function picker(id, text, take) {
+    const accept = MESHES.map((each) => `.${each}`).join(",");
+    const input = element("input", { type: "file", id, className: "picker", accept, multiple: true });
+    input.addEventListener("change", () => {
+        take([...input.files]);
+        input.value = ""; // so that the same file can be taken again
+    });
+    return { input, label: element("label", { className: "button", htmlFor: id }, text) };
 }
 
 class App {
     constructor() {
         this.files = new Map(); // by name: the model and results
         this.model = null; // name of the model at work on
+        this.obstacles = []; // names of files that block the view
         this.results = []; // names of files to view, besides the model
         this.commands = [];
         this.running = null;
@@ -37,8 +46,9 @@ class App {
     // ---- panel ----
 
     build() {
-        this.picker = element("input", { type: "file", id: "picker", accept: ".off,.obj,.ply,.stl" });
-        this.picker.addEventListener("change", () => this.take(this.picker.files[0]));
+        this.modelPicker = picker("picker", "Open a mesh", (files) => this.take(files));
+        this.obstaclePicker = picker("obstacle-picker", "Add an obstacle", (files) => this.addObstacles(files));
+        this.obstacleList = element("div", { id: "obstacles" });
         this.sample = element(
             "select",
             { id: "sample" },
@@ -48,8 +58,9 @@ class App {
             ),
         );
         this.sample.addEventListener("change", () => this.takeSample(this.sample.value));
-        this.guardOptions = optionLine("Options of guard", "--prove --coverage 0.99");
-        this.pieceOptions = optionLine("Options of decompose", "--effort 100");
+        this.guardForm = guardForm();
+        this.pieceForm = pieceForm();
+        this.notice = element("div", { id: "notice" });
         this.found = element("div", { id: "found" });
         this.guarded = element("div", { id: "guarded" });
         this.divided = element("div", { id: "divided" });
@@ -62,18 +73,24 @@ class App {
             "div",
             { id: "steps" },
             heading("Guards"),
-            element("div", { className: "step" }, this.place, this.guardOptions),
+            this.guardForm.node,
+            this.obstaclePicker.input,
+            this.obstaclePicker.label,
+            this.obstacleList,
+            this.place,
             this.guarded,
             heading("Star-shaped pieces"),
-            element("div", { className: "step" }, this.divide, this.pieceOptions),
+            this.pieceForm.node,
+            this.divide,
             this.divided,
         );
         this.kept = element("div", {}, heading("Files"), this.fileList);
         this.same = element("div", {}, heading("The same on a command line"), this.commandList);
         at("views").append(
-            element("label", { className: "button", htmlFor: "picker" }, "Open a mesh"),
-            this.picker,
+            this.modelPicker.input,
+            this.modelPicker.label,
             this.sample,
+            this.notice,
             this.found,
             this.steps,
             this.kept,
@@ -101,9 +118,13 @@ class App {
         at("common").hidden = !busy;
         at("welcome").hidden = busy || this.model !== null;
         at("view").hidden = this.model === null;
-        for (const node of [this.place, this.divide, this.repair, this.sample, this.picker])
-            node.disabled = busy;
+        const controls = [this.place, this.divide, this.repair, this.sample];
+        controls.push(this.modelPicker.input, this.obstaclePicker.input);
+        for (const node of controls) node.disabled = busy;
         at("subtitle").textContent = this.model ?? "in the browser";
+        this.obstacleList.replaceChildren(
+            ...this.obstacles.map((name) => button(`Remove ${name}`, () => this.removeObstacle(name))),
+        );
         this.fileList.replaceChildren(...[...this.files].map(([name, bytes]) => download(name, bytes)));
     }
 
@@ -122,7 +143,7 @@ class App {
         try {
             const result = await this.running.done;
             for (const [name, bytes] of result.files) this.files.set(name, bytes);
-            if (told && result.status === 0) this.tell(words);
+            if (told && result.status === 0) this.tell(join(words));
             return result;
         } catch (error) {
             if (!(error instanceof Cancelled)) throw error;
@@ -134,8 +155,7 @@ class App {
         }
     }
 
-    tell(words) {
-        const line = join(words);
+    tell(line) {
         this.commandList.append(commandLine(line));
         this.commands.push(line);
     }
@@ -158,14 +178,73 @@ class App {
         window.addEventListener("drop", (event) => {
             event.preventDefault();
             sign.hidden = true;
-            this.take(event.dataTransfer.files[0]);
+            this.take([...event.dataTransfer.files]);
         });
     }
 
-    async take(file) {
-        if (!file || this.running) return;
+    /** Says why something that was dropped or picked is not taken; without a reason, nothing. */
+    tellOff(reason = "") {
+        this.notice.replaceChildren(...(reason ? [element("p", { className: "note warn" }, reason)] : []));
+        if (reason) say(reason);
+    }
+
+    /** The meshes among the files, read; says what is left out. */
+    async read(files, most) {
+        const isMesh = ({ name }) => MESHES.includes(extension(name));
+        const meshes = files.filter(isMesh).slice(0, most);
+        if (this.running) {
+            this.tellOff("A run is going on: wait for its end, or cancel it.");
+            return [];
+        }
+        if (files.length === 0) this.tellOff("What was dropped is no file: drop a mesh from a folder of this machine.");
+        else if (meshes.length === 0)
+            this.tellOff(`${files[0].name} is not taken: a mesh is a file named ${MESHES.map((each) => `.${each}`).join(", ")}.`);
+        else if (meshes.length < files.length)
+            this.tellOff(`Of ${files.length} files ${meshes.map(({ name }) => name).join(", ")} is taken.`);
+        else this.tellOff();
+        const read = [];
+        for (const file of meshes) {
+            const name = safeName(file.name);
+            try {
+                const bytes = new Uint8Array(await file.arrayBuffer());
+                read.push(isForeign(name) ? await this.convert(name, bytes) : { name, bytes, lines: [] });
+            } catch (error) {
+                this.tellOff(`${file.name} cannot be read: ${error.message}`);
+            }
+        }
+        return read;
+    }
+
+    /** What starguard-import makes of a scene on a machine. */
+    async convert(name, bytes) {
+        const file = `${stem(name)}.ply`;
+        return { name: file, bytes: await toPly(name, bytes), lines: [importLine(name, file)] };
+    }
+
+    async take(files) {
+        const [model] = await this.read(files, 1);
+        if (model === undefined) return;
         this.sample.value = "";
-        await this.open(safeName(file.name), new Uint8Array(await file.arrayBuffer()), []);
+        await this.open(model.name, model.bytes, model.lines);
+    }
+
+    async addObstacles(files) {
+        for (const { name, bytes, lines } of await this.read(files, Infinity)) {
+            if (name === this.model) {
+                this.tellOff(`${name} is the model: an obstacle needs another name.`);
+                continue;
+            }
+            this.files.set(name, bytes);
+            if (!this.obstacles.includes(name)) this.obstacles.push(name);
+            lines.forEach((line) => this.tell(line));
+        }
+        this.show();
+    }
+
+    removeObstacle(name) {
+        this.obstacles = this.obstacles.filter((each) => each !== name);
+        this.files.delete(name);
+        this.show();
     }
 
     async takeSample(name) {
@@ -173,13 +252,15 @@ class App {
         const file = `${name}.off`,
             words = ["sample", name, "-o", file];
         this.forget();
+        this.tellOff();
         const result = await this.run(words, [file], false);
-        if (result?.status === 0) await this.open(file, this.files.get(file), [words]);
+        if (result?.status === 0) await this.open(file, this.files.get(file), [join(words)]);
         else if (result) this.complain(this.found, result);
     }
 
     forget() {
         this.files.clear();
+        this.obstacles = [];
         this.results = [];
         this.commands = [];
         this.model = null;
@@ -191,7 +272,8 @@ class App {
         this.forget();
         this.files.set(name, bytes);
         this.model = name;
-        made.forEach((words) => this.tell(words));
+        this.made = made;
+        made.forEach((line) => this.tell(line));
         const result = await this.run(["check", name, "--json"], [], false);
         if (result === null) return;
         if (result.printed === "" || JSON.parse(result.printed).error) {
@@ -201,7 +283,7 @@ class App {
             this.show();
             return;
         }
-        this.tell(["check", name]);
+        this.tell(join(["check", name]));
         this.showFindings(JSON.parse(result.printed), result);
         await this.view();
     }
@@ -227,20 +309,17 @@ class App {
     async repairModel() {
         const file = `${stem(this.model)}-repaired.off`;
         const words = ["repair", this.model, "-o", file];
-        const made = [...this.made(), words];
+        const made = [...this.made, join(words)];
         const result = await this.run(words, [file], false);
         if (result?.status === 0) await this.open(file, this.files.get(file), made);
         else if (result) this.complain(this.found, result);
     }
 
-    made() {
-        return this.sample.value ? [["sample", this.sample.value, "-o", this.model]] : [];
-    }
-
     // ---- guards and pieces ----
 
     async placeGuards() {
-        const words = ["guard", this.model, "-o", "guards.json", ...split(this.guardOptions.value)];
+        const words = ["guard", this.model, "-o", "guards.json", ...this.guardForm.words()];
+        for (const name of this.obstacles) words.push("--obstacles", name);
         const outputs = ["guards.json", ...namedOutputs(words)];
         const result = await this.run(words, outputs);
         if (result === null) return;
@@ -252,7 +331,7 @@ class App {
 
     async cutPieces() {
         const words = ["decompose", this.model, "-o", "pieces.vtk", "--report", "pieces.json"];
-        words.push(...split(this.pieceOptions.value));
+        words.push(...this.pieceForm.words());
         const result = await this.run(words, ["pieces.vtk", "pieces.json", ...namedOutputs(words)]);
         if (result === null) return;
         if (result.status !== 0) return this.complain(this.divided, result);
@@ -307,7 +386,7 @@ function guardFacts(result) {
             count(everywhere),
             ...(result.optimal_everywhere ? ["anywhere: optimal", "good"] : ["at least, anywhere"]),
         ]);
-    rows.push(["Of candidates", count(result.lower_bound), "needed at least"]);
+    else rows.push(["Needed", count(result.lower_bound), "at least, of its candidates"]);
     rows.push(["Area seen", percent(result.coverage.area)]);
     return facts(rows);
 }
@@ -325,9 +404,13 @@ function pieceFacts(result) {
     ]);
 }
 
+function importLine(file, made) {
+    return `starguard-import ${quote(file)} > ${quote(made)}`;
+}
+
 /** Files that options name as outputs. */
 function namedOutputs(words) {
-    const outputs = ["--certificate", "--marks", "--picture", "--poses"];
+    const outputs = ["--certificate", "--curve", "--leak", "--marks", "--matrix", "--picture", "--poses", "--summary", "--table"];
     return words.filter((_, i) => i > 0 && outputs.includes(words[i - 1]));
 }
 

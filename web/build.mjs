@@ -43,6 +43,7 @@ async function pageScript() {
     const { samples } = JSON.parse(starguard(["sample", "--list", "--json"]));
     const result = await build({
         entryPoints: [path.join(here, "app.js")],
+        nodePaths: [path.resolve(modules, "node_modules")],
         plugins: [
             given({
                 "worker-text": { contents: await workerScript(), loader: "text" },
@@ -86,7 +87,7 @@ const style = await pageStyle();
 const viewer = viewerHashes();
 const policy = [
     "default-src 'none'",
-    "img-src data:",
+    "img-src data: blob:",
     `style-src ${hashOf(style)} ${viewer.style}`,
     `script-src ${hashOf(script)} ${viewer.script} 'wasm-unsafe-eval'`,
     "worker-src blob:",

@@ -66,6 +66,19 @@ async function press(page, name) {
     await isIdle(page);
 }
 
+/** Drops files, given by name and content, on the page. */
+async function drop(page, files) {
+    const data = await page.evaluateHandle((all) => {
+        const carried = new DataTransfer();
+        for (const [name, content] of all)
+            carried.items.add(new File([Uint8Array.from(content)], name));
+        return carried;
+    }, files.map(([name, content]) => [name, [...Buffer.from(content)]]));
+    await page.dispatchEvent("#stage", "drop", { dataTransfer: data });
+}
+
+const noticeOf = (page) => page.locator("#notice").innerText();
+
 /** Keeps a file of the page in the folder, as a visitor does. */
 async function keep(page, name, as) {
     const waiting = page.waitForEvent("download");
@@ -143,12 +156,7 @@ test("a dropped mesh with a hole: findings, and its repair", async () => {
             .stdout,
     );
     await look(async (page) => {
-        const data = await page.evaluateHandle((content) => {
-            const carried = new DataTransfer();
-            carried.items.add(new File([content], "<b>open</b>.off"));
-            return carried;
-        }, readFileSync(fileOf("open.off"), "utf8"));
-        await page.dispatchEvent("#stage", "drop", { dataTransfer: data });
+        await drop(page, [["<b>open</b>.off", readFileSync(fileOf("open.off"))]]);
         // a name has no folders: what is before the last slash is cut off
         await page.waitForFunction(() => window.starguard.model === "b>.off");
         await isIdle(page);
@@ -157,6 +165,131 @@ test("a dropped mesh with a hole: findings, and its repair", async () => {
         assert.match(found, /not a usable solid/);
         await press(page, "Repair it");
         assert.match(await page.locator("#found").innerText(), /Solid\s+yes/);
+    });
+});
+
+/** A GLB of boxes: nodes with a name, a material, a middle and half sizes; the first is turned inside out. */
+function glbOf(boxes) {
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, i >> 2].map((bit) => 2 * bit - 1));
+    const quads = [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5];
+    const triangles = [0, 4, 8, 12, 16, 20].flatMap((q) =>
+        [0, 1, 2, 0, 2, 3].map((k) => quads[q + k]));
+    const binary = Buffer.concat([
+        Buffer.from(Float32Array.from(corners.flat()).buffer),
+        Buffer.from(Uint16Array.from(triangles).buffer),
+    ]);
+    const json = {
+        asset: { version: "2.0" },
+        scene: 0,
+        scenes: [{ nodes: boxes.map((_, i) => i) }],
+        nodes: boxes.map(({ name, middle, half }, i) => ({
+            name,
+            mesh: i,
+            translation: middle,
+            scale: i === 0 ? [-half[0], half[1], half[2]] : half,
+            rotation: [0, 0, Math.SQRT1_2, Math.SQRT1_2],
+        })),
+        materials: boxes.map(({ material }) => ({ name: material })),
+        meshes: boxes.map((_, i) => ({
+            primitives: [{ attributes: { POSITION: 0 }, indices: 1, material: i }],
+        })),
+        accessors: [
+            { bufferView: 0, componentType: 5126, count: 8, type: "VEC3", min: [-1, -1, -1], max: [1, 1, 1] },
+            { bufferView: 1, componentType: 5123, count: 36, type: "SCALAR" },
+        ],
+        bufferViews: [
+            { buffer: 0, byteOffset: 0, byteLength: 96 },
+            { buffer: 0, byteOffset: 96, byteLength: 72 },
+        ],
+        buffers: [{ byteLength: binary.length }],
+    };
+    let text = JSON.stringify(json);
+    text = text.padEnd(4 * Math.ceil(text.length / 4));
+    const head = Buffer.alloc(20),
+        chunk = Buffer.alloc(8);
+    head.write("glTF");
+    head.writeUInt32LE(2, 4);
+    head.writeUInt32LE(28 + text.length + binary.length, 8);
+    head.writeUInt32LE(text.length, 12);
+    head.write("JSON", 16);
+    chunk.writeUInt32LE(binary.length, 0);
+    chunk.write("BIN\0", 4);
+    return Buffer.concat([head, Buffer.from(text), chunk, binary]);
+}
+
+const hall = [
+    { name: "Hall of glass", material: "Plaster", middle: [3, 4, 1.5], half: [4, 3, 1.5] },
+    { name: "Crate", material: "Wood", middle: [3, 4, 0.5], half: [0.5, 0.5, 0.5] },
+];
+const byPlace = (a, b) => a[0] - b[0] || a[1] - b[1] || a[2] - b[2];
+
+test("a dropped GLB, guarded with a field of view, is what starguard-import makes of it", async () => {
+    writeFileSync(fileOf("hall.glb"), glbOf(hall));
+    await look(async (page) => {
+        await drop(page, [["hall.glb", readFileSync(fileOf("hall.glb"))]]);
+        await page.waitForFunction(() => window.starguard.model === "hall.ply");
+        await isIdle(page);
+        await page.selectOption("select[aria-label='Guards stand']", "among loose faces");
+        await page.selectOption("select[aria-label='To be seen']", "large faces in parts");
+        await page.fill("input[aria-label='Field of view']", "90,60");
+        await page.fill("input[aria-label='Options of guard']", "--see 'Hall of glass' --from 1,1,1 --effort quick");
+        await press(page, "Place guards");
+        await keep(page, "guards.json", "web.json");
+        await keep(page, "hall.ply", "hall.ply");
+        native("verify", "hall.ply", "web.json", "--quiet");
+        assert.ok(readJson("web.json").guards.length > 1);
+        assert.deepEqual(await page.locator("#commands code").allInnerTexts(), [
+            "starguard-import hall.glb > hall.ply",
+            "starguard check hall.ply",
+            "starguard guard hall.ply -o guards.json --soup --patch auto --fov 90,60 --see 'Hall of glass' --from 1,1,1 --effort quick",
+        ]);
+    });
+    for (const name of ["hall.glb", "hall.ply"]) native("repair", name, "-o", `${name}.obj`, "--keep-all", "--quiet");
+    const places = (name) =>
+        readFileSync(fileOf(`${name}.obj`), "utf8").split("\n").filter((line) => line.startsWith("v "))
+            .map((line) => line.split(" ").slice(1).map(Number)).sort(byPlace);
+    assert.deepEqual(places("hall.ply"), places("hall.glb"));
+    const volume = (name) => JSON.parse(native("check", name, "--json")).volume;
+    assert.equal(volume("hall.ply"), volume("hall.glb"));
+});
+
+test("a second mesh is an obstacle, and can be taken away", async () => {
+    const file = sample("l-room");
+    writeFileSync(fileOf("crate.glb"), glbOf([{ ...hall[1], middle: [0.3, 0.3, 0.3], half: [0.1, 0.1, 0.1] }]));
+    await look(async (page) => {
+        await open(page, file);
+        await page.setInputFiles("#obstacle-picker", fileOf("crate.glb"));
+        await page.getByRole("button", { name: "Remove crate.ply" }).waitFor();
+        await press(page, "Place guards");
+        await keep(page, "guards.json", "web.json");
+        await keep(page, "crate.ply", "crate.ply");
+        assert.equal(readJson("web.json").obstacles.length, 1);
+        native("verify", file, "web.json", "--quiet");
+        await page.getByRole("button", { name: "Remove crate.ply" }).click();
+        await press(page, "Place guards");
+        await keep(page, "guards.json", "web.json");
+        assert.equal(readJson("web.json").obstacles?.length ?? 0, 0);
+    });
+});
+
+test("what is dropped and not taken is said", async () => {
+    const file = sample("octopus", "--vertices", "3000");
+    await look(async (page) => {
+        await drop(page, [["picture.png", "no mesh"]]);
+        assert.match(await noticeOf(page), /picture\.png is not taken: a mesh is a file named \.off, /);
+        await drop(page, []);
+        assert.match(await noticeOf(page), /no file/);
+        await drop(page, [["broken.glb", "glTF that is none"]]);
+        await page.waitForFunction(() => document.querySelector("#notice").textContent.includes("cannot be read"));
+        await drop(page, [[file, readFileSync(fileOf(file))], [file, readFileSync(fileOf(file))]]);
+        assert.match(await noticeOf(page), /Of 2 files octopus\.off is taken/);
+        await page.waitForFunction(() => window.starguard.model === "octopus.off");
+        await isIdle(page);
+        await page.getByRole("button", { name: "Place guards" }).click();
+        await drop(page, [[file, "OFF"]]);
+        assert.match(await noticeOf(page), /A run is going on/);
+        await page.getByRole("button", { name: "Cancel" }).click();
+        await isIdle(page);
     });
 });
 
