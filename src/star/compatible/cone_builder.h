@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Pieces bounded by triangles that lie in two places at once (cones.c cuts them, peel.c peels
+ * them). */
+#pragma once
+
+#include "core/context.h"
+#include "core/rng.h"
+#include "geometry/bvh.h"
+#include "star/compatible/twin_region.h"
+#include "star/strict/search/search.h"
+
+#define NOWHERE UINT32_MAX
+
+typedef STARG_ARRAY(uint32_t) number_list;
+
+typedef struct cone_piece {
+    number_list triangles;
+    int attempts;
+    bool done;
+    double centers[2][3];
+} cone_piece;
+
+typedef struct cone_builder {
+    starg_context *context;
+    STARG_ARRAY(double) places[2];  /* x 3 */
+    STARG_ARRAY(number_list) about; /* per vertex: triangles; some have left it */
+    number_list corners;            /* x 3 */
+    number_list sides;              /* x 2: the pieces before and behind a triangle, or NOWHERE */
+    STARG_ARRAY(cone_piece) pieces;
+    STARG_ARRAY(double) heights; /* per vertex, of the piece that is cut */
+    region_scratch scratch;
+    starg_rng rng;
+    size_t work;   /* faces of pieces for which cuts were sought, in all rounds */
+    int first_end; /* the place in which pieces without a kernel in either are cut first */
+} cone_builder;
+
+/* A directed edge of a piece's boundary, and the triangle to its left. */
+typedef struct side_edge {
+    uint64_t edge;
+    uint32_t triangle;
+} side_edge;
+
+typedef STARG_ARRAY(side_edge) edge_list;
+
+/* Where a cut passes: a vertex, or a point of an edge. */
+typedef struct cut_node {
+    uint32_t from, to; /* NOWHERE: at the vertex */
+    double share;      /* of the way */
+} cut_node;
+
+/* Loops, with what is above on the left. */
+typedef struct cut_loops {
+    STARG_ARRAY(cut_node) nodes; /* one loop after the other */
+    number_list lengths;
+    STARG_ARRAY(double) rooms; /* of hubs, the least of both places; 0: there is none inside */
+} cut_loops;
+
+/* A loop in one place. */
+typedef struct loop_places {
+    STARG_ARRAY(double) points; /* x 3 */
+    double normal[3], mean[3], extent;
+} loop_places;
+
+void cones_free(cone_builder *b) STARG_PRIVATE(cones_free);
+/* Where a vertex is in one of both places. */
+const double *cones_place_of(const cone_builder *b, int end, uint32_t vertex)
+    STARG_PRIVATE(cones_place_of);
+uint32_t cones_side(const cone_builder *b, uint32_t triangle, size_t side)
+    STARG_PRIVATE(cones_side);
+/* The corners of a triangle, counter-clockwise seen from outside of the piece. */
+void cones_corners_of(const cone_builder *b, uint32_t triangle, uint32_t which, uint32_t out[3])
+    STARG_PRIVATE(cones_corners_of);
+starg_status cones_add_vertex(cone_builder *b, const double from[2][3], uint32_t *out)
+    STARG_PRIVATE(cones_add_vertex);
+starg_status cones_add_triangle(cone_builder *b, const uint32_t corners[3], const uint32_t sides[2])
+    STARG_PRIVATE(cones_add_triangle);
+/* Divides an edge in all its triangles; `share` of the way from u to v. */
+starg_status cones_split_edge(cone_builder *b, uint32_t u, uint32_t v, double share)
+    STARG_PRIVATE(cones_split_edge);
+/* A new piece without triangles. */
+starg_status cones_open_piece(cone_builder *b, int attempts, uint32_t *out)
+    STARG_PRIVATE(cones_open_piece);
+/* Corners of all triangles of a piece, outward. */
+starg_status cones_list_faces(const cone_builder *b, uint32_t which, number_list *out)
+    STARG_PRIVATE(cones_list_faces);
+/* Heights of vertices over a plane of one place. */
+void cones_find_heights(cone_builder *b, int end, const number_list *faces, const double normal[3],
+                        const double point[3], double *out) STARG_PRIVATE(cones_find_heights);
+/* Heights over a plane that leaves less of the piece unseen in one place, if one is found. */
+starg_status cones_search_plane(cone_builder *b, uint32_t which, int end, const number_list *faces,
+                                double *heights, bool *found) STARG_PRIVATE(cones_search_plane);
+/* Heights over a random plane, between two of the corners. */
+void cones_draw_plane(cone_builder *b, int end, const number_list *faces, double *heights)
+    STARG_PRIVATE(cones_draw_plane);
+/* Cuts near an end of an edge go through it. */
+void cones_snap(const number_list *faces, double *heights) STARG_PRIVATE(cones_snap);
+void cones_free_loops(cut_loops *loops) STARG_PRIVATE(cones_free_loops);
+/* All directed edges of a piece, ascending. */
+starg_status cones_list_edges(const cone_builder *b, uint32_t which, edge_list *out)
+    STARG_PRIVATE(cones_list_edges);
+/* The triangle across an edge, or NOWHERE. */
+uint32_t cones_across(const edge_list *edges, uint32_t u, uint32_t v) STARG_PRIVATE(cones_across);
+/* Follows the cut at height 0. *simple: there is one, and no node is passed twice. */
+starg_status cones_find_loops(const cone_builder *b, uint32_t which, const edge_list *edges,
+                              const double *heights, cut_loops *out, bool *simple)
+    STARG_PRIVATE(cones_find_loops);
+/* A loop in one place. */
+starg_status cones_place_loop(const cone_builder *b, int end, const cut_node *nodes, size_t count,
+                              loop_places *out) STARG_PRIVATE(cones_place_loop);
+/* Two directions across a unit normal. */
+void cones_axes_across(const double normal[3], double axes[2][3]) STARG_PRIVATE(cones_axes_across);
+/* A point from which the loop, seen along its normal, is passed to the left: the one farthest from
+ * the lines of its edges. *room: its distance, over the extent; at most 0: there is none. */
+starg_status cones_find_hub(cone_builder *b, const loop_places *loop, double hub[3], double *room)
+    STARG_PRIVATE(cones_find_hub);
+/* Is a hub inside, and sees it all nodes of its loop? */
+bool cones_is_inside(const bvh *tree, const loop_places *loop, const double hub[3])
+    STARG_PRIVATE(cones_is_inside);
+/* What is reached from the left side of a loop without crossing it goes to piece `fresh`. */
+starg_status cones_part(cone_builder *b, uint32_t which, const edge_list *edges,
+                        const cut_node *loop, size_t count, uint32_t fresh)
+    STARG_PRIVATE(cones_part);
