@@ -36,11 +36,11 @@
  *    of G near y are hidden, and with 1 all of G is, as no point inside lies on a patch.
  * 5. f. Patches grow over faces that do not hold v, as far as those that do. Only points of c
  *    matter whose directions from v lead into the model; by 1 the hidden ones are an open and
- * closed part of these. Let H be a connected part of them. Unless H is all of c, its closure has a
- *    direction along a face t around v; beyond the far edge of t the neighbour, strictly on the
- *    inner side of t, begins a patch that closes, and t does not meet c. So points of H next to it
- *    are hidden, and all of H is. If H is all of c, the centre is hidden, whose segment begins
- *    outside the model or meets a patch.
+ *    closed part of these. Let H be a connected part of them. Unless H is all of c, its closure
+ *    has a direction along a face t around v; beyond the far edge of t the neighbour, strictly on
+ *    the inner side of t, begins a patch that closes, and t does not meet c. So points of H next
+ *    to it are hidden, and all of H is. If H is all of c, the centre is hidden, whose segment
+ *    begins outside the model or meets a patch.
  * 6. o. No face meets the box, so it is inside or outside as a whole; its centre has no winding
  *    number above 0.
  * 7. c. The distance of the middle from the surface and half of the diagonal are less than the
