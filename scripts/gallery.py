@@ -115,7 +115,7 @@ def entry(program, name, title, before, command, notice):
     shown = "\n".join(f"starguard {words}" for words in [*first, command])
     wrapped = textwrap.fill(text, 110, break_on_hyphens=False)
     return (f"## {title}\n\n![{html.escape(title)}](pictures/gallery/{name}.png)\n\n"
-            f"<!-- not run: scripts/gallery.py runs it -->\n```sh\n{shown}\n```\n\n{wrapped}\n")
+            f"<!-- not run: by gallery.py -->\n```sh\n{shown}\n```\n\n{wrapped}\n")
 
 
 def shrunk(path):
