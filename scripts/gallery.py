@@ -31,7 +31,7 @@ ENTRIES = [
     ("guards", "A hall that four walls of niches make hard to watch", ["sample gallery -o gallery.off"],
      "guard gallery.off -o guards.json --picture guards.png",
      "{guards} guards see every face of the hall. The lower bound is {lower bound}: if both agree, no fewer of the "
-     "candidates would do. Between columns a guard stands where it looks into as many niches as possible."),
+     "candidates would do."),
     ("cameras", "Five cameras", ["sample gallery --vertices 1000 -o gallery.off"],
      "guard gallery.off --max-guards 5 --cone 90 -o cameras.json --picture cameras.png",
      "Cameras see 90 degrees, not all around. The command asks for the best five, and bounds what any five of the "
@@ -54,8 +54,7 @@ ENTRIES = [
      "degrees that reach 10 metres see nine tenths of it; red is the rest."),
     ("scan", "Scanning a part from outside", ["sample plate --vertices 1000 -o part.off"],
      "guard part.off --outside --standoff 1,3 -o scan.json --picture scan.png",
-     "Guards stand outside, between 1 and 3 units from the part: places for a scanner. The six holes are what makes it "
-     "need more than a few."),
+     "Guards stand outside, between 1 and 3 units from the part: places for a scanner."),
     ("pieces", "Star-shaped pieces of a horse", ["sample horse -o horse.off"],
      "decompose horse.off -o pieces.vtk --picture pieces.png",
      "{pieces} pieces, {star-shaped} star-shaped: each is seen as a whole by a guard inside it, which is proven. Cuts run "
@@ -67,7 +66,7 @@ ENTRIES = [
     ("describe", "What a dog is, to a database", ["sample dog --vertices 2000 -o dog.off"],
      "describe dog.off -o dog.json --picture dog.png",
      "A descriptor holds the guards of a quick decomposition, what each of them sees in all directions, and which are "
-     "neighbours. Models are compared by it, whatever their pose."),
+     "neighbours."),
     ("matrix", "Distances of eighteen animals",
      [f"sample {animal} --pose {pose} --vertices 500 -o {animal}_{pose}.off"
       for animal in ("bird", "cat", "dog", "giraffe", "horse", "human") for pose in (0, 1, 2)]
@@ -76,7 +75,7 @@ ENTRIES = [
         "human_0.off human_1.off human_2.off"],
      "db matrix shapes.db -o matrix.csv --picture matrix.png",
      "Three poses of each of six animals, in the order of their names; black is similar. The blocks along the diagonal are "
-     "poses of one animal. The greys off it tell who else is alike."),
+     "poses of one animal."),
     ("morph", "A horse changes its pose",
      ["sample horse --pose 0 --vertices 2000 -o a.off", "sample horse --pose 2 --vertices 2000 -o b.off"],
      "morph a.off b.off --frames 5 -o frames --picture morph.png",
@@ -115,7 +114,7 @@ def entry(program, name, title, before, command, notice):
     shown = "\n".join(f"starguard {words}" for words in [*first, command])
     wrapped = textwrap.fill(text, 110, break_on_hyphens=False)
     return (f"## {title}\n\n![{html.escape(title)}](pictures/gallery/{name}.png)\n\n"
-            f"<!-- not run: scripts/gallery.py runs it -->\n```sh\n{shown}\n```\n\n{wrapped}\n")
+            f"<!-- not run: by gallery.py -->\n```sh\n{shown}\n```\n\n{wrapped}\n")
 
 
 def shrunk(path):

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Checks stated reasons why something is hidden from a box; docs/verification.md has the proofs.
+/* Checks stated reasons why something is hidden from a box; docs/formats.md lists them.
  * Independent of the engine that finds reasons (visibility/box.h): only one box is rounded, the
  * part of a box behind the plane of a face, and exact signs then show that it contains all of that
  * part. Whatever the engine decides with certainty is decided the same way here, so its reasons
@@ -12,6 +12,39 @@
  * of a face (verify/signs.h), so that the proofs hold for it as they stand: they use of v only that
  * it is strictly beside the faces of a patch. But s and f, which look at the faces around v, are of
  * vertices alone. The range is that to the doubles next to v, as docs/visibility.md defines it.
+ *
+ * Why the reasons suffice. Let c be the box, cut to the bounding box of the model (with a capital
+ * letter: a box that exact signs show to hold all of c on the inner side of the face, from where
+ * alone the face is seen). A patch grows from a face over every edge that is not certain to miss
+ * the shaft. It closes if v is strictly on the same side of all its faces.
+ *
+ * 1. A patch that closes hides open parts. Let a segment from v to a point p of c meet the patch in
+ *    x, not in p. The faces at x cover all directions near that of x: a face around its inside; two
+ *    faces at an edge, which lie on different sides of it as seen from v because both turn the same
+ *    side to v; the whole fan at a corner, all of whose edges meet the shaft in x. So points of c
+ *    near p are hidden as well. And the set of hidden points is closed, as the patch is.
+ * 2. p. No face of the patch meets c, so by 1 the hidden points of c are an open and closed part of
+ *    c. The centre is one of them, and c is connected: all are.
+ * 3. s. Around v the faces cut the sphere of directions along a simple closed curve. Planes keep
+ *    the directions to c off it, so either all lead into the model or none. That to the centre does
+ *    not: no face around v has the centre on its inner side, or an arc from it crosses first a face
+ *    that has it on the outer side. So every segment from c inside the model leaves it before v.
+ * 4. e. Let G be a connected part of c inside the model. If the surface did not touch its closure,
+ *    G would be all of c, and no face would meet c. So the closure has a point y on a face that
+ *    meets c, and this face is in a patch that closes with v on the outer side. Seen from v, the
+ *    faces at y cover all directions about y once, with the inside of the model behind them: points
+ *    of G near y are hidden, and with 1 all of G is, as no point inside lies on a patch.
+ * 5. f. Patches grow over faces that do not hold v, as far as those that do. Only points of c
+ *    matter whose directions from v lead into the model; by 1 the hidden ones are an open and
+ *    closed part of these. Let H be a connected part of them. Unless H is all of c, its closure
+ *    has a direction along a face t around v; beyond the far edge of t the neighbour, strictly on
+ *    the inner side of t, begins a patch that closes, and t does not meet c. So points of H next
+ *    to it are hidden, and all of H is. If H is all of c, the centre is hidden, whose segment
+ *    begins outside the model or meets a patch.
+ * 6. o. No face meets the box, so it is inside or outside as a whole; its centre has no winding
+ *    number above 0.
+ * 7. c. The distance of the middle from the surface and half of the diagonal are less than the
+ *    clearance. Both are rounded; a two-thousandth of the clearance is left for that.
  *
  * Cost of a reason: the faces of a patch within the shaft, some 100 ns each. */
 #include "verify/everywhere.h"
@@ -279,7 +312,7 @@ static bool directions_miss(const shaft *s, const double a[3], const double b[3]
 
 /* ---- patches ---- */
 
-/* How a flood fails, or stops: see docs/verification.md. */
+/* How a flood fails, or stops: see the head of this file. */
 typedef enum flood_kind { PATCH, FOLD, ENTRY } flood_kind;
 
 static bool has_corner(const verify_surface *surface, uint32_t face, uint32_t vertex) {

@@ -263,9 +263,11 @@ class Pieces(support.Case):
         self.run_text("verify", "none.off", "p.json", "p.vtk", status=2)
 
     def test_keys_are_documented(self):
-        with open(os.path.join(os.path.dirname(__file__), "../../docs/formats.md"),
-                  encoding="utf-8") as file:
-            text = file.read()
+        text = ""
+        for page in [os.path.join(os.path.dirname(__file__), "../../docs/formats.md"),
+                     os.path.join(support.BUILD, "docs/fields.md")]:
+            with open(page, encoding="utf-8") as file:
+                text += file.read()
         result = self.run_json("verify", "m.off", "p.json", "p.vtk")["results"][0]
         for key in list(json.loads(report())) + list(result):
             self.assertRegex(text, rf"`[^`]*\b{key}\b[^`]*`")

@@ -5,6 +5,7 @@ A block marked `sh` is run, all blocks of a page in one folder in their order (i
 names that the pages use, see fixtures.py). In a block marked `console`, lines that begin with "$ " are
 run, and the lines below have to be among what comes out, in their order. A block that cannot be run
 here has a comment <!-- not run: REASON --> before it."""
+import csv
 import glob
 import os
 import re
@@ -107,6 +108,19 @@ class Pages(unittest.TestCase):
                 self.assertTrue(os.path.exists(os.path.join(SOURCE, path)), f"{page}: {path}")
             for test in re.findall(r"`((?:unit|property)/test_\w+)`", text):
                 self.assertTrue(os.path.exists(f"{SOURCE}/tests/{test}.c"), f"{page}: {test}")
+
+    def test_tables(self):
+        """Each row of a table of docs/benchmarks has its columns, and a page links to the table."""
+        links = {os.path.normpath(os.path.join(os.path.dirname(page), target))
+                 for page in PAGES for target in re.findall(r"\]\(([^)#\s]*\.csv)\)", read(page))}
+        tables = sorted(glob.glob(os.path.join(SOURCE, "docs", "benchmarks", "*")))
+        self.assertTrue(tables)
+        for path in tables:
+            self.assertIn(os.path.relpath(path, SOURCE), links)
+            with open(path, encoding="utf-8", newline="") as file:
+                head, *rows = csv.reader(file)
+            self.assertTrue(rows and len(set(head)) == len(head) and all(head), path)
+            self.assertEqual({len(row) for row in rows}, {len(head)}, path)
 
     def test_every_page_is_in_the_index(self):
         """docs/README.md names all pages beside it."""
