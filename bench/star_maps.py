@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures maps and morphs between the 90 ordered pairs of ten plain star-shaped solids.
 
-usage: star_maps.py STARGUARD [--turned SEED] [--detail N] [--only WORD]
+usage: star_maps.py STARGUARD [--turned SEED] [--detail N] [--only WORD] [--balls N]
 
 The solids are those of tests/cli/star_solids.py. Each pair is mapped by `map --solid` and morphed by
 `morph --method solid`, both by default, and both results are verified against B. Columns: tetrahedra; pieces;
 mean and worst ratio of singular values; keys of the morph; whether `verify` accepts map and morph; processor
-seconds of `map` and of `morph`. A pair that is refused has the reason instead. The last row counts.
+seconds of `map` and of `morph`. --balls takes N random pairs of other plain solids without holes instead, trees
+of cubes, spiked prisms, combs and piles of rings, and maps only. A pair that is refused has the reason instead. The last row counts.
 """
 import argparse
 import itertools
@@ -48,13 +49,41 @@ def measure(program, folder, files):
     return [*row, map_words, path_words, f"{map_seconds:.2f}", f"{path_seconds:.2f}"], map_holds, path_holds
 
 
+def measure_balls(program, folder, count):
+    """Random pairs: whether they are mapped and verified, pieces, seconds."""
+    print("| pair | tetrahedra | pieces | mean | worst | map | s |\n|---" + "|--:" * 4 + "|---|--:|")
+    held = 0
+    for seed in range(count):
+        rng = random.Random(seed)
+        files, names = [os.path.join(folder, f"{which}.off") for which in "ab"], []
+        for file in files:
+            name, solid = star_solids.random_ball(rng)
+            star_solids.write(file, solid)
+            names.append(name)
+        out = os.path.join(folder, "map.vtu")
+        mapped, words, holds, seconds = attempt(program, files, out, "map", "--solid", *files, "-o", out)
+        row = ["", "", "", ""]
+        if mapped is not None:
+            row = [mapped["tetrahedra"], mapped["pieces"], f"{mapped['distortion']['mean']:.3g}",
+                   f"{mapped['distortion']['worst']:.3g}"]
+        held += holds
+        print(f"| {seed}: {' to '.join(names)} | " + " | ".join(map(str, [*row, words, f"{seconds:.2f}"])) + " |",
+              flush=True)
+    print(f"| {count} pairs | | | | | {held} | |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("starguard")
     parser.add_argument("--turned", type=int, help="turn, move and stretch the solids at random")
     parser.add_argument("--detail", type=int, default=1, help="finer round solids")
     parser.add_argument("--only", default="", help="pairs whose names hold this word")
+    parser.add_argument("--balls", type=int, help="so many random pairs of other plain solids")
     arguments = parser.parse_args()
+    if arguments.balls is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            measure_balls(arguments.starguard, folder, arguments.balls)
+        return
     rng = random.Random(arguments.turned) if arguments.turned is not None else None
     print("| pair | tetrahedra | pieces | mean | worst | keys | map | morph | s | s |")
     print("|---" + "|--:" * 5 + "|---|---|--:|--:|")

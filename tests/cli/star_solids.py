@@ -50,6 +50,75 @@ def solids(rng=None, detail=1):
     return list(made.items())
 
 
+def prism(outline, height):
+    """Over a polygon that the origin sees all of, with fans about it as caps."""
+    count = len(outline)
+    vertices = [[0, 0, 0]] + [[x, y, 0] for x, y in outline] + [[0, 0, height]] + [[x, y, height] for x, y in outline]
+    faces = []
+    for i in range(count):
+        a, b = 1 + i, 1 + (i + 1) % count
+        c, d = a + count + 1, b + count + 1
+        faces += [(0, b, a), (count + 1, c, d), (a, b, d), (a, d, c)]
+    return vertices, faces
+
+
+def random_ball(rng):
+    """A name and a plain solid without holes, most often one that no point sees: a tree of cubes, a spiked
+    prism, a comb, or a pile of rings; turned at random."""
+    while True:
+        kind = rng.choice(["cubes", "prism", "comb", "pile"])
+        if kind == "cubes":
+            cells, count = [(0, 0, 0)], rng.randint(3, 12)
+            while len(cells) < count:
+                cell = list(rng.choice(cells))
+                cell[rng.randrange(3)] += rng.choice((-1, 1))
+                near = sum(sum(abs(x - y) for x, y in zip(cell, other)) <= 1 for other in cells)
+                corner = sum(max(abs(x - y) for x, y in zip(cell, other)) <= 1 for other in cells)
+                if near == 1 and tuple(cell) not in cells and corner <= 3:
+                    cells.append(tuple(cell))
+            made = blocks(cells)
+        elif kind == "prism":
+            count = rng.randint(5, 14)
+            made = prism([[rng.uniform(0.3, 2) * f(2 * math.pi * i / count) for f in (math.cos, math.sin)]
+                          for i in range(count)], rng.choice((0.3, 1, 5)))
+        elif kind == "comb":
+            teeth = rng.randint(2, 6)
+            made = blocks([(x, 0, 0) for x in range(2 * teeth - 1)] +
+                          [(2 * x, y, 0) for x in range(teeth) for y in (1, 2)])
+        else:
+            sides, rings = rng.randint(3, 16), rng.randint(2, 6)
+            widths = [rng.uniform(0.4, 2) for _ in range(rings)]
+            made = plain.tube([[0, 0, z] for z in range(-1, rings + 1)], [0, *widths, 0], sides)
+        matrix = plain.random_turn(rng)
+        vertices = [plain.turn(matrix, v) for v in made[0]]
+        if is_ball(vertices, made[1]):
+            return kind, (vertices, made[1])
+
+
+def is_ball(vertices, faces):
+    """Euler's number of one closed surface, each edge in two faces, one fan about each vertex."""
+    edges = {}
+    for face in faces:
+        for i in range(3):
+            edges[face[i], face[(i + 1) % 3]] = edges.get((face[i], face[(i + 1) % 3]), 0) + 1
+    used = {v for face in faces for v in face}
+    if any(n != 1 or (v, u) not in edges for (u, v), n in edges.items()) or len(used) < len(vertices):
+        return False
+    after = {v: {} for v in used}
+    for a, b, c in faces:
+        after[a][b], after[b][c], after[c][a] = c, a, b
+    for ring in after.values():
+        first = at = next(iter(ring))
+        length = 0
+        while True:
+            at, length = ring[at], length + 1
+            if at == first:
+                break
+        if length < len(ring):
+            return False
+    return len(used) - len(edges) // 2 + len(faces) == 2
+
+
 def write(path, solid):
     vertices, faces = solid
     with open(path, "w", encoding="utf-8") as file:
