@@ -289,8 +289,10 @@ static starg_status copy_choice(const guard_problem *problem, const guard_pool *
 
 /* Is the bounded weight the visible area? Not with vertices, nor if a face counts only once several
  * guards see it. */
-static bool bounds_area(const starg_guard_options *o) {
-    return o->max_guards > 0 && o->redundancy == 1 && o->visibility.target == STARG_TARGET_FACES;
+static bool bounds_area(const guard_problem *problem) {
+    const starg_guard_options *o = problem->options;
+    return o->max_guards > 0 && o->redundancy == 1 && problem->solid->times == NULL &&
+           o->visibility.target == STARG_TARGET_FACES;
 }
 
 static void copy_facts(const guard_problem *problem, const guard_outcome *outcome,
@@ -309,14 +311,12 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->lines_tested = outcome->search.improve_work;
     result->time_limited = selection->time_limited;
     result->area_bound = 1;
-    if (bounds_area(problem->options))
+    if (bounds_area(problem))
         result->area_bound =
             (double)(kept + selection->weight_bound) / (double)problem->weights.total;
-    if (problem->options->visibility.target == STARG_TARGET_FACES)
+    if (bounds_area(problem) && outcome->search.weight_bound > 0)
         result->area_bound_everywhere =
-            outcome->search.weight_bound > 0
-                ? (double)(kept + outcome->search.weight_bound) / (double)problem->weights.total
-                : 0;
+            (double)(kept + outcome->search.weight_bound) / (double)problem->weights.total;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
     result->lower_bound_everywhere = outcome->search.bound;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "starguard/cover.h"
+#include "starguard/page.h"
 
 static failing_inputs in;
 static starg_bits *cover_rows;
