@@ -149,13 +149,16 @@ static size_t count_met(const guard_problem *problem, const starg_bits *seen,
     return met;
 }
 
-static starg_status measure_faces(const guard_problem *problem, starg_guards *result) {
+static starg_status measure_faces(const guard_problem *problem, const guard_pool *pool,
+                                  starg_guards *result) {
     const starg_visibility_options options =
         view_of(problem, STARG_TARGET_FACES, result->directions, result->ups);
-    SCOPED_BY(starg_bits_drop) starg_bits *seen = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *found = NULL;
     SCOPED uint64_t *joined = NULL;
-    TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
-                         &options, &seen));
+    if (!problem->audited)
+        TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
+                             &options, &found));
+    const starg_bits *seen = problem->audited ? pool->rows : found;
     for (size_t i = 0; i < result->count; i++)
         result->seen_faces[i] = count_faces(problem->solid, starg_bits_row(seen, i));
     NEW_ZERO(problem->context, STAGE, joined, seen->words);
@@ -234,7 +237,7 @@ static starg_status count_coverable_faces(const guard_problem *problem, const gu
 
 static starg_status measure_guards(const guard_problem *problem, const guard_pool *pool,
                                    starg_guards *result) {
-    TRY(measure_faces(problem, result));
+    TRY(measure_faces(problem, pool, result));
     TRY(count_coverable_faces(problem, pool, result));
     if (problem->options->visibility.target == STARG_TARGET_VERTICES)
         TRY(measure_vertices(problem, pool, result));

@@ -19,6 +19,7 @@ typedef struct guard_problem {
         *certificate; /* receives the certificate of the bound for all points; NULL: not wanted */
     const struct kept_guards *kept;  /* what the solid's needs were found from; NULL: nothing */
     const candidate_points *carried; /* candidates in place of new ones; NULL: none */
+    bool audited; /* the choice is all of the pool, in its order, whose rows are what guards see */
     bool hurried; /* targets that no candidate sees are not looked for in the whole free space */
 } guard_problem;
 
