@@ -7,13 +7,22 @@
 #include "commands.h"
 #include "scene.h"
 #include "starguard/verify.h"
+#include "tables.h"
 
 typedef struct values {
     bool verbose;
+    const char *keep, *table, *summary, *curve; /* beside one GUARDS.json */
 } values;
 
 static const cli_option options[] = {
     CLI_FLAG_OPTION("verbose", verbose, "List every claim, and what is not checked of any result."),
+    CLI_INPUT_OPTION("keep", keep, "FILE",
+                     "Poses that were given to 'guard --keep': they are in the result, first and "
+                     "unchanged."),
+    CLI_INPUT_OPTION("table", table, "FILE.csv", "Table of 'guard --table', of one GUARDS.json."),
+    CLI_INPUT_OPTION("summary", summary, "FILE.csv",
+                     "Table of 'guard --summary', of one GUARDS.json."),
+    CLI_INPUT_OPTION("curve", curve, "FILE.csv", "Table of 'guard --curve', of one GUARDS.json."),
 };
 
 /* How many claims hold; with --verbose each of them, else those that do not. */
@@ -59,6 +68,7 @@ static void tell_summary(cli_session *session, const starg_verdict *verdict, con
 typedef struct telling {
     json_t *results;
     bool verbose;
+    const values *options;
 } telling;
 
 /* Reports a verdict and adds it to the results; takes over `result`, the keys specific to its
@@ -345,15 +355,29 @@ static starg_status verify_guards(cli_session *session, const model *given, size
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     starg_mesh **obstacles = NULL, **zones = NULL;
+    starg_poses keep = {0};
+    starg_face_groups groups = {0};
+    bool grouped = false;
     const starg_guards *guards = results[operand]->guards;
+    const values *v = to->options;
     size_t behind = certificate_behind(session, results, operand);
+    if (v->keep != NULL)
+        CLI_TRY(starg_poses_read(session->context, v->keep, &keep));
+    if (v->table != NULL || v->summary != NULL)
+        CLI_TRY(
+            cli_groups_read(session, session->operands[0], guards->face_count, &groups, &grouped));
     CLI_TRY(cli_scene_read_obstacles(session, guards, &obstacles));
     CLI_TRY(cli_scene_read_zones(session, guards, &zones));
     const starg_guards_evidence evidence = {.obstacles = (const starg_mesh *const *)obstacles,
                                             .obstacle_count = guards->obstacle_count,
                                             .zones = (const starg_mesh *const *)zones,
                                             .certificate =
-                                                behind != 0 ? results[behind]->certificate : NULL};
+                                                behind != 0 ? results[behind]->certificate : NULL,
+                                            .keep = v->keep != NULL ? &keep : NULL,
+                                            .table = v->table,
+                                            .summary = v->summary,
+                                            .curve = v->curve,
+                                            .groups = grouped ? &groups : NULL};
     CLI_TRY(starg_verify_guards_with(session->context, given->mesh, &evidence, guards, &verdict));
     json_t *entry = json_object();
     if (behind != 0)
@@ -363,6 +387,8 @@ static starg_status verify_guards(cli_session *session, const model *given, size
 done:
     cli_scene_free_obstacles(obstacles, guards->obstacle_count);
     cli_scene_free_obstacles(zones, guards->zone_count);
+    starg_poses_free(session->context, &keep);
+    starg_face_groups_free(session->context, &groups);
     starg_verdict_free(session->context, verdict);
     return status;
 }
@@ -468,16 +494,31 @@ static void report(cli_session *session, const starg_mesh *mesh, json_t *results
     cli_put(session, session->report, "results", json_incref(results));
 }
 
+/* What stands beside guards is of one file of them. */
+static starg_status check_tables(cli_session *session, const values *v,
+                                 starg_result *const *results) {
+    size_t guards = 0;
+    for (size_t i = 1; i < session->operand_count; i++)
+        guards += results[i] != NULL && results[i]->guards != NULL;
+    if (guards == 1 ||
+        (v->keep == NULL && v->table == NULL && v->summary == NULL && v->curve == NULL))
+        return STARG_OK;
+    return cli_fail(
+        session, STARG_ERROR_ARGUMENT,
+        "--keep, --table, --summary and --curve belong to one GUARDS.json; here are %zu", guards);
+}
+
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     model given = {0};
     decomposition found;
-    const telling to = {.results = json_array(), .verbose = v->verbose};
+    const telling to = {.results = json_array(), .verbose = v->verbose, .options = v};
     inputs from = {0};
     put_models_first(session);
     CLI_TRY(read_model(session, &given));
     CLI_TRY(read_inputs(session, &from));
+    CLI_TRY(check_tables(session, v, from.results));
     CLI_TRY(check_certificates(session, from.results));
     CLI_TRY(find_decomposition(session, from.results, &found));
     starg_result *const *results = from.results;
@@ -539,6 +580,10 @@ const cli_command cli_command_verify = {
                 "# and that no fewer guards would do, wherever they stand\n"
                 "starguard guard model.off --prove --certificate why.txt -o guards.json\n"
                 "starguard verify model.off guards.json why.txt\n"
+                "# its tables, and that cameras that stay are as they were given\n"
+                "starguard guard room.off --keep stay.txt --effort quick \\\n"
+                "    -o more.json --table faces.csv\n"
+                "starguard verify room.off more.json --keep stay.txt --table faces.csv\n"
                 "# several at once, for a script\n"
                 "starguard verify model.off ilp.json greedy.json --quiet && echo verified\n"
                 "# a star decomposition\n"

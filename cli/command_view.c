@@ -2,10 +2,12 @@
 /* starguard view: writes a page that shows results. */
 #include "commands.h"
 #include "show.h"
+#include "tables.h"
 
 typedef struct values {
     const char *output, *model;
     int distance;
+    bool report;
 } values;
 
 static const cli_option options[] = {
@@ -13,13 +15,17 @@ static const cli_option options[] = {
     CLI_INPUT_OPTION("model", model, "FILE",
                      "Model of the results. Default: the model that they name, relative to the "
                      "current folder or to the result."),
+    CLI_FLAG_OPTION("report", report,
+                    "A sheet about the cameras of a GUARDS.json, to be printed and handed over, in "
+                    "place of an interactive page: the plan from above, a picture through each "
+                    "lens, tables, and poses with pan, tilt and roll."),
     CLI_DISTANCE_OPTION,
 };
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
     TRY(cli_announce_needed(session, v->output, "PAGE.html"));
-    if (!starg_page_available()) /* the library says how to get the viewer */
+    if (!v->report && !starg_page_available()) /* the library says how to get the viewer */
         TRY(starg_page_write(session->context, &(const starg_page){0}, v->output));
     return STARG_OK;
 }
@@ -53,13 +59,40 @@ static void tell(cli_session *session, const values *v, const starg_page *page) 
     cli_put(session, session->report, "shown", shown);
 }
 
+static starg_status write_sheet(cli_session *session, const values *v, const cli_show *show) {
+    starg_status status = STARG_OK;
+    starg_face_groups groups = {0};
+    bool any = false;
+    const starg_page *page = &show->page;
+    if (show->guards == NULL || page->report != NULL || page->pieces != NULL || page->map != NULL ||
+        page->skeleton != NULL || page->frame_count > 0 || page->shape_count > 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--report makes a sheet about cameras: give one GUARDS.json and nothing "
+                        "else, or leave out --report");
+    CLI_TRY(cli_groups_read(session, show->model_file, show->guards->face_count, &groups, &any));
+    const starg_sheet sheet = {.title = page->title,
+                               .command = page->command,
+                               .scene = show->solid,
+                               .guards = show->guards,
+                               .obstacles = page->obstacles,
+                               .groups = any ? &groups : NULL};
+    CLI_TRY(starg_sheet_write(session->context, &sheet,
+                              cli_outputs_place(&session->outputs, v->output)));
+done:
+    starg_face_groups_free(session->context, &groups);
+    return status;
+}
+
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     cli_show show = {0};
     CLI_TRY(cli_show_read(session, v->model, v->distance, &show));
-    CLI_TRY(starg_page_write(session->context, &show.page,
-                             cli_outputs_place(&session->outputs, v->output)));
+    if (v->report)
+        CLI_TRY(write_sheet(session, v, &show));
+    else
+        CLI_TRY(starg_page_write(session->context, &show.page,
+                                 cli_outputs_place(&session->outputs, v->output)));
     tell(session, v, &show.page);
 done:
     cli_show_free(session, &show);
@@ -84,12 +117,15 @@ const cli_command cli_command_view = {
         "A morph (the folder of 'starguard morph', or its .glb) with a time slider; with its "
         "report (--report) the page names both shapes.\n"
         "A database, or a table of 'starguard db matrix': distances, names and thumbnails.\n"
-        "A model alone. In the page, press ? for the keys.",
+        "A model alone. In the page, press ? for the keys.\n"
+        "With --report a sheet of GUARDS.json that prints well.",
     .examples = "# guards and what they see\n"
                 "starguard guard horse.off -o guards.json\n"
                 "starguard view guards.json -o guards.html\n"
                 "# guards, star-shaped pieces and skeleton of a model in one page\n"
                 "starguard view guards.json pieces.vtk pieces.json skeleton.vtk -o horse.html\n"
+                "# a sheet of the cameras to hand over\n"
+                "starguard view guards.json --report -o sheet.html\n"
                 "# a morph; a map between solids; the shapes of a database\n"
                 "starguard view frames -o morph.html\n"
                 "starguard view map.vtu -o map.html\n"

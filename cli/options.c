@@ -441,7 +441,7 @@ void cli_word_print(const char *word, FILE *stream) {
 }
 
 /* With as few digits as name the number. */
-static void print_real(double value, FILE *stream) {
+void cli_print_real(double value, FILE *stream) {
     char text[32];
     for (int digits = 15; digits <= 17; digits++) {
         double read;
@@ -455,7 +455,7 @@ static void print_real(double value, FILE *stream) {
 static void print_reals(const double *values, size_t count, FILE *stream) {
     for (size_t i = 0; i < count; i++) {
         fputs(i > 0 ? "," : "", stream);
-        print_real(values[i], stream);
+        cli_print_real(values[i], stream);
     }
 }
 

@@ -121,3 +121,6 @@ void cli_options_free(const cli_group *group);
 /* Help text of an option, with its default; truncated to `size` bytes. */
 void cli_option_help(const cli_option *option, char *text, size_t size);
 enum { CLI_HELP_SIZE = 1024 };
+
+/* With as few digits as tell it. */
+void cli_print_real(double value, FILE *stream);

@@ -216,8 +216,10 @@ static bool recall_zones(const starg_guards *g, cli_scene *scene) {
         return false;
     for (size_t i = 0; i < all; i++) {
         const double *box = g->zone_count > 0 ? g->zones[i].box : g->space.within;
-        for (int k = 0; k < 6; k++)
-            fprintf(stream, "%s%.17g", k > 0 ? "," : "", box[k]);
+        for (int k = 0; k < 6; k++) {
+            fputs(k > 0 ? "," : "", stream);
+            cli_print_real(box[k], stream);
+        }
         fputc('\0', stream);
     }
     if (fclose(stream) != 0 || scene->within.values == NULL || scene->without.values == NULL) {
@@ -232,6 +234,47 @@ static bool recall_zones(const starg_guards *g, cli_scene *scene) {
         words->values[words->count++] = !mesh ? text : zone->file != NULL ? zone->file : "ZONE";
     }
     return true;
+}
+
+static const char *const DENSITIES[] = {"monitor", "detect", "observe", "recognise", "identify"};
+
+/* One word for each need that the result has. */
+static bool recall_needs(const starg_guards *g, cli_scene *scene) {
+    char *text = NULL;
+    size_t size, words = 0;
+    scene->require.values = calloc(g->need_count + 1, sizeof *scene->require.values);
+    SCOPED uint32_t *faces = calloc(g->need_count + 1, sizeof *faces);
+    FILE *stream = open_memstream(&text, &size);
+    for (size_t i = 0; stream != NULL && faces != NULL && i < g->need_count; i++) {
+        const starg_face_need *own = &g->needs[i];
+        size_t count = 0;
+        bool former = false;
+        for (size_t j = 0; j < g->need_count && !former; j++) {
+            bool alike = g->needs[j].times == own->times && g->needs[j].density == own->density;
+            former = alike && j < i;
+            if (alike)
+                faces[count++] = g->needs[j].face;
+        }
+        char *list = former ? NULL : ranges_of(faces, count);
+        if (list == NULL)
+            continue;
+        fprintf(stream, "%s=%u", list, (unsigned)own->times);
+        if (own->density < 0) {
+            fprintf(stream, ",%s", DENSITIES[(int)(STARG_DENSITY_MONITOR - own->density)]);
+        } else if (own->density > 0) {
+            fputc(',', stream);
+            cli_print_real(own->density, stream);
+        }
+        fputc('\0', stream);
+        words++;
+        free(list);
+    }
+    bool done =
+        stream != NULL && fclose(stream) == 0 && faces != NULL && scene->require.values != NULL;
+    scene->recalled[5] = text;
+    for (size_t i = 0; done && i < words; i++, text += strlen(text) + 1)
+        scene->require.values[scene->require.count++] = text;
+    return done;
 }
 
 starg_status cli_scene_recall(cli_session *session, const starg_guards *g, cli_scene *scene) {
@@ -256,6 +299,7 @@ starg_status cli_scene_recall(cli_session *session, const starg_guards *g, cli_s
         done = done && recall_faces(g->targets, g->target_count, &scene->recalled[2], &scene->see);
     else
         scene->weights = "WEIGHTS";
+    done = done && recall_needs(g, scene);
     scene->obstacles.values = calloc(g->obstacle_count + 1, sizeof *scene->obstacles.values);
     done = done && scene->obstacles.values != NULL;
     for (size_t i = 0; i < g->obstacle_count && done; i++)
@@ -274,7 +318,8 @@ void cli_scene_forget(cli_scene *scene) {
     free((void *)scene->mount.values);
     free((void *)scene->see.values);
     free((void *)scene->clear.values);
-    for (int i = 0; i < 5; i++)
+    free((void *)scene->require.values);
+    for (size_t i = 0; i < sizeof scene->recalled / sizeof *scene->recalled; i++)
         free(scene->recalled[i]);
     *scene = (cli_scene){0};
 }
@@ -426,7 +471,6 @@ static starg_status read_list(cli_session *session, const char *option, const st
 
 /* K, or K and a density by number or name, after the last = of the word; true: it is that. */
 static bool parse_need(const char *text, starg_face_need *need) {
-    static const char *const names[] = {"monitor", "detect", "observe", "recognise", "identify"};
     char *end;
     unsigned long long times = strtoull(text, &end, 10);
     *need = (starg_face_need){0};
@@ -437,8 +481,8 @@ static bool parse_need(const char *text, starg_face_need *need) {
         return true;
     if (*end != ',')
         return false;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (strcmp(end + 1, names[i]) == 0)
+    for (size_t i = 0; i < sizeof DENSITIES / sizeof *DENSITIES; i++)
+        if (strcmp(end + 1, DENSITIES[i]) == 0)
             need->density = STARG_DENSITY_MONITOR - (double)i;
     return need->density < 0 || (cli_number_real(end + 1, &need->density) && need->density > 0);
 }

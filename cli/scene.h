@@ -21,7 +21,7 @@ typedef struct cli_scene {
     double height;
     double clearance;  /* of guards from where they are mounted, and what is up: from the other */
     double up[3];      /* options of `guard` */
-    char *recalled[5]; /* texts above that cli_scene_recall made */
+    char *recalled[6]; /* texts above that cli_scene_recall made */
 } cli_scene;
 
 extern const char *const cli_orientation_words[];

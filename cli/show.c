@@ -93,7 +93,7 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
     if (result->guards != NULL) {
         if (page->guards != NULL)
             return fail_twice(session, "guards file", file);
-        page->guards = result->guards;
+        show->guards = page->guards = result->guards;
         show->guards_file = file;
     } else if (result->certificate != NULL) {
         if (show->proof != NULL)
@@ -211,6 +211,9 @@ static const char *base_of(const char *path) {
 }
 
 static starg_status read_model(cli_session *session, const char *file, cli_show *show) {
+    show->model_file = strdup(file);
+    if (show->model_file == NULL)
+        return cli_fail_memory(session);
     TRY(cli_shape_read(session, file, &show->model, &show->tetmesh));
     if (show->tetmesh != NULL)
         TRY(starg_tetmesh_surface(session->context, show->tetmesh, &show->model, NULL));
@@ -422,6 +425,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
     free_frames(context, show);
     cli_show_free_shapes(session, show);
     free(show->radii);
+    free(show->model_file);
     for (int end = 0; end < 2; end++)
         starg_guards_free(session->context, show->ends[end]);
     free(show->command);

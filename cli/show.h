@@ -8,6 +8,8 @@
 typedef struct cli_show {
     starg_page page; /* refers to the members below */
     const char *guards_file, *pieces_file, *report_file;
+    char *model_file;           /* that was read */
+    const starg_guards *guards; /* as read */
     starg_tetmesh *tetmesh;
     starg_mesh *model, *obstacles, **frames;
     starg_solid *solid;

@@ -9,12 +9,12 @@ starg_status cli_tables_announce(cli_session *session, const cli_tables *tables)
     return STARG_OK;
 }
 
-/* Those of a model's file; from standard input, or of another number of faces, there are none. */
-static starg_status read_groups(cli_session *session, starg_face_groups *groups, bool *any) {
-    *any = strcmp(session->operands[0], "-") != 0;
+starg_status cli_groups_read(cli_session *session, const char *model, size_t faces,
+                             starg_face_groups *groups, bool *any) {
+    *any = strcmp(model, "-") != 0;
     if (*any)
-        TRY(starg_face_groups_read(session->context, session->operands[0], groups));
-    *any = *any && groups->face_count == starg_space_model_faces(session->solid);
+        TRY(starg_face_groups_read(session->context, model, groups));
+    *any = *any && groups->face_count == faces;
     return STARG_OK;
 }
 
@@ -25,7 +25,8 @@ starg_status cli_tables_write(cli_session *session, const cli_tables *tables,
     bool any = false;
     if (!cli_tables_wanted(tables))
         return STARG_OK;
-    CLI_TRY(read_groups(session, &groups, &any));
+    CLI_TRY(cli_groups_read(session, session->operands[0], starg_space_model_faces(session->solid),
+                            &groups, &any));
     const starg_face_groups *used = any ? &groups : NULL;
     if (tables->table != NULL)
         CLI_TRY(starg_guards_write_table(session->context, session->solid, guards, used,

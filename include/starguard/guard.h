@@ -332,6 +332,15 @@ STARG_API starg_status starg_guards_write_memory(starg_context *context, const s
  * (x, y, z, w). False: the guard looks all around. */
 STARG_API bool starg_guards_rotation(const starg_guards *guards, size_t index, double rotation[4]);
 
+/* The same in degrees: pan, clockwise seen from above (90: to the right); tilt, above the horizon;
+ * roll, clockwise about the viewing direction. Up is that of the options. At pan 0 it looks along
+ * frame[2] of starg_guards_level, and right of it is frame[0]: -z and x with y up, y and x with z
+ * up; straight up and down, pan is where the top of the picture is. False: the guard looks all
+ * around. */
+STARG_API bool starg_guards_angles(const starg_guards *guards, size_t index, double angles[3]);
+/* Right, up and ahead of pan 0 and no tilt, of unit length. */
+STARG_API void starg_guards_level(const starg_guards *guards, double frame[3][3]);
+
 /* Writes the poses of guards, as CSV or JSON (docs/formats.md); path "-" is standard output.
  * Errors: WRITE, MEMORY. */
 STARG_API starg_status starg_guards_write_poses(starg_context *context, const starg_guards *guards,

@@ -13,6 +13,7 @@
 #include "guard.h"
 #include "mesh.h"
 #include "skeleton.h"
+#include "space.h"
 #include "verify.h"
 
 #ifdef __cplusplus
@@ -60,6 +61,22 @@ STARG_API bool starg_page_available(void);
  * no viewer), MEMORY, CANCELLED. */
 STARG_API starg_status starg_page_write(starg_context *context, const starg_page *page,
                                         const char *path);
+
+/* Contents of a sheet about guards. The caller owns all of it; names may be NULL. */
+typedef struct starg_sheet {
+    const char *title, *command; /* the latter: the line that makes the guards again */
+    const starg_solid *scene;    /* of the guards, as starg_guards_scene makes it */
+    const starg_guards *guards;
+    const starg_mesh *obstacles;     /* all that stand in the way, in one mesh; or NULL */
+    const starg_face_groups *groups; /* of the model's faces; or NULL */
+} starg_sheet;
+
+/* Writes a sheet to be printed and handed over, one HTML file without scripts (docs/viewer.md): a
+ * plan from above, what is seen through each lens, and tables; path "-" is standard output. It
+ * needs no viewer. Errors: ARGUMENT (no scene or guards; another model), those of starg_visibility,
+ * WRITE. */
+STARG_API starg_status starg_sheet_write(starg_context *context, const starg_sheet *sheet,
+                                         const char *path);
 
 #ifdef __cplusplus
 }

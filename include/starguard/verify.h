@@ -90,9 +90,15 @@ typedef struct starg_guards_evidence {
     const starg_certificate *certificate; /* of lower_bound_everywhere, or NULL: then it is listed
                                              in `not_checked`. Any text may stand in it: a false one
                                              fails, and no solver's word is taken */
+    const starg_poses *keep; /* the poses that were given to stay, or NULL: then it is listed in
+                                `not_checked` that they are unchanged */
+    const char *table, *summary,
+        *curve;                      /* names of files of starg_guards_write_table ..., or NULL */
+    const starg_face_groups *groups; /* that the tables are by, or NULL */
 } starg_guards_evidence;
 
-/* The same with all of it. Errors: also ARGUMENT (other obstacles than those of the result). */
+/* The same with all of it. Errors: also ARGUMENT (other obstacles than those of the result), READ
+ * (tables). */
 STARG_API starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,
                                                 const starg_guards_evidence *evidence,
                                                 const starg_guards *guards, starg_verdict **out);

@@ -274,19 +274,33 @@ class Guards:
         if file is not None and named:
             session.call(lib.starg_face_groups_read, session.context, _arrays.path(file), groups)
         try:
-            session.call(function, session.context, solid._handle, self._handle,
-                         groups if named else ffi.NULL, _arrays.path(path))
+            function(session, solid, groups if named else ffi.NULL, _arrays.path(path))
         finally:
             lib.starg_face_groups_free(session.context, groups)
+
+    def _write_as(self, function: Any) -> Any:
+        def write(session: Session, solid: Any, groups: Any, path: Any) -> None:
+            session.call(function, session.context, solid._handle, self._handle, groups, path)
+        return write
 
     def write_table(self, path: PathLike, model: Any = None) -> None:
         """Writes a row for each face as CSV: which guards see it (docs/formats.md). `model` is the scene
         that was guarded; default: the model."""
-        self._write_tables(lib.starg_guards_write_table, path, model)
+        self._write_tables(self._write_as(lib.starg_guards_write_table), path, model)
 
     def write_summary(self, path: PathLike, model: Any = None) -> None:
         """Writes a row for each guard and for each group of faces as CSV."""
-        self._write_tables(lib.starg_guards_write_summary, path, model)
+        self._write_tables(self._write_as(lib.starg_guards_write_summary), path, model)
+
+    def write_sheet(self, path: PathLike, model: Any = None, *, title: str | None = None) -> None:
+        """Writes a sheet to be printed and handed over, one HTML file (docs/viewer.md): a plan, what is
+        seen through each lens, tables. `model` is the scene that was guarded; default: the model."""
+        def write(session: Session, solid: Any, groups: Any, name: Any) -> None:
+            text = ffi.new("char[]", (title if title is not None else self.file or "starguard").encode())
+            sheet = ffi.new("starg_sheet *", {"title": text, "scene": solid._handle, "guards": self._handle,
+                                              "groups": groups})
+            session.call(lib.starg_sheet_write, session.context, sheet, name)
+        self._write_tables(write, path, model)
 
     def write_curve(self, path: PathLike) -> None:
         """Writes what 1, 2, ... guards see, as CSV or SVG by the extension. Only with `worth`."""

@@ -61,9 +61,13 @@ void starg_page_block_double(starg_page_block *block, double value) {
     starg_page_block_uint32(block, (uint32_t)(word >> 32));
 }
 
-void starg_page_block_close(starg_page_block *block) {
+void starg_page_block_end(starg_page_block *block) {
     if (block->count > 0)
         put_group(block);
+}
+
+void starg_page_block_close(starg_page_block *block) {
+    starg_page_block_end(block);
     fputs("</script>\n", block->stream);
 }
 

@@ -23,6 +23,7 @@ void starg_page_block_bytes(starg_page_block *block, const void *bytes, size_t s
 void starg_page_block_uint32(starg_page_block *block, uint32_t value);
 void starg_page_block_float(starg_page_block *block, double value); /* in single precision */
 void starg_page_block_double(starg_page_block *block, double value);
+void starg_page_block_end(starg_page_block *block); /* of base64 that stands elsewhere */
 void starg_page_block_close(starg_page_block *block);
 
 /* A block of JSON: ASCII, with whatever HTML could take for markup as escapes. Consumes `value`;

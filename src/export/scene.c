@@ -85,6 +85,31 @@ static starg_status find_viewers(starg_context *context, scene_job *job) {
     return STARG_OK;
 }
 
+/* What no guard sees and nobody misses need not be seen. */
+static starg_status count_times(starg_context *context, scene_job *job) {
+    const starg_guards *g = job->scene->guards;
+    if (job->scene->seen == NULL)
+        return STARG_OK;
+    NEW_ZERO(context, STAGE, job->times, job->model_faces);
+    for (size_t f = 0; f < job->model_faces; f++)
+        for (size_t i = 0; i < job->guards && job->times[f] < SCENE_MOST_TIMES; i++)
+            job->times[f] += starg_bits_test(job->scene->seen, i, f);
+    for (size_t f = 0, next = 0; f < job->model_faces; f++) {
+        while (next < g->uncovered_count && g->uncovered[next] < f)
+            next++;
+        bool missed = next < g->uncovered_count && g->uncovered[next] == f;
+        if (job->times[f] == 0 && !missed)
+            job->times[f] = SCENE_NOT_WANTED;
+    }
+    return STARG_OK;
+}
+
+void scene_count_color(size_t times, uint8_t rgb[3]) {
+    static const uint8_t colors[SCENE_TIMES][3] = {
+        {178, 24, 43}, {253, 219, 150}, {146, 197, 222}, {67, 132, 190}, {205, 209, 214}};
+    memcpy(rgb, colors[times], 3);
+}
+
 typedef struct box {
     double lower[3], upper[3];
 } box;
@@ -131,6 +156,7 @@ static starg_status prepare(starg_context *context, scene_job *job) {
         TRY(starg_piece_surfaces_create(context, s->pieces, &job->surfaces));
     TRY(check(context, job));
     TRY(find_viewers(context, job));
+    TRY(count_times(context, job));
     find_box(job);
     return STARG_OK;
 }
@@ -215,6 +241,6 @@ starg_status starg_scene_write(starg_context *context, const starg_scene *scene,
     STARG_TRY(write_as(context, &job, path, format));
 done:
     starg_piece_surfaces_free(&job.surfaces);
-    starg_release(context, job.viewer);
+    RELEASE(job.viewer, job.times);
     return status;
 }

@@ -10,11 +10,15 @@ typedef struct scene_job {
     starg_piece_surfaces surfaces; /* empty without pieces                                      */
     int32_t *viewer;  /* per face of the model: the first guard that sees it, or -1; NULL
                          unless it is known what guards see                          */
+    uint8_t *times;   /* per face: how many guards see it, at most SCENE_MOST_TIMES, or
+                         SCENE_NOT_WANTED: none has to; NULL like `viewer` */
     double center[3]; /* of the box of all that is shown                                   */
     double size;      /* its largest side; above 0                                          */
     size_t model_vertices, model_faces, guards, nodes, edges; /* 0 where the part is not shown */
     size_t obstacle_vertices, obstacle_faces;
 } scene_job;
+
+enum { SCENE_MOST_TIMES = 3, SCENE_NOT_WANTED, SCENE_TIMES }; /* the last: how many values */
 
 enum { SCENE_PARTS = 6 };
 typedef enum scene_part {
@@ -30,6 +34,9 @@ extern const uint8_t SCENE_NEUTRAL[3], SCENE_UNSEEN[3], SCENE_CURVE[3], SCENE_IN
 
 /* The colour of a face of the model: that of the guard that sees it first. */
 void scene_face_color(const scene_job *job, size_t face, uint8_t rgb[3]);
+
+/* The colour of what so many guards see, or, of SCENE_NOT_WANTED, of what need not be seen. */
+void scene_count_color(size_t times, uint8_t rgb[3]);
 
 /* The vertex of the tetrahedra that is vertex `index` of the surfaces of pieces. */
 const double *scene_piece_vertex(const scene_job *job, size_t index);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A scene as binary glTF 2.0. Below the root, which is moved to the middle of all, stand the nodes
- * "model", "obstacles", "guards" with "guard_0000" and so on, each with its "camera_0000" if it
- * looks one way, "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard
- * or a piece is in the extras of its node.
+/* A scene as binary glTF 2.0. The model is coloured by how many guards see its faces, as far as
+ * that is known. Below the root, which is moved to the middle of all, stand the nodes "model",
+ * "obstacles", "guards" with "guard_0000" and so on, each with its "camera_0000" if it looks one
+ * way, "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard or a piece
+ * is in the extras of its node.
  *
  * Numbers stand in one view for each kind, of which accessors take ranges: all pieces share their
  * vertices, and all guards one ball. There are no normals, so that programs shade each face flat,
@@ -51,10 +52,26 @@ typedef struct glb_scene {
     const scene_job *job;
     scene_ball ball;
     view views[VIEW_KINDS + 1];
+    uint32_t *by_times; /* faces of the model, sorted by how many guards see them, or NULL */
+    size_t times[SCENE_TIMES + 1]; /* the first corner of each number in them */
     size_t bytes;
     bool failed; /* memory was out while JSON was made */
     json_t *root, *nodes, *meshes, *materials, *accessors, *buffer_views, *cameras;
 } glb_scene;
+
+/* Sorts the model's faces by how many guards see them. */
+static starg_status sort_faces(starg_context *context, glb_scene *s) {
+    const scene_job *job = s->job;
+    if (job->times == NULL || job->model_faces == 0)
+        return STARG_OK;
+    const uint32_t *faces = starg_mesh_faces(job->scene->model);
+    NEW(context, STAGE, s->by_times, 3 * job->model_faces);
+    for (size_t k = 0, at = 0; k < SCENE_TIMES; s->times[++k] = at)
+        for (size_t f = 0; f < job->model_faces; f++)
+            for (size_t c = 0; job->times[f] == k && c < 3; c++)
+                s->by_times[at++] = faces[3 * f + c];
+    return STARG_OK;
+}
 
 static bool is_points(view_kind kind) {
     return kind == VIEW_MODEL_POINTS || kind == VIEW_OBSTACLE_POINTS || kind == VIEW_PIECE_POINTS ||
@@ -71,7 +88,8 @@ static void list_views(glb_scene *s) {
                                       .count = job->model_vertices,
                                       .centered = true};
         v[VIEW_MODEL_FACES] =
-            (view){.words = starg_mesh_faces(scene->model), .count = 3 * job->model_faces};
+            (view){.words = s->by_times != NULL ? s->by_times : starg_mesh_faces(scene->model),
+                   .count = 3 * job->model_faces};
     }
     if (job->obstacle_faces > 0) {
         v[VIEW_OBSTACLE_POINTS] = (view){.reals = starg_mesh_vertices(scene->obstacles),
@@ -228,14 +246,42 @@ static json_int_t add_material(glb_scene *s, const uint8_t rgb[3], double opacit
     return append(s, s->materials, material);
 }
 
-/* A mesh of one primitive; `indices` below 0: the points themselves. */
+/* `indices` below 0: the points themselves. */
+static json_t *primitive(glb_scene *s, json_int_t positions, json_int_t indices, int mode,
+                         json_int_t material) {
+    json_t *own = json_pack("{s:{s:I}, s:i, s:I}", "attributes", "POSITION", positions, "mode",
+                            mode, "material", material);
+    if (indices >= 0)
+        put(s, own, "indices", json_integer(indices));
+    return own;
+}
+
+/* A mesh of one primitive. */
 static json_int_t add_mesh(glb_scene *s, json_int_t positions, json_int_t indices, int mode,
                            json_int_t material) {
-    json_t *primitive = json_pack("{s:{s:I}, s:i, s:I}", "attributes", "POSITION", positions,
-                                  "mode", mode, "material", material);
-    if (indices >= 0)
-        put(s, primitive, "indices", json_integer(indices));
-    return append(s, s->meshes, json_pack("{s:[o]}", "primitives", primitive));
+    return append(
+        s, s->meshes,
+        json_pack("{s:[o]}", "primitives", primitive(s, positions, indices, mode, material)));
+}
+
+/* The model, a primitive for each number of guards that see faces. */
+static json_int_t add_counted(glb_scene *s, json_int_t positions) {
+    static const char *const names[SCENE_TIMES] = {"seen by none", "seen by 1", "seen by 2",
+                                                   "seen by 3 or more", "need not be seen"};
+    json_t *list = json_array();
+    for (size_t k = 0; k < SCENE_TIMES; k++) {
+        uint8_t rgb[3];
+        size_t count = s->times[k + 1] - s->times[k];
+        if (count == 0)
+            continue;
+        scene_count_color(k, rgb);
+        json_int_t material = add_material(s, rgb, 0.45);
+        put(s, json_array_get(s->materials, (size_t)material), "name", json_string(names[k]));
+        append(s, list,
+               primitive(s, positions, add_indices(s, VIEW_MODEL_FACES, s->times[k], count),
+                         MODE_TRIANGLES, material));
+    }
+    return append(s, s->meshes, json_pack("{s:o}", "primitives", list));
 }
 
 /* A node below another. */
@@ -265,10 +311,15 @@ static void add_model(glb_scene *s) {
     if (job->model_faces == 0)
         return;
     bool alone = job->guards + job->surfaces.piece_count + job->nodes == 0;
-    json_int_t points = add_reals(s, VIEW_MODEL_POINTS);
-    json_int_t faces = add_indices(s, VIEW_MODEL_FACES, 0, 3 * job->model_faces);
-    json_int_t material = add_material(s, SCENE_NEUTRAL, alone ? 1 : 0.3);
-    add_node(s, s->root, "model", SIZE_MAX, add_mesh(s, points, faces, MODE_TRIANGLES, material));
+    json_int_t points = add_reals(s, VIEW_MODEL_POINTS), mesh;
+    if (s->by_times != NULL) {
+        mesh = add_counted(s, points);
+    } else {
+        json_int_t faces = add_indices(s, VIEW_MODEL_FACES, 0, 3 * job->model_faces);
+        mesh = add_mesh(s, points, faces, MODE_TRIANGLES,
+                        add_material(s, SCENE_NEUTRAL, alone ? 1 : 0.3));
+    }
+    add_node(s, s->root, "model", SIZE_MAX, mesh);
 }
 
 /* A node of its own, which programs hide and show. */
@@ -312,8 +363,11 @@ static void add_camera(glb_scene *s, json_t *node, size_t index) {
     json_t *lens = json_pack("{s:f, s:f, s:f, s:f}", "yfov", yfov * DEGREE, "aspectRatio", aspect,
                              "znear", fmax(o->near, 1e-3 * size), "zfar",
                              o->range < 1e100 ? fmax(o->range, 2e-3 * size) : 4 * size);
-    json_int_t camera =
-        append(s, s->cameras, json_pack("{s:s, s:o}", "type", "perspective", "perspective", lens));
+    char name[32];
+    snprintf(name, sizeof name, "camera_%04zu", index);
+    json_int_t camera = append(
+        s, s->cameras,
+        json_pack("{s:s, s:s, s:o}", "name", name, "type", "perspective", "perspective", lens));
     json_t *eye = add_node(s, node, "camera", index, -1);
     put(s, eye, "camera", json_integer(camera));
     put(s, eye, "rotation", json_pack("[f, f, f, f]", q[0], q[1], q[2], q[3]));
@@ -426,6 +480,7 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
     json_t *json = NULL;
     glb_scene s = {.job = job};
     scene_ball_make(&s.ball);
+    STARG_TRY(sort_faces(context, &s));
     list_views(&s);
     STARG_TRY(check_range(context, &s));
     STARG_TRY(check_parts(context, &s));
@@ -433,5 +488,6 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
     STARG_TRY(glb_write(context, STAGE, path, json, s.bytes, put_numbers, &s));
 done:
     json_decref(json);
+    starg_release(context, s.by_times);
     return status;
 }

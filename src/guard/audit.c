@@ -56,7 +56,10 @@ starg_status starg_guards_audit(starg_context *context, const starg_solid *scene
         used.visibility.target = STARG_TARGET_FACES;
         used.visibility.patch = STARG_PATCH_OFF;
     }
-    guard_problem problem = {.context = context, .solid = scene, .options = &used};
+    guard_problem problem = {.context = context,
+                             .solid = scene,
+                             .options = &used,
+                             .audited = used.visibility.target == STARG_TARGET_FACES};
     STARG_TRY(check_poses(context, poses, view));
     STARG_TRY(patched_solid_make(context, scene, &used.visibility, &patched));
     problem.solid = &patched.solid;

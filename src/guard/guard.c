@@ -532,8 +532,9 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
     if (points && (used.keep_count > 0 || solid->times != NULL)) {
         status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "points are seen once, by guards that are all to be found: guards that "
-                            "stay (keep) and needs of faces (require) go with faces");
+                            "points are seen once, by guards that are all to be found; leave out "
+                            "guards that stay (keep) and needs of faces (require), or ask for "
+                            "faces, in fine patches");
         goto done;
     }
     if (points && solid->clear != NULL) {

@@ -149,13 +149,16 @@ static size_t count_met(const guard_problem *problem, const starg_bits *seen,
     return met;
 }
 
-static starg_status measure_faces(const guard_problem *problem, starg_guards *result) {
+static starg_status measure_faces(const guard_problem *problem, const guard_pool *pool,
+                                  starg_guards *result) {
     const starg_visibility_options options =
         view_of(problem, STARG_TARGET_FACES, result->directions, result->ups);
-    SCOPED_BY(starg_bits_drop) starg_bits *seen = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *found = NULL;
     SCOPED uint64_t *joined = NULL;
-    TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
-                         &options, &seen));
+    if (!problem->audited)
+        TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
+                             &options, &found));
+    const starg_bits *seen = problem->audited ? pool->rows : found;
     for (size_t i = 0; i < result->count; i++)
         result->seen_faces[i] = count_faces(problem->solid, starg_bits_row(seen, i));
     NEW_ZERO(problem->context, STAGE, joined, seen->words);
@@ -234,7 +237,7 @@ static starg_status count_coverable_faces(const guard_problem *problem, const gu
 
 static starg_status measure_guards(const guard_problem *problem, const guard_pool *pool,
                                    starg_guards *result) {
-    TRY(measure_faces(problem, result));
+    TRY(measure_faces(problem, pool, result));
     TRY(count_coverable_faces(problem, pool, result));
     if (problem->options->visibility.target == STARG_TARGET_VERTICES)
         TRY(measure_vertices(problem, pool, result));
@@ -289,8 +292,10 @@ static starg_status copy_choice(const guard_problem *problem, const guard_pool *
 
 /* Is the bounded weight the visible area? Not with vertices, nor if a face counts only once several
  * guards see it. */
-static bool bounds_area(const starg_guard_options *o) {
-    return o->max_guards > 0 && o->redundancy == 1 && o->visibility.target == STARG_TARGET_FACES;
+static bool bounds_area(const guard_problem *problem) {
+    const starg_guard_options *o = problem->options;
+    return o->max_guards > 0 && o->redundancy == 1 && problem->solid->times == NULL &&
+           o->visibility.target == STARG_TARGET_FACES;
 }
 
 static void copy_facts(const guard_problem *problem, const guard_outcome *outcome,
@@ -309,14 +314,12 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->lines_tested = outcome->search.improve_work;
     result->time_limited = selection->time_limited;
     result->area_bound = 1;
-    if (bounds_area(problem->options))
+    if (bounds_area(problem))
         result->area_bound =
             (double)(kept + selection->weight_bound) / (double)problem->weights.total;
-    if (problem->options->visibility.target == STARG_TARGET_FACES)
+    if (bounds_area(problem) && outcome->search.weight_bound > 0)
         result->area_bound_everywhere =
-            outcome->search.weight_bound > 0
-                ? (double)(kept + outcome->search.weight_bound) / (double)problem->weights.total
-                : 0;
+            (double)(kept + outcome->search.weight_bound) / (double)problem->weights.total;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
     result->lower_bound_everywhere = outcome->search.bound;

@@ -46,6 +46,50 @@ bool starg_guards_rotation(const starg_guards *guards, size_t index, double rota
     return true;
 }
 
+/* Where pan is 0, and what is right of it, both level: right is along the first axis that is not
+ * up, as far as that is level. With y up they are -z and x, as of a camera that is not turned; with
+ * z up y and x. */
+static void level_axes(const double up[3], double ahead[3], double right[3]) {
+    double axis[3] = {0, 0, 0};
+    axis[fabs(up[0]) > 0.9 ? 1 : 0] = 1;
+    vec3_cross(up, axis, ahead);
+    vec3_along(ahead, 1 / vec3_length(ahead) - 1, ahead, ahead);
+    vec3_cross(ahead, up, right);
+}
+
+void starg_guards_level(const starg_guards *guards, double frame[3][3]) {
+    static const double Y[3] = {0, 1, 0};
+    const double *wanted = guards->options.visibility.up;
+    double length = vec3_length(wanted);
+    for (int k = 0; k < 3; k++)
+        frame[1][k] = length > 0 ? wanted[k] / length : Y[k];
+    level_axes(frame[1], frame[2], frame[0]);
+}
+
+bool starg_guards_angles(const starg_guards *guards, size_t index, double angles[3]) {
+    const double DEGREES = 180 / 3.14159265358979323846, none[3] = {0, 0, 0};
+    double level[3][3], own[3][3], right[3], above[3];
+    if (guards->directions == NULL)
+        return false;
+    sensor_frame(guards->directions + 3 * index,
+                 guards->ups != NULL ? guards->ups + 3 * index : none, own);
+    starg_guards_level(guards, level);
+    double rise = fmax(-1, fmin(1, vec3_dot(own[2], level[1])));
+    bool steep = 1 - fabs(rise) < 1e-12; /* pan is then where the top of the picture is */
+    const double *towards = steep ? own[1] : own[2];
+    angles[0] = DEGREES * atan2(vec3_dot(towards, level[0]), vec3_dot(towards, level[2]));
+    angles[1] = DEGREES * asin(rise);
+    angles[2] = 0;
+    if (!steep) {
+        vec3_cross(own[2], level[1], right);
+        vec3_cross(right, own[2], above);
+        angles[2] = DEGREES * atan2(-vec3_dot(own[0], above), vec3_dot(own[0], right));
+    }
+    for (int k = 0; k < 3; k++)
+        angles[k] = rint(angles[k] * 1e9) / 1e9 + 0.0; /* no noise, and no -0 */
+    return true;
+}
+
 /* The point at distance 1 in the guard's direction. */
 static void look_at_point(const starg_guards *g, size_t i, double at[3]) {
     double length = vec3_length(g->directions + 3 * i);
@@ -55,19 +99,23 @@ static void look_at_point(const starg_guards *g, size_t i, double at[3]) {
 static bool put_csv(FILE *stream, const void *what, const char *unused) {
     const starg_guards *g = what;
     (void)unused;
-    fputs(g->directions != NULL ? "guard,x,y,z,qx,qy,qz,qw,look_x,look_y,look_z,faces\n"
-                                : "guard,x,y,z,faces\n",
+    fputs(g->directions != NULL
+              ? "guard,x,y,z,qx,qy,qz,qw,look_x,look_y,look_z,faces,pan,tilt,roll\n"
+              : "guard,x,y,z,faces\n",
           stream);
     for (size_t i = 0; i < g->count; i++) {
         const double *p = g->positions + 3 * i;
-        double q[4], at[3];
+        double q[4], at[3], angles[3];
         fprintf(stream, "%zu,%.17g,%.17g,%.17g", i, p[0], p[1], p[2]);
         if (starg_guards_rotation(g, i, q)) {
             look_at_point(g, i, at);
             fprintf(stream, ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", q[0], q[1], q[2], q[3],
                     at[0], at[1], at[2]);
         }
-        fprintf(stream, ",%zu\n", g->seen_faces[i]);
+        fprintf(stream, ",%zu", g->seen_faces[i]);
+        if (starg_guards_angles(g, i, angles))
+            fprintf(stream, ",%.9g,%.9g,%.9g", angles[0], angles[1], angles[2]);
+        fputc('\n', stream);
     }
     return !ferror(stream);
 }
@@ -77,12 +125,13 @@ static json_t *triple(const double x[3]) {
 }
 
 static json_t *pose_json(const starg_guards *g, size_t i) {
-    double q[4], at[3];
-    if (!starg_guards_rotation(g, i, q))
+    double q[4], at[3], angles[3];
+    if (!starg_guards_rotation(g, i, q) || !starg_guards_angles(g, i, angles))
         return json_pack("{s:o}", "position", triple(g->positions + 3 * i));
     look_at_point(g, i, at);
-    return json_pack("{s:o, s:[f, f, f, f], s:o}", "position", triple(g->positions + 3 * i),
-                     "rotation", q[0], q[1], q[2], q[3], "look_at", triple(at));
+    return json_pack("{s:o, s:[f, f, f, f], s:o, s:f, s:f, s:f}", "position",
+                     triple(g->positions + 3 * i), "rotation", q[0], q[1], q[2], q[3], "look_at",
+                     triple(at), "pan", angles[0], "tilt", angles[1], "roll", angles[2]);
 }
 
 static bool put_json(FILE *stream, const void *what, const char *unused) {

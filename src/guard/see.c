@@ -102,9 +102,7 @@ starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
     return STARG_OK;
 }
 
-/* The mesh of the patches: the vertices of the model, then the points. */
-static starg_status draw_patches(starg_context *context, const patched_solid *patched,
-                                 starg_mesh **out) {
+starg_status guards_draw(starg_context *context, const patched_solid *patched, starg_mesh **out) {
     const starg_mesh *mesh = patched->solid.mesh;
     const mesh_patches *patches = patched->patches;
     size_t count = drawn_patches(patched), points = patches != NULL ? patches->points.count : 0;
@@ -166,7 +164,7 @@ starg_status starg_guards_patches(starg_context *context, const starg_solid *sce
                model->words * sizeof *model->data);
     if (missing != NULL)
         STARG_TRY(list_missing(context, &patched, model, missing, count));
-    STARG_TRY(draw_patches(context, &patched, mesh));
+    STARG_TRY(guards_draw(context, &patched, mesh));
     *seen = model;
     model = NULL;
 done:

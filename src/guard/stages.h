@@ -19,6 +19,7 @@ typedef struct guard_problem {
         *certificate; /* receives the certificate of the bound for all points; NULL: not wanted */
     const struct kept_guards *kept;  /* what the solid's needs were found from; NULL: nothing */
     const candidate_points *carried; /* candidates in place of new ones; NULL: none */
+    bool audited; /* the choice is all of the pool, in its order, whose rows are what guards see */
     bool hurried; /* targets that no candidate sees are not looked for in the whole free space */
 } guard_problem;
 
@@ -166,6 +167,10 @@ starg_status find_coverage(const guard_problem *problem, const guard_outcome *ou
  * starg_visibility. */
 starg_status guards_look(starg_context *context, const starg_solid *scene,
                          const starg_guards *guards, patched_solid *patched, starg_bits **rows);
+
+/* The patches of the model as a mesh: the vertices of the scene, then the points. Errors: MEMORY.
+ */
+starg_status guards_draw(starg_context *context, const patched_solid *patched, starg_mesh **out);
 
 /* Finds the worth, if the options ask for it (guard/curve.c). Errors: MEMORY, CANCELLED. */
 starg_status curve_find(const guard_problem *problem, guard_outcome *outcome);

@@ -14,25 +14,16 @@
 #include "core/file.h"
 #include "geometry/vec3.h"
 #include "guard/stages.h"
+#include "guard/tables.h"
 #include "visibility/sensor.h"
 
 static const char STAGE[] = "table";
 
-enum { MOST_TIMES = 3 };
-
-typedef struct table {
-    const starg_guards *guards;
-    const starg_face_groups *groups;
-    patched_solid patched;
-    starg_bits *rows;
-    FILE *stream;
-} table;
-
-static const starg_solid *scene_of(const table *t) {
+static const starg_solid *scene_of(const seen_table *t) {
     return &t->patched.solid;
 }
 
-static uint32_t group_of(const table *t, size_t face) {
+static uint32_t group_of(const seen_table *t, size_t face) {
     return t->groups != NULL && face < t->groups->face_count ? t->groups->of[face] : UINT32_MAX;
 }
 
@@ -47,20 +38,20 @@ static void put_text(FILE *stream, const char *text) {
     fputc('"', stream);
 }
 
-static double area_of(const table *t, size_t face) {
+static double area_of(const seen_table *t, size_t face) {
     const starg_mesh *mesh = scene_of(t)->mesh;
     const uint32_t *c = mesh->faces + 3 * face;
     return vec3_triangle_area(mesh->vertices + 3 * (size_t)c[0], mesh->vertices + 3 * (size_t)c[1],
                               mesh->vertices + 3 * (size_t)c[2]);
 }
 
-static double share_of(const table *t, size_t patch) {
+static double share_of(const seen_table *t, size_t patch) {
     const mesh_patches *patches = scene_of(t)->patches;
     return patches != NULL ? patches->share.data[patch] : 1;
 }
 
 /* How many guards see a patch; `only` is the last of them. */
-static size_t count_viewers(const table *t, size_t patch, size_t *only) {
+static size_t count_viewers(const seen_table *t, size_t patch, size_t *only) {
     size_t count = 0;
     for (size_t i = 0; i < t->rows->rows; i++)
         if (starg_bits_test(t->rows, i, patch)) {
@@ -72,57 +63,51 @@ static size_t count_viewers(const table *t, size_t patch, size_t *only) {
 
 /* ---- by face ---- */
 
-static void put_face(const table *t, size_t face, uint8_t *sees) {
+seen_face seen_table_face(const seen_table *t, size_t face, uint8_t *sees) {
     size_t first = solid_first_patch(scene_of(t), face),
-           end = solid_first_patch(scene_of(t), face + 1);
-    size_t least = SIZE_MAX, viewers = 0, only;
-    double share = 0;
-    bool all = true;
+           end = solid_first_patch(scene_of(t), face + 1), only;
+    seen_face out = {.area = area_of(t, face), .least = end > first ? SIZE_MAX : 0};
     for (size_t j = first; j < end; j++) {
         size_t count = count_viewers(t, j, &only);
-        least = count < least ? count : least;
-        share += count > 0 ? share_of(t, j) : 0;
-        all = all && count > 0;
+        out.least = count < out.least ? count : out.least;
+        out.share += count > 0 ? share_of(t, j) : 0;
     }
+    out.share = out.least > 0 ? 1 : out.share;
     for (size_t i = 0; i < t->rows->rows; i++) {
         sees[i] = 0;
         for (size_t j = first; j < end && !sees[i]; j++)
             sees[i] = starg_bits_test(t->rows, i, j);
-        viewers += sees[i];
+        out.cameras += sees[i];
     }
-    uint32_t group = group_of(t, face);
-    fprintf(t->stream, "%zu,", face);
-    put_text(t->stream, group != UINT32_MAX ? t->groups->names[group] : "");
-    fprintf(t->stream, ",%.17g,%.17g,%zu,%zu,", area_of(t, face), all ? 1 : share, viewers,
-            least == SIZE_MAX ? 0 : least);
-    for (size_t i = 0, put = 0; i < t->rows->rows; i++)
-        if (sees[i])
-            fprintf(t->stream, "%s%zu", put++ > 0 ? " " : "", i);
-    fputc('\n', t->stream);
+    return out;
 }
 
-static starg_status put_faces(starg_context *context, const table *t) {
+static void put_face(FILE *stream, const seen_table *t, size_t face, uint8_t *sees) {
+    uint32_t group = group_of(t, face);
+    const seen_face seen = seen_table_face(t, face, sees);
+    fprintf(stream, "%zu,", face);
+    put_text(stream, group != UINT32_MAX ? t->groups->names[group] : "");
+    fprintf(stream, ",%.17g,%.17g,%zu,%zu,", seen.area, seen.share, seen.cameras, seen.least);
+    for (size_t i = 0, put = 0; i < t->rows->rows; i++)
+        if (sees[i])
+            fprintf(stream, "%s%zu", put++ > 0 ? " " : "", i);
+    fputc('\n', stream);
+}
+
+static starg_status put_faces(starg_context *context, FILE *stream, const seen_table *t) {
     SCOPED uint8_t *sees = NULL;
     NEW(context, STAGE, sees, t->rows->rows + 1);
-    fputs("face,group,area,share,cameras,least,which\n", t->stream);
+    fputs("face,group,area,share,cameras,least,which\n", stream);
     for (size_t f = 0; f < starg_space_model_faces(scene_of(t)); f++)
         if (solid_is_target(scene_of(t), false, f))
-            put_face(t, f, sees);
+            put_face(stream, t, f, sees);
     return STARG_OK;
 }
 
 /* ---- by guard and by group ---- */
 
-typedef struct seen_area {
-    double all, alone, pixels; /* the last: times the density */
-} seen_area;
-
-typedef struct group_area {
-    double all, by[MOST_TIMES];
-} group_area;
-
 /* Pixels for each unit of length at the middle of a patch; 0: not known. */
-static double density_at(const table *t, size_t guard, size_t patch) {
+static double density_at(const seen_table *t, size_t guard, size_t patch) {
     const starg_visibility_options *o = &t->guards->options.visibility;
     const starg_solid *solid = scene_of(t);
     double middle[3] = {0, 0, 0}, line[3];
@@ -137,12 +122,13 @@ static double density_at(const table *t, size_t guard, size_t patch) {
     return depth > 0 ? starg_density_depth(o, 1) / depth : 0;
 }
 
-static void measure(const table *t, seen_area *guards, group_area *groups, size_t group_count) {
+void seen_table_measure(const seen_table *t, seen_area *guards, group_area *groups) {
     const starg_solid *solid = scene_of(t);
+    size_t last = t->groups != NULL ? t->groups->count : 0;
     for (size_t f = 0; f < starg_space_model_faces(solid); f++) {
         uint32_t group = group_of(t, f);
         double face = area_of(t, f);
-        group_area *places[2] = {&groups[group_count], group != UINT32_MAX ? &groups[group] : NULL};
+        group_area *places[2] = {&groups[last], group != UINT32_MAX ? &groups[group] : NULL};
         if (!solid_is_target(solid, false, f))
             continue;
         for (size_t j = solid_first_patch(solid, f); j < solid_first_patch(solid, f + 1); j++) {
@@ -150,84 +136,91 @@ static void measure(const table *t, seen_area *guards, group_area *groups, size_
             size_t only = 0, count = count_viewers(t, j, &only);
             for (int p = 0; p < 2 && places[p] != NULL; p++) {
                 places[p]->all += area;
-                for (size_t k = 0; k < MOST_TIMES && k < count; k++)
+                for (size_t k = 0; k < SEEN_TIMES && k < count; k++)
                     places[p]->by[k] += area;
             }
             for (size_t i = 0; i < t->rows->rows && count > 0; i++)
                 if (starg_bits_test(t->rows, i, j)) {
                     guards[i].all += area;
-                    guards[i].pixels += area * density_at(t, i, j);
+                    guards[i].density += area * density_at(t, i, j);
                 }
             if (count == 1)
                 guards[only].alone += area;
         }
     }
+    for (size_t i = 0; i < t->rows->rows; i++)
+        guards[i].density = guards[i].all > 0 ? guards[i].density / guards[i].all : 0;
 }
 
-static double ratio(double part, double all) {
+double seen_ratio(double part, double all) {
     return all > 0 ? fmin(part / all, 1) : 0;
 }
 
-static void put_guards(const table *t, const seen_area *seen, double all) {
-    const starg_visibility_options *o = &t->guards->options.visibility;
-    bool resolved = o->resolution[0] > 0 && o->fov[0] > 0;
+static void put_guards(FILE *stream, const seen_table *t, const seen_area *seen, double all) {
     for (size_t i = 0; i < t->rows->rows; i++) {
-        fprintf(t->stream, "camera,%zu,%s,%.17g,%.17g,%.17g,", i,
+        fprintf(stream, "camera,%zu,%s,%.17g,%.17g,%.17g,", i,
                 t->guards->kept != NULL && t->guards->kept[i] ? "yes" : "no", seen[i].all,
-                ratio(seen[i].all, all), seen[i].alone);
-        if (resolved && seen[i].all > 0)
-            fprintf(t->stream, "%.17g", seen[i].pixels / seen[i].all);
-        fputs(",,,\n", t->stream);
+                seen_ratio(seen[i].all, all), seen[i].alone);
+        if (seen[i].density > 0)
+            fprintf(stream, "%.17g", seen[i].density);
+        fputs(",,,\n", stream);
     }
 }
 
-static void put_group(const table *t, const char *kind, const char *name, const group_area *area) {
-    fprintf(t->stream, "%s,", kind);
-    put_text(t->stream, name);
-    fprintf(t->stream, ",,%.17g,%.17g,,", area->all, ratio(area->by[0], area->all));
-    for (int k = 0; k < MOST_TIMES; k++)
-        fprintf(t->stream, ",%.17g", ratio(area->by[k], area->all));
-    fputc('\n', t->stream);
+static void put_group(FILE *stream, const char *kind, const char *name, const group_area *area) {
+    fprintf(stream, "%s,", kind);
+    put_text(stream, name);
+    fprintf(stream, ",,%.17g,%.17g,,", area->all, seen_ratio(area->by[0], area->all));
+    for (int k = 0; k < SEEN_TIMES; k++)
+        fprintf(stream, ",%.17g", seen_ratio(area->by[k], area->all));
+    fputc('\n', stream);
 }
 
-static starg_status put_summary(starg_context *context, const table *t) {
+static starg_status put_summary(starg_context *context, FILE *stream, const seen_table *t) {
     size_t count = t->groups != NULL ? t->groups->count : 0;
     SCOPED seen_area *guards = NULL;
     SCOPED group_area *groups = NULL;
     NEW_ZERO(context, STAGE, guards, t->rows->rows + 1);
     NEW_ZERO(context, STAGE, groups, count + 1);
-    measure(t, guards, groups, count);
-    fputs("kind,name,kept,area,share,alone,density,by_1,by_2,by_3\n", t->stream);
-    put_guards(t, guards, groups[count].all);
+    seen_table_measure(t, guards, groups);
+    fputs("kind,name,kept,area,share,alone,density,by_1,by_2,by_3\n", stream);
+    put_guards(stream, t, guards, groups[count].all);
     for (size_t g = 0; g < count; g++)
         if (groups[g].all > 0)
-            put_group(t, "group", t->groups->names[g], &groups[g]);
-    put_group(t, "all", "", &groups[count]);
+            put_group(stream, "group", t->groups->names[g], &groups[g]);
+    put_group(stream, "all", "", &groups[count]);
     return STARG_OK;
 }
 
 /* ---- the calls ---- */
 
+starg_status seen_table_open(starg_context *context, const starg_solid *scene,
+                             const starg_guards *guards, const starg_face_groups *groups,
+                             seen_table *out) {
+    *out = (seen_table){.guards = guards, .groups = groups};
+    return guards_look(context, scene, guards, &out->patched, &out->rows);
+}
+
+void seen_table_close(seen_table *table) {
+    starg_bits_free(table->rows);
+    patched_solid_free(&table->patched);
+    *table = (seen_table){0};
+}
+
 static starg_status write(starg_context *context, const starg_solid *scene,
                           const starg_guards *guards, const starg_face_groups *groups,
-                          starg_status (*put)(starg_context *, const table *), const char *path) {
-    starg_status status = STARG_OK;
-    table t = {.guards = guards, .groups = groups};
+                          starg_status (*put)(starg_context *, FILE *, const seen_table *),
+                          const char *path) {
+    SCOPED_BY(seen_table_close) seen_table t = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     starg_output output = {0};
-    starg_c_locale locale = {0};
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(guards_look(context, scene, guards, &t.patched, &t.rows));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    t.stream = output.stream;
-    status = put(context, &t);
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(seen_table_open(context, scene, guards, groups, &t));
+    TRY(starg_output_open(context, STAGE, path, &output));
+    starg_status status = put(context, output.stream, &t);
     if (status == STARG_OK)
-        status = starg_output_commit(&output);
-    else
-        starg_output_discard(&output);
-done:
-    starg_c_locale_leave(&locale);
-    starg_bits_free(t.rows);
-    patched_solid_free(&t.patched);
+        return starg_output_commit(&output);
+    starg_output_discard(&output);
     return status;
 }
 

@@ -184,6 +184,10 @@ typedef struct verify_levels {
 } verify_levels;
 verify_levels verify_check_levels(const verify_facts *known);
 
+/* Claims of files beside the result (verify/tables.c). Errors: READ, MEMORY. */
+starg_status verify_claim_tables(starg_verdict *verdict, const verify_facts *known,
+                                 const starg_guards_evidence *evidence);
+
 /* The claims of a result, in their order (verify/guards_*.c). Errors: MEMORY, CANCELLED, TIME. */
 starg_status verify_claim_places(starg_verdict *verdict, const verify_facts *known);
 void verify_claim_tour(starg_verdict *verdict, const verify_facts *known);

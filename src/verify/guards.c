@@ -245,6 +245,7 @@ starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *
     verify_claim_tour(verdict, &known);
     STARG_TRY(verify_claim_coverage(verdict, &known));
     STARG_TRY(verify_claim_count(verdict, &known, evidence->certificate));
+    STARG_TRY(verify_claim_tables(verdict, &known, evidence));
     *out = verdict;
     verdict = NULL;
 done:

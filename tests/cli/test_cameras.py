@@ -172,6 +172,22 @@ class Cameras(Case):
         del clear["scene"]["clear"]
         self.refuted(clear, "FAILED", "pane.obj")
 
+    def test_with_points_and_patches(self):
+        """Each works and verifies, or is refused with what to leave out."""
+        asked = {"--keep": "stay.txt", "--clear": "door", "--require": "door=2", "--redundancy": "2", "--curve": "c.csv",
+                 "--matrix": "m.txt"}
+        beside = {"--keep": ["--keep", "stay.txt"], "--curve": ["--curve", "c.csv"]}
+        for sensor in ([], CAMERA):
+            for option, value in asked.items():
+                self.usage_error("guard", "room.obj", "--target", "points", *sensor, option, value, "-o", "h.json",
+                                 says="leave out")
+                self.run_text("guard", "room.obj", "--patch", "1", *sensor, option, value, "--effort", "quick", "-o",
+                              "g.json", "--quiet")
+                self.run_text("verify", "room.obj", "g.json", *beside.get(option, []))
+        self.run_text("guard", "room.obj", "--target", "points", "-o", "g.json", "--table", "t.csv", "--quiet")
+        out, _ = self.run_text("verify", "room.obj", "g.json", "--table", "t.csv")
+        self.assertIn("not checked: the tables", out)
+
     def test_share(self):
         """From a point inside, all faces make up the whole sphere."""
         told = self.run_json("visible", "room.obj", "--from", "1,1,1", "--from", "7,2,5", "--share")

@@ -107,9 +107,13 @@ class Export(Case):
         scene, _ = glb_json(self.read("guards.glb"))
         root = scene["nodes"][0]
         self.assertEqual([scene["nodes"][i]["name"] for i in root["children"]], ["model", "guards"])
-        model = scene["meshes"][scene["nodes"][root["children"][0]]["mesh"]]["primitives"][0]
-        self.assertEqual(scene["materials"][model["material"]]["alphaMode"], "BLEND")
-        self.assertEqual(scene["accessors"][model["indices"]]["count"], 3 * self.counts()[1])
+        parts = scene["meshes"][scene["nodes"][root["children"][0]]["mesh"]]["primitives"]
+        names = [scene["materials"][part["material"]]["name"] for part in parts]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertIn("seen by 1", names)
+        for part in parts:
+            self.assertEqual(scene["materials"][part["material"]]["alphaMode"], "BLEND")
+        self.assertEqual(sum(scene["accessors"][part["indices"]]["count"] for part in parts), 3 * self.counts()[1])
 
     @without("validator")
     def test_glb_is_valid(self):

@@ -84,6 +84,7 @@ class Fixtures:
         self.write("field.txt", "".join(f"{x} {y} {z} {x}\n" for x, y, z in
                                         self.numbers("horse_0.off")[:20]))
         self.write("places.txt", "1 1 1\n5 1 1\n1 1 5\n")
+        self.write("stay.txt", "1 1 1\n")
         self.write("cameras.txt", "1 2 1  1 -1 1\n5 2 1  -1 -1 0\n")
         # Slow to make, and wanted more than once.
         for animal in ["cat", "dog"]:

@@ -43,7 +43,7 @@ WITHOUT = {
     "starg_ranks_release": ELSEWHERE,
     "starg_density_depth": ARITHMETIC, "starg_depth_plane": ARITHMETIC, "starg_tilt_holds": ARITHMETIC,
     "starg_cone_cosine": ARITHMETIC, "starg_frustum": ARITHMETIC,
-    "starg_guard_default_step": ARITHMETIC, "starg_guards_rotation": ARITHMETIC, "starg_incidence_cosine": ARITHMETIC, "starg_descriptor_direction": ARITHMETIC,
+    "starg_guard_default_step": ARITHMETIC, "starg_guards_rotation": ARITHMETIC, "starg_guards_angles": ARITHMETIC, "starg_guards_level": ARITHMETIC, "starg_incidence_cosine": ARITHMETIC, "starg_descriptor_direction": ARITHMETIC,
     "starg_distinct_color": ARITHMETIC, "starg_map_positions": ARITHMETIC,
     "starg_overlay_positions": ARITHMETIC,
     "starg_descriptor_recognized": ARITHMETIC, "starg_tetmesh_recognized": ARITHMETIC,

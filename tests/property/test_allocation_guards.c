@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "starguard/cover.h"
+#include "starguard/page.h"
 
 static failing_inputs in;
 static starg_bits *cover_rows;
@@ -296,6 +297,8 @@ static starg_status scenes(starg_context *context) {
     FAILING_BY(starg_guards_name_zones, "", name_zones(context));
     FAILING(starg_guards_write_table, "", in.solid, in.guards, NULL, failing_output("t.csv"));
     FAILING(starg_guards_write_summary, "", in.solid, in.guards, NULL, failing_output("s.csv"));
+    FAILING(starg_sheet_write, "", &(const starg_sheet){.scene = in.solid, .guards = in.guards},
+            failing_output("s.html"));
     FAILING(starg_guards_write_curve, "", in.guards, true, failing_output("c.svg"));
     FAILING(starg_guards_write_matrix, "", in.guards, failing_output("m.txt"));
     FAILING(starg_guards_write_poses, "csv", in.guards, true, failing_output("p.csv"));
