@@ -79,8 +79,9 @@ def random_ball(rng):
             made = blocks(cells)
         elif kind == "prism":
             count = rng.randint(5, 14)
-            made = prism([[rng.uniform(0.3, 2) * f(2 * math.pi * i / count) for f in (math.cos, math.sin)]
-                          for i in range(count)], rng.choice((0.3, 1, 5)))
+            radii = [rng.uniform(0.3, 2) for _ in range(count)]
+            made = prism([[r * f(2 * math.pi * i / count) for f in (math.cos, math.sin)] for i, r in enumerate(radii)],
+                         rng.choice((0.3, 1, 5)))
         elif kind == "comb":
             teeth = rng.randint(2, 6)
             made = blocks([(x, 0, 0) for x in range(2 * teeth - 1)] +
