@@ -297,8 +297,8 @@ class Guards:
         seen through each lens, tables. `model` is the scene that was guarded; default: the model."""
         def write(session: Session, solid: Any, groups: Any, name: Any) -> None:
             text = ffi.new("char[]", (title if title is not None else self.file or "starguard").encode())
-            sheet = ffi.new("starg_sheet *", {"title": text, "scene": solid._handle, "guards": self._handle,
-                                              "groups": groups})
+            sheet = ffi.new("starg_sheet *")
+            sheet.title, sheet.scene, sheet.guards, sheet.groups = text, solid._handle, self._handle, groups
             session.call(lib.starg_sheet_write, session.context, sheet, name)
         self._write_tables(write, path, model)
 

@@ -24,6 +24,15 @@ class Comfort(Case):
             self.assertLess(len(repr(thing)), 300, repr(thing))
             self.assertTrue(repr(thing).startswith(type(thing).__name__), repr(thing))
 
+    def test_files_of_guards(self):
+        guards = starguard.guard(self.room, count=100)
+        guards.write_table("t.csv", self.room)
+        guards.write_summary("s.csv", self.room)
+        guards.write_sheet("sheet.html", self.room, title="A <room>")
+        self.assertEqual(len(self.read("t.csv").splitlines()), 1 + len(self.room.faces))
+        self.assertEqual(self.read("s.csv").count(b"camera,"), len(guards))
+        self.assertIn(b"<h1>A &lt;room&gt;</h1>", self.read("sheet.html"))
+
     def test_bar(self):
         error = io.StringIO()
         with contextlib.redirect_stderr(error):
