@@ -37,7 +37,7 @@ class App {
     // ---- panel ----
 
     build() {
-        this.picker = element("input", { type: "file", id: "picker", accept: ".off,.obj,.ply,.stl" });
+        this.picker = element("input", { type: "file", id: "picker", accept: ".off,.obj,.ply,.stl,.vtk,.vtp" });
         this.picker.addEventListener("change", () => this.take(this.picker.files[0]));
         this.sample = element(
             "select",

@@ -137,11 +137,13 @@ bool starg_obj_matches(const starg_source *source);
 bool starg_ply_matches(const starg_source *source);
 bool starg_stl_matches(const starg_source *source);
 bool starg_vtk_matches(const starg_source *source);
+bool starg_vtp_matches(const starg_source *source);
 starg_status starg_off_read(starg_mesh_builder *builder);
 starg_status starg_obj_read(starg_mesh_builder *builder);
 starg_status starg_ply_read(starg_mesh_builder *builder);
 starg_status starg_stl_read(starg_mesh_builder *builder);
 starg_status starg_vtk_read(starg_mesh_builder *builder);
+starg_status starg_vtp_read(starg_mesh_builder *builder);
 
 /* What a file holds beside the mesh, as far as its format can. */
 typedef struct starg_mesh_extras {
