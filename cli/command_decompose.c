@@ -234,7 +234,7 @@ static starg_status write_coloured(cli_session *session, const starg_mesh *mesh,
         return cli_fail_memory(session);
     for (size_t f = 0; f < count; f++)
         starg_distinct_color(piece, colors + 3 * f);
-    starg_status status = cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, name);
+    starg_status status = cli_marks_write(session, mesh, colors, NULL, NULL, name);
     free(colors);
     return status;
 }

@@ -11,7 +11,7 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj",
+    CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj|.3mf",
                       "Output; its extension selects the format (docs/formats.md); '-' writes .glb "
                       "to standard output."),
     CLI_INPUT_OPTION("model", model, "FILE",
@@ -24,7 +24,8 @@ static starg_status choose_format(cli_session *session, const char *name,
     static const cli_extension known[] = {{".glb", STARG_SCENE_GLB},
                                           {".vtu", STARG_SCENE_VTU},
                                           {".ply", STARG_SCENE_PLY},
-                                          {".obj", STARG_SCENE_OBJ}};
+                                          {".obj", STARG_SCENE_OBJ},
+                                          {".3mf", STARG_SCENE_3MF}};
     int found;
     starg_status status = cli_format_by_extension(
         session, name, known, sizeof known / sizeof *known, STARG_SCENE_GLB, &found);
@@ -34,7 +35,7 @@ static starg_status choose_format(cli_session *session, const char *name,
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
-    TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply or .obj"));
+    TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply, .obj or .3mf"));
     return choose_format(session, v->output, &v->format);
 }
 
@@ -108,7 +109,7 @@ done:
 
 const cli_command cli_command_export = {
     .name = "export",
-    .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj [options]",
+    .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj|.3mf [options]",
     .summary = "export a model with guards, pieces and skeleton for other programs",
     .description =
         "Writes results and their model into one file. Inputs are recognized by "
@@ -119,7 +120,8 @@ const cli_command cli_command_export = {
         ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "
         "data give the part, the piece, and the guard that sees a face.\n"
         ".ply (MeshLab): faces coloured by piece, or by the guard that sees them.\n"
-        ".obj: one object per part.",
+        ".obj: one object per part.\n"
+        ".3mf (printers): one object per piece, or the model if there are none, in millimetres.",
     .examples = "# guards and pieces of a model for Blender\n"
                 "starguard guard horse.off -o guards.json\n"
                 "starguard decompose horse.off -o pieces.vtk --report pieces.json\n"

@@ -169,7 +169,8 @@ static starg_scene_format format_of(const char *path) {
     static const char *const extensions[] = {[STARG_SCENE_GLB] = ".glb",
                                              [STARG_SCENE_VTU] = ".vtu",
                                              [STARG_SCENE_PLY] = ".ply",
-                                             [STARG_SCENE_OBJ] = ".obj"};
+                                             [STARG_SCENE_OBJ] = ".obj",
+                                             [STARG_SCENE_3MF] = ".3mf"};
     for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
         if (extensions[i] != NULL && starg_has_extension(path, extensions[i]))
             return (starg_scene_format)i;
@@ -184,7 +185,8 @@ static starg_status choose_format(starg_context *context, const char *path,
         return STARG_OK;
     return starg_fail(
         context, STARG_ERROR_ARGUMENT, STAGE,
-        "'%.300s' has no known format; use a name that ends in .glb, .vtu, .ply or .obj", path);
+        "'%.300s' has no known format; use a name that ends in .glb, .vtu, .ply, .obj or .3mf",
+        path);
 }
 
 static starg_status write_as(starg_context *context, const scene_job *job, const char *path,
@@ -198,6 +200,8 @@ static starg_status write_as(starg_context *context, const scene_job *job, const
         return scene_write_ply(context, job, path);
     case STARG_SCENE_OBJ:
         return scene_write_obj(context, job, path);
+    case STARG_SCENE_3MF:
+        return scene_write_3mf(context, job, path);
     case STARG_SCENE_AUTO:
         break;
     }

@@ -244,6 +244,41 @@ class Surfaces(Case):
             writer.Write()
             self.assertIn(f"compressed by vtk{packing}", self.run_text("check", "a.vtp", status=2)[1])
 
+    def test_xml_written(self):
+        """Marks and meshes written as .vtp: read by this reader, and by VTK where there is one."""
+        self.write("a.vtp", XmlFile().piece(ELL_POINTS, ELL_FACES).text())
+        self.run_text("repair", "a.vtp", "-o", "b.vtp")
+        self.run_text("repair", "b.vtp", "-o", "b.off")
+        self.run_text("repair", "a.vtp", "-o", "a.off")
+        self.assertEqual(self.read("a.off"), self.read("b.off"))
+        open_ = [f for f in ELL_FACES if f != (3, 2, 1, 0, 5, 4)]
+        self.write("open.vtp", XmlFile().piece(ELL_POINTS, open_).text())
+        self.run_text("check", "open.vtp", "--marks", "m.vtp", status=2)
+        self.run_text("visible", "a.vtp", "--from", "2.5,0.5,1", "--from", "0.5,1.5,1", "-o", "s.vtp")
+        self.run_text("guard", "a.vtp", "-o", "g.json", "--marks", "g.vtp")
+        points = self.run_json("visible", "a.vtp", "--from", "2.5,0.5,1", "--from", "0.5,1.5,1")["points"]
+        first = [0 if f in points[0]["faces"] else 1 if f in points[1]["faces"] else -1 for f in range(20)]
+        self.assertEqual(set(first), {0, 1})
+        for name in ("m.vtp", "s.vtp", "g.vtp"):
+            self.assertIn(b'Name="color"', self.read(name))
+        for word, wanted in (("mark=0", first.count(0)), ("mark=1", first.count(1))):
+            self.run_text("guard", "s.vtp", "--see", word, "-o", "g.json", "--table", "t.csv")
+            self.assertEqual(len(self.read("t.csv").splitlines()), wanted + 1)
+        if vtk is None:
+            return
+        reader = vtk.vtkXMLPolyDataReader()
+        reader.SetFileName(self.path("s.vtp"))
+        reader.Update()
+        marks = reader.GetOutput().GetCellData().GetArray("mark")
+        self.assertEqual([marks.GetValue(i) for i in range(20)], first)
+        sizes = vtk.vtkMassProperties()
+        sizes.SetInputConnection(reader.GetOutputPort())
+        self.assertAlmostEqual(sizes.GetVolume(), 8, 9)
+        reader.SetFileName(self.path("m.vtp"))
+        reader.Update()
+        marks = reader.GetOutput().GetCellData().GetArray("mark")
+        self.assertEqual({marks.GetValue(i) for i in range(16)}, {-1, 0})
+
     def test_xml_refused(self):
         """What is no surface, or does not fit together, is said with the line."""
         good = XmlFile().piece(ELL_POINTS, ELL_FACES).text().decode()
