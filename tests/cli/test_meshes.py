@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes as people have them: voxel bodies with T-junctions, solids to be united, formats of scenes."""
+import json
 import os
 import random
 import shutil
@@ -29,6 +30,51 @@ class Families(Case):
         for seed in range(16):
             with self.subTest(seed=seed):
                 self.check_case(families.pair(random.Random(seed)), "--union")
+
+
+class Junctions(Case):
+    """T-junctions where a solid is needed: joined, or the command that joins them."""
+
+    def decompose(self, case, surface):
+        families.write(self.path("in.off"), case.vertices, case.faces)
+        report = self.run_json("decompose", "in.off", "-o", "p.vtk", "--report", "p.json", "--effort", "20")
+        result = json.loads(self.read("p.json"))
+        told = [line["message"] for line in report["log"]]
+        joined = [line for line in told if "(T-junctions) were joined" in line]
+        self.assertEqual((len(joined), any("stuffing" in line for line in told)), (surface, not surface), told)
+        self.run_text("verify", "in.off", "p.json", "p.vtk")
+        return result
+
+    def test_decompose(self):
+        open_ = 0
+        for seed in range(8):
+            with self.subTest(seed=seed):
+                case = families.voxels(random.Random(seed), 4 + 3 * seed, seed % 2 == 1)
+                families.write(self.path("in.off"), case.vertices, case.faces)
+                if self.run_json("check", "in.off", status=None)["usable"]:
+                    continue
+                open_ += 1
+                result = self.decompose(case, True)
+                self.assertLess(abs(sum(p["volume"] for p in result["pieces"]) - case.volume), 2 * case.loose)
+                size = max(max(p[k] for p in case.vertices) - min(p[k] for p in case.vertices) for k in range(3))
+                self.assertLess(max(result["distance"], result["distance_back"]), 1e-8 * size)
+        self.assertGreater(open_, 4)
+
+    def test_hole(self):
+        """What joining does not close is filled as before."""
+        case = families.voxels(random.Random(3), 12)
+        case.faces.pop()
+        result = self.decompose(case, False)
+        self.assertNotIn("faces_kept", result)
+
+    def test_guard(self):
+        case = families.voxels(random.Random(3), 12)
+        families.write(self.path("MODEL"), case.vertices, case.faces)
+        _, err = self.run_text("guard", "MODEL", "-o", "g.json", status=2)
+        command = err.split("'")[err.split("'").index("starguard check") + 2]
+        self.assertEqual(command, "starguard repair MODEL -o SOLID.off")
+        self.run_text(*command.split()[1:])
+        self.run_text("guard", "SOLID.off", "-o", "g.json")
 
 
 class Scenes(Case):

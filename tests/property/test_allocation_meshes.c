@@ -87,6 +87,7 @@ static starg_status meshes(starg_context *context) {
     WRITE(starg_mesh_write, "obj", OBJ);
     WRITE(starg_mesh_write, "ply", PLY_BINARY);
     WRITE(starg_mesh_write, "stl", STL_BINARY);
+    WRITE(starg_mesh_write, "vtp", VTP);
     return STARG_OK;
 }
 

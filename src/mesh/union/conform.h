@@ -24,6 +24,10 @@ double conform_distance(const union_surface *surface, double merge);
  */
 starg_status surface_conform(union_surface *surface, double distance, conform_report *report);
 
+/* Has the mesh no open edge then? `merge` as above. Errors: MEMORY, CANCELLED, TIME. */
+starg_status conform_closes(starg_context *context, const starg_mesh *mesh, double merge,
+                            bool *closed);
+
 /* place[v] is v, or the earlier vertex that it joins: the nearest of those kept that lie within the
  * distance, so that nothing moves farther. Errors: MEMORY. */
 starg_status near_weld(starg_context *context, const double *vertices, size_t count,
