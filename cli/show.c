@@ -217,6 +217,9 @@ static const char *base_of(const char *path) {
 
 static starg_status read_model(cli_session *session, const char *file, cli_show *show) {
     TRY(cli_shape_read(session, file, &show->model, &show->tetmesh));
+    show->model_file = strdup(file);
+    if (show->model_file == NULL)
+        return cli_fail_memory(session);
     if (show->tetmesh != NULL)
         TRY(starg_tetmesh_surface(session->context, show->tetmesh, &show->model, NULL));
     show->page.model = show->model;
@@ -439,6 +442,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
     starg_patches_free(context, show->uncovered);
     starg_certificate_outline_free(context, show->proof);
     starg_solid_free(show->solid);
+    free(show->model_file);
     starg_mesh_free(show->model);
     starg_mesh_free(show->obstacles);
     starg_tetmesh_free(show->tetmesh);

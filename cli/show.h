@@ -8,6 +8,7 @@
 typedef struct cli_show {
     starg_page page; /* refers to the members below */
     const char *guards_file, *pieces_file, *report_file;
+    char *model_file; /* as it was opened */
     starg_tetmesh *tetmesh;
     starg_mesh *model, *obstacles, **frames;
     starg_solid *solid;

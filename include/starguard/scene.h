@@ -8,6 +8,7 @@
 #include "guard.h"
 #include "mesh.h"
 #include "skeleton.h"
+#include "space.h"
 #include "verify.h"
 
 #ifdef __cplusplus
@@ -23,6 +24,7 @@ typedef struct starg_scene {
     const starg_pieces_mesh *pieces;
     const starg_pieces_report *report; /* of the pieces */
     const starg_skeleton *skeleton;    /* uses positions, edges and radii; radii may be NULL */
+    const starg_face_groups *groups;   /* of the model: nodes of a GLB; NULL: none */
 } starg_scene;
 
 typedef enum starg_scene_format {

@@ -35,6 +35,10 @@ static starg_status check_guards(starg_context *context, const starg_scene *s) {
         return starg_fail(
             context, STARG_ERROR_ARGUMENT, STAGE,
             "visibility needs one row per guard and one column per face of the model");
+    if (s->groups != NULL &&
+        (s->model == NULL || s->groups->face_count != starg_mesh_face_count(s->model)))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "groups need a model with as many faces");
     return STARG_OK;
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as binary glTF 2.0. Below the root, which is moved to the middle of all, stand the nodes
- * "model", "obstacles", "guards" with "guard_0000" and so on, each with its "camera_0000" if it
- * looks one way, "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard
- * or a piece is in the extras of its node.
+ * "model" with its groups, "obstacles", "guards" with "guard_0000" and so on, each with its
+ * "camera_0000" if it looks one way, "pieces" with "piece_0000" and so on, "skeleton". What results
+ * say about a guard or a piece is in the extras of its node.
  *
  * Numbers stand in one view for each kind, of which accessors take ranges: all pieces share their
  * vertices, and all guards one ball. There are no normals, so that programs shade each face flat,
@@ -51,6 +51,8 @@ typedef struct glb_scene {
     const scene_job *job;
     scene_ball ball;
     view views[VIEW_KINDS + 1];
+    uint32_t *grouped;   /* faces of the model, by group; those of none first; NULL: no groups */
+    size_t *group_start; /* of each in it, in faces, and the end */
     size_t bytes;
     bool failed; /* memory was out while JSON was made */
     json_t *root, *nodes, *meshes, *materials, *accessors, *buffer_views, *cameras;
@@ -71,7 +73,8 @@ static void list_views(glb_scene *s) {
                                       .count = job->model_vertices,
                                       .centered = true};
         v[VIEW_MODEL_FACES] =
-            (view){.words = starg_mesh_faces(scene->model), .count = 3 * job->model_faces};
+            (view){.words = s->grouped != NULL ? s->grouped : starg_mesh_faces(scene->model),
+                   .count = 3 * job->model_faces};
     }
     if (job->obstacle_faces > 0) {
         v[VIEW_OBSTACLE_POINTS] = (view){.reals = starg_mesh_vertices(scene->obstacles),
@@ -260,14 +263,59 @@ static json_t *add_node(glb_scene *s, json_t *parent, const char *name, size_t n
 
 /* ---- parts ---- */
 
+/* Sorts the faces of the model by group. */
+static starg_status sort_groups(starg_context *context, glb_scene *s) {
+    const starg_face_groups *groups = s->job->scene->groups;
+    if (groups == NULL || s->job->model_faces == 0)
+        return STARG_OK;
+    const uint32_t *faces = starg_mesh_faces(s->job->scene->model);
+    NEW(context, STAGE, s->grouped, 3 * s->job->model_faces);
+    NEW_ZERO(context, STAGE, s->group_start, groups->count + 3);
+    size_t *next = s->group_start + 1; /* becomes where each begins */
+    for (size_t f = 0; f < groups->face_count; f++)
+        next[groups->of[f] == UINT32_MAX ? 1 : (size_t)groups->of[f] + 2]++;
+    for (size_t g = 0; g <= groups->count; g++)
+        next[g + 1] += next[g];
+    for (size_t f = 0; f < groups->face_count; f++) {
+        size_t *at = &next[groups->of[f] == UINT32_MAX ? 0 : (size_t)groups->of[f] + 1];
+        memcpy(s->grouped + 3 * (*at)++, faces + 3 * f, 3 * sizeof *faces);
+    }
+    return STARG_OK;
+}
+
+/* A node for each group, below that of the model, which has the faces of none. */
+static void add_groups(glb_scene *s, json_int_t points, json_int_t material) {
+    const starg_face_groups *groups = s->job->scene->groups;
+    json_t *parent = NULL;
+    for (size_t g = 0; g <= groups->count; g++) {
+        size_t first = s->group_start[g], count = s->group_start[g + 1] - first;
+        json_int_t mesh = -1;
+        if (count > 0)
+            mesh = add_mesh(s, points, add_indices(s, VIEW_MODEL_FACES, 3 * first, 3 * count),
+                            MODE_TRIANGLES, material);
+        if (g == 0)
+            parent = add_node(s, s->root, "model", SIZE_MAX, mesh);
+        if (g == 0 || mesh < 0)
+            continue;
+        json_t *node = add_node(s, parent, "group", g - 1, mesh);
+        json_t *name = json_string(groups->names[g - 1]); /* NULL: no UTF-8 */
+        if (name != NULL)
+            put(s, node, "name", name);
+    }
+}
+
 static void add_model(glb_scene *s) {
     const scene_job *job = s->job;
     if (job->model_faces == 0)
         return;
     bool alone = job->guards + job->surfaces.piece_count + job->nodes == 0;
     json_int_t points = add_reals(s, VIEW_MODEL_POINTS);
-    json_int_t faces = add_indices(s, VIEW_MODEL_FACES, 0, 3 * job->model_faces);
     json_int_t material = add_material(s, SCENE_NEUTRAL, alone ? 1 : 0.3);
+    if (s->grouped != NULL) {
+        add_groups(s, points, material);
+        return;
+    }
+    json_int_t faces = add_indices(s, VIEW_MODEL_FACES, 0, 3 * job->model_faces);
     add_node(s, s->root, "model", SIZE_MAX, add_mesh(s, points, faces, MODE_TRIANGLES, material));
 }
 
@@ -426,6 +474,7 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
     json_t *json = NULL;
     glb_scene s = {.job = job};
     scene_ball_make(&s.ball);
+    STARG_TRY(sort_groups(context, &s));
     list_views(&s);
     STARG_TRY(check_range(context, &s));
     STARG_TRY(check_parts(context, &s));
@@ -433,5 +482,6 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
     STARG_TRY(glb_write(context, STAGE, path, json, s.bytes, put_numbers, &s));
 done:
     json_decref(json);
+    RELEASE(s.grouped, s.group_start);
     return status;
 }

@@ -92,6 +92,49 @@ class Scenes(Case):
         self.run_text("export", "g.json", "-o", "gallery.glb")
         self.run_text("check", "gallery.glb")
 
+    def test_corners(self):
+        """Objects whose rims meet are one surface; closed ones that touch keep their corners."""
+        corners = [(i & 1, i >> 1 & 1, i >> 2) for i in range(8)]
+        sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        text = ""
+        for box in range(2):
+            text += "".join(f"v {x + box} {y} {z}\n" for x, y, z in corners)
+            for number, side in enumerate(sides):
+                text += f"o wall{number}\n" if box == 0 else "o box\n" if number == 0 else ""
+                text += "f " + " ".join(str(i + 1 + 8 * box) for i in side) + "\n"
+        self.write("two.obj", text)
+        ran = subprocess.run([os.path.join(BUILD, "starguard-import"), self.path("two.obj")], capture_output=True, check=True)
+        self.write("two.ply", ran.stdout)
+        told = self.run_json("check", "two.ply")
+        self.assertEqual((told["model"]["vertices"], round(told["volume"], 9), told["components"]), (16, 2, 2))
+        self.assertEqual(told["findings"]["duplicate_vertices"]["count"], 4)
+        self.assertNotIn("isolated_vertices", told["findings"])
+
+    def test_groups(self):
+        """A room from groups to cameras and back: names stay, and are words for --see again."""
+        names = {"floor": 2, "ceil & ing": 2, "z\u00fcrich": 2}
+        text = "".join(f"v {8 * (i & 1)} {6 * (i >> 1 & 1)} {3 * (i >> 2)}\n" for i in range(8))
+        sides = iter([(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)])
+        for name in names:
+            text += f"g {name}\nf " + " ".join(map(str, next(sides))) + "\n"
+        text += "o\ng\n" + "".join("f " + " ".join(map(str, side)) + "\n" for side in sides)
+        self.write("room.obj", text)
+        self.run_text("export", "room.obj", "-o", "room.glb")
+        self.assertAlmostEqual(self.run_json("check", "room.glb")["volume"], 144, 4)
+        self.run_text("guard", "room.glb", "-o", "g.json", "--see", "floor", "--see", "ceil & ing", "--table", "t.csv")
+        rows = [line.split(",") for line in self.read("t.csv").decode().splitlines()[1:]]
+        self.assertEqual(sorted(row[1] for row in rows), ["ceil & ing"] * 2 + ["floor"] * 2)
+        for row in rows:
+            self.assertAlmostEqual(float(row[2]), 24, 4)
+        self.run_text("export", "g.json", "-o", "back.glb")
+        data = self.read("back.glb")
+        nodes = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["nodes"]
+        found = [node["name"] for node in nodes]
+        for name in [*names, "model", "guards"]:
+            self.assertIn(name, found)
+        model = nodes[found.index("model")]
+        self.assertEqual([nodes[i]["name"] for i in model["children"]], ["model", *names])
+
     def test_damaged(self):
         if not os.path.exists(self.glb):
             self.skipTest(f"no {self.glb}")
