@@ -281,33 +281,66 @@ static void print_names(const scene *s) {
     }
 }
 
-static void write_faces(const instance *item, const uint32_t *number) {
+/* Numbers of faces in as few bytes as hold the largest, for they are in memory beside the mesh. */
+typedef struct number_type {
+    const char *name;
+    size_t bytes;
+} number_type;
+
+static number_type type_for(uint32_t most) {
+    return most <= UINT8_MAX    ? (number_type){"uchar", 1}
+           : most <= UINT16_MAX ? (number_type){"ushort", 2}
+                                : (number_type){"uint", 4};
+}
+
+static void write_number(uint32_t number, number_type type) {
+    for (size_t i = 0; i < type.bytes; i++)
+        putchar((int)(number >> 8 * i & 0xFF));
+}
+
+typedef struct face_types {
+    number_type corners, group, material;
+} face_types;
+
+static face_types find_types(const scene *s) {
+    uint32_t most = 0;
+    for (size_t i = 0; i < s->count; i++)
+        for (unsigned f = 0; f < s->instances[i].mesh->mNumFaces; f++) {
+            const struct aiFace *face = &s->instances[i].mesh->mFaces[f];
+            most = is_kept(face) && face->mNumIndices > most ? face->mNumIndices : most;
+        }
+    return (face_types){type_for(most), type_for((uint32_t)s->group_count),
+                        type_for(s->file->mNumMaterials)};
+}
+
+static void write_faces(const instance *item, const uint32_t *number, face_types types) {
     double(*t)[4] = ((instance *)(uintptr_t)item)->transform;
     double turn = t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) -
                   t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0]) +
                   t[0][2] * (t[1][0] * t[2][1] - t[1][1] * t[2][0]);
     for (unsigned f = 0; f < item->mesh->mNumFaces; f++) {
         const struct aiFace *face = &item->mesh->mFaces[f];
-        const int32_t numbers[2] = {(int32_t)item->group, (int32_t)item->mesh->mMaterialIndex};
-        uint16_t corners = (uint16_t)face->mNumIndices;
+        unsigned corners = face->mNumIndices;
         if (!is_kept(face))
             continue;
-        fwrite(&corners, sizeof corners, 1, stdout);
+        write_number(corners, types.corners);
         for (unsigned k = 0; k < corners; k++) {
             unsigned own = face->mIndices[turn < 0 ? corners - 1 - k : k];
             fwrite(&number[item->base + own], sizeof *number, 1, stdout);
         }
-        fwrite(numbers, sizeof numbers, 1, stdout);
+        write_number(item->group, types.group);
+        write_number(item->mesh->mMaterialIndex, types.material);
     }
 }
 
 static void write_map(const scene *s, corner_map *map, size_t vertices, size_t faces) {
+    const face_types types = find_types(s);
     printf("ply\nformat binary_little_endian 1.0\n");
     print_names(s);
     printf("element vertex %zu\nproperty double x\nproperty double y\nproperty double z\n"
-           "element face %zu\nproperty list ushort uint vertex_indices\nproperty int group\n"
-           "property int material\nend_header\n",
-           vertices, faces);
+           "element face %zu\nproperty list %s uint vertex_indices\nproperty %s group\n"
+           "property %s material\nend_header\n",
+           vertices, faces, types.corners.name, types.group.name, types.material.name);
     for (uint32_t i = 0, number = 0; i < map->count; i++) {
         if (map->vertex[i] == i) {
             fwrite(map->place[i], sizeof map->place[i], 1, stdout);
@@ -317,7 +350,7 @@ static void write_map(const scene *s, corner_map *map, size_t vertices, size_t f
         }
     }
     for (size_t i = 0; i < s->count; i++)
-        write_faces(&s->instances[i], map->vertex);
+        write_faces(&s->instances[i], map->vertex, types);
 }
 
 static int write_scene(scene *s) {
