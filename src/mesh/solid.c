@@ -30,8 +30,9 @@ const char *starg_check_advice(const starg_check *check) {
                "D'";
     if (check->findings[STARG_FINDING_OPEN_EDGE].count > 0 &&
         check->findings[STARG_FINDING_SELF_CONTACT].count > 0)
-        return "faces touch where they share no edge (T-junctions): 'starguard repair MODEL -o "
-               "SOLID.off' joins them";
+        return "some faces touch where they share no edge (T-junctions): 'starguard repair MODEL "
+               "-o "
+               "SOLID.off' joins these, and then fills holes";
     return "try 'starguard repair'";
 }
 

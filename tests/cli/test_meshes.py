@@ -33,6 +33,14 @@ class Families(Case):
             with self.subTest(seed=seed):
                 self.check_case(families.pair(random.Random(seed)), "--union")
 
+    def test_slivers(self):
+        """Solids in nearly the same place, far from the origin: what rounding makes is joined before it grows."""
+        for seed in (160, 188, 207):
+            with self.subTest(seed=seed):
+                case = families.pair(random.Random(seed))
+                self.check_case(case, "--union")
+                self.assertLess(len(families.read(self.path("out.off"))[1]), 8 * len(case.faces))
+
 
 class Junctions(Case):
     """T-junctions where a solid is needed: joined, or the command that joins them."""
