@@ -18,6 +18,7 @@ import sys
 import tempfile
 
 ULP = 2.0 ** -52
+MOST_SECONDS = 60
 
 
 class Case:
@@ -294,8 +295,8 @@ def run(name, cases, options, folder):
         given, result = os.path.join(folder, "in.off"), os.path.join(folder, "out.off")
         write(given, case.vertices, case.faces)
         before = processor_time()
-        done = subprocess.run([program, "repair", given, "-o", result, "--quiet", *options], capture_output=True,
-                              text=True, check=False)
+        done = subprocess.run([program, "repair", given, "-o", result, "--quiet", "--time-limit", str(MOST_SECONDS),
+                               *options], capture_output=True, text=True, check=False)
         slowest = max(slowest, processor_time() - before)
         faults = [done.stderr.strip()]
         if done.returncode == 0:

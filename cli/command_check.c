@@ -11,7 +11,7 @@ typedef struct values {
 
 static const cli_option options[] = {
     CLI_TEXT_OPTION(
-        "marks", marks, "FILE.ply",
+        "marks", marks, "FILE.ply|.vtp",
         "Write the model with one colour per kind of finding, also for unusable models."),
 };
 
@@ -158,13 +158,19 @@ static void print_legend(cli_session *session, const starg_check *check) {
 static starg_status write_marks(cli_session *session, const starg_mesh *mesh,
                                 const starg_check *check, const char *name) {
     uint8_t *colors = cli_colors_create(mesh);
-    if (colors == NULL)
-        return cli_fail_memory(session);
-    for (size_t i = 0; i < check->faces; i++)
-        if (check->face_marks[i] > 0)
-            starg_distinct_color((size_t)check->face_marks[i] - 1, colors + 3 * i);
-    starg_status status = cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, name);
+    int32_t *marks = malloc((check->faces + 1) * sizeof *marks);
+    starg_status status = STARG_OK;
+    if (colors == NULL || marks == NULL)
+        status = cli_fail_memory(session);
+    for (size_t i = 0; i < check->faces && status == STARG_OK; i++) {
+        marks[i] = (int32_t)check->face_marks[i] - 1;
+        if (marks[i] >= 0)
+            starg_distinct_color((size_t)marks[i], colors + 3 * i);
+    }
+    if (status == STARG_OK)
+        status = cli_marks_write(session, mesh, colors, marks, NULL, name);
     free(colors);
+    free(marks);
     if (status == STARG_OK)
         print_legend(session, check);
     return status;
@@ -204,7 +210,7 @@ static void judge(cli_session *session, const starg_check *check) {
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    return cli_announce_with_extension(session, "--marks", v->marks, ".ply");
+    return cli_announce_marks(session, "--marks", v->marks);
 }
 
 static starg_status run(cli_session *session, void *data) {
@@ -224,7 +230,7 @@ done:
 
 const cli_command cli_command_check = {
     .name = "check",
-    .usage = "MODEL [--marks FILE.ply] [options]",
+    .usage = "MODEL [--marks FILE.ply|.vtp] [options]",
     .summary = "test whether a model is a usable solid and list its defects",
     .description =
         "Tests whether a mesh is closed, manifold, consistently oriented and free of "

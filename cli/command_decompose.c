@@ -103,11 +103,15 @@ static starg_status cut(cli_session *session, const subject *s,
     /* a surface with holes is filled where its winding number exceeds 1/2; errors without a place
      * are not about holes */
     if (status == STARG_ERROR_MESH && starg_context_error(session->context)->index_count > 0) {
-        cli_log(session, STARG_LOG_WARNING,
-                "%s; isosurface stuffing fills the region whose winding number exceeds 1/2 and "
-                "thereby closes holes",
-                starg_context_error(session->context)->message);
-        return starg_decompose_open_mesh(session->context, s->surface, wanted, out);
+        char reason[400];
+        snprintf(reason, sizeof reason, "%s", starg_context_error(session->context)->message);
+        TRY(starg_decompose_open_mesh(session->context, s->surface, wanted, out));
+        if (!(*out)->joined)
+            cli_log(session, STARG_LOG_WARNING,
+                    "%s; isosurface stuffing fills the region whose winding number exceeds 1/2 and "
+                    "thereby closes holes",
+                    reason);
+        return STARG_OK;
     }
     if (status == STARG_OK)
         status = cut_solid(session, solid, wanted, why, out);
@@ -165,8 +169,8 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
         cli_say(session, "surface       within %.3g of the model's, which is within %.3g of it\n",
                 d->tetra.distance, d->tetra.distance_back);
     if (d->faces_kept > 0)
-        cli_say(session, "faces kept    %zu of %zu; the others intersect, or lie inside\n",
-                d->faces_kept, d->model_faces);
+        cli_say(session, "faces kept    %zu of %zu; the others %s\n", d->faces_kept, d->model_faces,
+                d->joined ? "are divided where faces touch them" : "intersect, or lie inside");
     if (d->balls != STARG_BALLS_NONE)
         cli_say(
             session,
@@ -234,7 +238,7 @@ static starg_status write_coloured(cli_session *session, const starg_mesh *mesh,
         return cli_fail_memory(session);
     for (size_t f = 0; f < count; f++)
         starg_distinct_color(piece, colors + 3 * f);
-    starg_status status = cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, name);
+    starg_status status = cli_marks_write(session, mesh, colors, NULL, NULL, name);
     free(colors);
     return status;
 }

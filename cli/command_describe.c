@@ -72,7 +72,7 @@ static starg_status write_points(cli_session *session, const starg_descriptor *d
     CLI_TRY(starg_descriptor_points(context, d, &points));
     CLI_TRY(
         starg_mesh_create(context, points, d->guard_count * d->direction_count, NULL, 0, &cloud));
-    CLI_TRY(cli_mesh_write(session, cloud, STARG_MESH_PLY_BINARY, NULL, name));
+    CLI_TRY(cli_mesh_write(session, cloud, STARG_MESH_PLY_BINARY, name));
 done:
     starg_mesh_free(cloud);
     starg_descriptor_points_free(context, points);

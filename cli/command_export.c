@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard export: writes a model with its results to one file for other programs. */
+#include <string.h>
 
 #include "commands.h"
 #include "show.h"
@@ -11,7 +12,7 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj",
+    CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj|.3mf",
                       "Output; its extension selects the format (docs/formats.md); '-' writes .glb "
                       "to standard output."),
     CLI_INPUT_OPTION("model", model, "FILE",
@@ -24,7 +25,8 @@ static starg_status choose_format(cli_session *session, const char *name,
     static const cli_extension known[] = {{".glb", STARG_SCENE_GLB},
                                           {".vtu", STARG_SCENE_VTU},
                                           {".ply", STARG_SCENE_PLY},
-                                          {".obj", STARG_SCENE_OBJ}};
+                                          {".obj", STARG_SCENE_OBJ},
+                                          {".3mf", STARG_SCENE_3MF}};
     int found;
     starg_status status = cli_format_by_extension(
         session, name, known, sizeof known / sizeof *known, STARG_SCENE_GLB, &found);
@@ -34,7 +36,7 @@ static starg_status choose_format(cli_session *session, const char *name,
 
 static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
-    TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply or .obj"));
+    TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply, .obj or .3mf"));
     return choose_format(session, v->output, &v->format);
 }
 
@@ -84,42 +86,59 @@ static void tell(cli_session *session, const values *v, const cli_show *show) {
     cli_put(session, session->report, "written", written);
 }
 
+/* The groups in the model's file, which only a GLB names. */
+static starg_status read_groups(cli_session *session, const values *v, const cli_show *show,
+                                starg_face_groups *groups) {
+    const char *file = show->model_file;
+    if (v->format != STARG_SCENE_GLB || show->tetmesh != NULL || file == NULL ||
+        strcmp(file, "-") == 0)
+        return STARG_OK;
+    return starg_face_groups_read(session->context, file, groups);
+}
+
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     cli_show show = {0};
+    starg_face_groups groups = {0};
     const starg_page *page = &show.page;
     CLI_TRY(cli_show_read(session, v->model, STARG_SIGNATURE_DEFAULT, &show));
     CLI_TRY(check_kinds(session, page));
+    CLI_TRY(read_groups(session, v, &show, &groups));
+    bool fit = page->model != NULL && groups.face_count == starg_mesh_face_count(page->model);
     const starg_scene scene = {.model = page->model,
                                .obstacles = page->obstacles,
                                .guards = page->guards,
                                .seen = page->seen,
                                .pieces = page->pieces,
                                .report = page->report,
-                               .skeleton = page->skeleton};
+                               .skeleton = page->skeleton,
+                               .groups = fit && groups.count > 0 ? &groups : NULL};
     CLI_TRY(starg_scene_write(session->context, &scene,
                               cli_outputs_place(&session->outputs, v->output), v->format));
     tell(session, v, &show);
 done:
+    starg_face_groups_free(session->context, &groups);
     cli_show_free(session, &show);
     return status;
 }
 
 const cli_command cli_command_export = {
     .name = "export",
-    .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj [options]",
+    .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj|.3mf [options]",
     .summary = "export a model with guards, pieces and skeleton for other programs",
     .description =
         "Writes results and their model into one file. Inputs are recognized by "
         "content, at most one of each kind: GUARDS.json, PIECES.vtk and PIECES.json, a "
         "skeleton (.obj, .cg, .vtk, .swc), a model.\n"
-        ".glb (Blender, browsers, three.js): a named node for the model, obstacles, "
+        ".glb (Blender, browsers, three.js): a named node for the model and each of its groups, "
+        "obstacles, "
         "each guard, each piece and the skeleton; extras hold the data of guards and pieces.\n"
         ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "
         "data give the part, the piece, and the guard that sees a face.\n"
         ".ply (MeshLab): faces coloured by piece, or by the guard that sees them.\n"
-        ".obj: one object per part.",
+        ".obj: one object per part.\n"
+        ".3mf (printers): one object per piece, or the model if there are none, in millimetres.",
     .examples = "# guards and pieces of a model for Blender\n"
                 "starguard guard horse.off -o guards.json\n"
                 "starguard decompose horse.off -o pieces.vtk --report pieces.json\n"

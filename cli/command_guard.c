@@ -57,7 +57,7 @@ static const cli_option options[] = {
                     "With --prove: writes why the bound for guards anywhere holds, for 'starguard "
                     "verify' (docs/formats.md).",
                     .group = "output"),
-    CLI_TEXT_OPTION("marks", marks, "FILE.ply",
+    CLI_TEXT_OPTION("marks", marks, "FILE.ply|.vtp",
                     "Model with each face in the colour of the first guard that sees it; uncovered "
                     "faces are dark red.",
                     .group = "output"),
@@ -324,8 +324,7 @@ static starg_status write_marks(cli_session *session, const starg_solid *solid,
     SCOPED_BY(drawing_free) drawing d = {0};
     TRY(draw(session, solid, g, &d));
     cli_colors_by_viewer(d.colors, d.seen);
-    TRY(cli_mesh_write(session, d.mesh, STARG_MESH_PLY_BINARY, d.colors, name));
-    return STARG_OK;
+    return cli_marks_write(session, d.mesh, d.colors, NULL, d.seen, name);
 }
 
 static starg_status write_picture(cli_session *session, const starg_solid *solid,
@@ -426,7 +425,7 @@ static starg_status prepare(cli_session *session, void *data) {
     if (v->certificate != NULL && !v->wanted.prove)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--certificate says why the bound of --prove holds; add --prove");
-    TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
+    TRY(cli_announce_marks(session, "--marks", v->marks));
     TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     TRY(announce_poses(session, v->poses_file));
     TRY(cli_tables_announce(session, &v->tables));

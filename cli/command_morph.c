@@ -304,7 +304,7 @@ static starg_status write_frame(cli_session *session, const starg_mesh *source,
         return cli_fail_memory(session);
     CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(source),
                               starg_mesh_faces(source), starg_mesh_face_count(source), &mesh));
-    CLI_TRY(cli_mesh_write(session, mesh, STARG_MESH_OFF, NULL, name));
+    CLI_TRY(cli_mesh_write(session, mesh, STARG_MESH_OFF, name));
 done:
     starg_mesh_free(mesh);
     free(name);

@@ -13,7 +13,7 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl",
+    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl|.vtp",
                       "Repaired mesh; '-' writes OFF to standard output."),
     CLI_TEXT_OPTION("origin", origin, "X,Y,Z|auto",
                     "Subtract this point from all vertices, as binary STL needs it at map "

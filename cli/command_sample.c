@@ -10,7 +10,7 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl", "Mesh; '-' writes OFF to standard output."),
+    CLI_OUTPUT_OPTION("FILE.off|.obj|.ply|.stl|.vtp", "Mesh; '-' writes OFF to standard output."),
     CLI_FLAG_OPTION("list", list, "List the samples and their poses."),
 };
 
@@ -66,7 +66,7 @@ static starg_status run(cli_session *session, void *data) {
     TRY(cli_mesh_format(session, v->output, &format));
     TRY(cli_announce(session, v->output));
     TRY(starg_sample_create(session->context, name, &v->wanted, &mesh));
-    TRY(cli_mesh_write(session, mesh, format, NULL, v->output));
+    TRY(cli_mesh_write(session, mesh, format, v->output));
     cli_say(session, "%s, pose %d: %zu vertices, %zu faces\n", name, v->wanted.pose,
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh));
     cli_report_head(session, "starguard-sample", v->output, mesh);

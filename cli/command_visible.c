@@ -46,7 +46,7 @@ static const cli_option options[] = {
                      "points of the box. The smaller the box, the tighter the set. Repeatable.",
                      .group = "places"),
     CLI_OUTPUT_OPTION(
-        "FILE.ply",
+        "FILE.ply|.vtp",
         "Model with each face in the colour of the first point or box that sees it; unseen faces "
         "are grey. With --target vertices, a face counts if one point sees all its vertices.",
         .group = "output", .brief = "the model with its visible faces marked"),
@@ -160,8 +160,9 @@ static starg_status write_seen(cli_session *session, const look *l) {
         cli_colors_by_viewer(colors, l->seen);
     else
         paint_by_vertices(colors, mesh, l->seen);
-    starg_status status =
-        cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, l->wanted->output);
+    starg_status status = cli_marks_write(
+        session, mesh, colors, NULL, l->wanted->view.target == STARG_TARGET_FACES ? l->seen : NULL,
+        l->wanted->output);
     free(colors);
     return status;
 }
@@ -331,7 +332,7 @@ static starg_status write_parts(cli_session *session, const values *v, const sta
     if (colors == NULL)
         return cli_fail_memory(session);
     cli_colors_by_viewer(colors, parts);
-    starg_status status = cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, v->output);
+    starg_status status = cli_marks_write(session, mesh, colors, NULL, parts, v->output);
     free(colors);
     return status;
 }
@@ -426,7 +427,7 @@ static starg_status write_states(cli_session *session, const values *v, const st
         if (state[f] == STARG_FACE_UNSEEN || state[f] == STARG_FACE_UNDECIDED)
             memcpy(colors + 3 * f, state[f] == STARG_FACE_UNSEEN ? UNSEEN : UNDECIDED, 3);
     starg_status status =
-        cli_mesh_write(session, starg_solid_mesh(solid), STARG_MESH_PLY_BINARY, colors, v->output);
+        cli_marks_write(session, starg_solid_mesh(solid), colors, NULL, NULL, v->output);
     free(colors);
     return status;
 }
@@ -501,7 +502,7 @@ static starg_status prepare(cli_session *session, void *data) {
     if (v->unseen) /* lent: freed where it comes from */
         v->scene.from = v->from;
     TRY(cli_scene_prepare(session, &v->scene));
-    TRY(cli_announce_with_extension(session, "-o", v->output, ".ply"));
+    TRY(cli_announce_marks(session, "-o", v->output));
     TRY(cli_tables_announce(session, &v->tables));
     if (v->poses_file != NULL && strcmp(v->poses_file, "-") == 0 &&
         strcmp(session->operands[0], "-") == 0)

@@ -13,8 +13,10 @@ const char *const cli_about_program =
     "Places the fewest guards inside a solid that together see its whole boundary (the art gallery "
     "problem in 3D), with exact visibility and a proven lower bound.";
 const char *const cli_about_files =
-    "A MODEL is a triangle mesh: OFF, OBJ, PLY, STL or VTK, recognized by content. '-' is standard "
-    "input or standard output. Lengths in options are in the unit of the model's coordinates. "
+    "A MODEL is a triangle mesh: OFF, OBJ, PLY, STL or VTK (.vtk, .vtp), recognized by content. "
+    "'-' is "
+    "standard input or standard output. Lengths in options are in the unit of the model's "
+    "coordinates. "
     "Output files are written completely or not at all, and only after the command succeeds.";
 const char *const cli_first_steps =
     "# a horse, its guards, a picture of them, and the check of the result\n"

@@ -155,7 +155,8 @@ starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_
     static const cli_extension known[] = {{".off", STARG_MESH_OFF},
                                           {".obj", STARG_MESH_OBJ},
                                           {".ply", STARG_MESH_PLY_BINARY},
-                                          {".stl", STARG_MESH_STL_BINARY}};
+                                          {".stl", STARG_MESH_STL_BINARY},
+                                          {".vtp", STARG_MESH_VTP}};
     int found;
     starg_status status = cli_format_by_extension(
         session, name, known, sizeof known / sizeof *known, STARG_MESH_OFF, &found);
@@ -163,12 +164,47 @@ starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_
     return status;
 }
 
+starg_status cli_announce_marks(cli_session *session, const char *option, const char *name) {
+    bool grid = name != NULL && cli_has_extension(name, ".vtp");
+    return cli_announce_with_extension(session, option, name, grid ? ".vtp" : ".ply");
+}
+
+/* Of each face the first row that contains it, else -1. */
+static void number_by_viewer(const starg_bits *seen, size_t faces, int32_t *numbers) {
+    for (size_t f = 0; f < faces; f++)
+        numbers[f] = -1;
+    for (size_t row = starg_bits_rows(seen); row-- > 0;)
+        for (size_t f = 0; f < faces && f < starg_bits_columns(seen); f++)
+            if (starg_bits_test(seen, row, f))
+                numbers[f] = (int32_t)row;
+}
+
+starg_status cli_marks_write(cli_session *session, const starg_mesh *mesh, const uint8_t *colors,
+                             const int32_t *marks, const starg_bits *seen, const char *name) {
+    starg_mesh_write_options options;
+    int32_t *numbers = NULL;
+    size_t faces = starg_mesh_face_count(mesh);
+    starg_mesh_write_options_default(&options);
+    options.format = cli_has_extension(name, ".vtp") ? STARG_MESH_VTP : STARG_MESH_PLY_BINARY;
+    options.face_colors = colors;
+    options.face_marks = marks;
+    if (seen != NULL && options.format == STARG_MESH_VTP) {
+        numbers = malloc((faces + 1) * sizeof *numbers);
+        if (numbers == NULL)
+            return cli_fail_memory(session);
+        number_by_viewer(seen, faces, numbers);
+        options.face_marks = numbers;
+    }
+    starg_status status = cli_mesh_write_with(session, mesh, &options, name);
+    free(numbers);
+    return status;
+}
+
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
-                            const uint8_t *colors, const char *name) {
+                            const char *name) {
     starg_mesh_write_options options;
     starg_mesh_write_options_default(&options);
     options.format = format;
-    options.face_colors = colors;
     return cli_mesh_write_with(session, mesh, &options, name);
 }
 

@@ -306,9 +306,17 @@ starg_status cli_described_read(cli_session *session, const char *file, starg_me
 /* The format of an output mesh by its file extension; OFF for "-". Errors: ARGUMENT. */
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);
 
-/* Writes a mesh with face colours (or NULL) to an announced output. */
+/* Writes a mesh to an announced output. */
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
-                            const uint8_t *colors, const char *name);
+                            const char *name);
+
+/* Announces an output of coloured faces, .ply or .vtp; NULL is allowed. */
+starg_status cli_announce_marks(cli_session *session, const char *option, const char *name);
+
+/* Writes it: colours, and in .vtp also numbers of faces, if there are any: `marks`, or the first
+ * row of `seen` that contains the face, else -1. */
+starg_status cli_marks_write(cli_session *session, const starg_mesh *mesh, const uint8_t *colors,
+                             const int32_t *marks, const starg_bits *seen, const char *name);
 
 /* The same with options of any kind. */
 starg_status cli_mesh_write_with(cli_session *session, const starg_mesh *mesh,

@@ -23,7 +23,7 @@ typedef enum kind {
     KIND_TABLE
 } kind;
 
-/* Does an OBJ file have no faces, or edges before the first one? */
+/* Does an OBJ or VTK file have no faces, or edges before the first one? */
 static bool is_curve(FILE *file) {
     char *line = NULL;
     size_t capacity = 0;
@@ -31,7 +31,8 @@ static bool is_curve(FILE *file) {
     rewind(file);
     while (!edges && !faces && getline(&line, &capacity, file) >= 0) {
         edges = strncmp(line, "l ", 2) == 0;
-        faces = strncmp(line, "f ", 2) == 0;
+        faces = strncmp(line, "f ", 2) == 0 || strncmp(line, "POLYGONS ", 9) == 0 ||
+                strncmp(line, "TRIANGLE_STRIPS ", 16) == 0;
     }
     free(line);
     return !faces;
@@ -46,9 +47,13 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
     if (memcmp(head, "glTF", 4) == 0)
         return KIND_ANIMATION;
     if (strncmp(head, vtk, sizeof vtk - 1) == 0)
-        return strstr(head, "DATASET POLYDATA") != NULL ? KIND_SKELETON : KIND_RESULT;
+        return strstr(head, "DATASET POLYDATA") == NULL ? KIND_RESULT
+               : is_curve(file)                         ? KIND_SKELETON
+                                                        : KIND_MODEL;
     if (strncmp(head, curve, sizeof curve - 1) == 0 || cli_has_extension(name, ".swc"))
         return KIND_SKELETON;
+    if (strstr(head, "<VTKFile") != NULL && strstr(head, "PolyData") != NULL)
+        return KIND_MODEL;
     if (*first == '{' || strncmp(first, "<?xml", 5) == 0 || strncmp(first, "<VTKFile", 8) == 0 ||
         strncmp(head, certificate, sizeof certificate - 1) == 0)
         return KIND_RESULT;
@@ -438,6 +443,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
     starg_patches_free(context, show->uncovered);
     starg_certificate_outline_free(context, show->proof);
     starg_solid_free(show->solid);
+    free(show->model_file);
     starg_mesh_free(show->model);
     starg_mesh_free(show->obstacles);
     starg_tetmesh_free(show->tetmesh);

@@ -92,6 +92,7 @@ typedef struct starg_decomposition {
      * not kept because it intersects itself: the others are cut at the intersections or lie inside.
      * 0: not counted. */
     size_t faces_kept;
+    bool joined; /* the surface is closed once its faces share what they touch (T-junctions) */
     starg_tetmesh *mesh;
     size_t tetrahedra; /* of the mesh */
     int32_t *labels;   /* one per tetrahedron: its piece */
@@ -169,8 +170,9 @@ STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const sta
  * a fraction of the diagonal, unless `fill` is set. */
 #define STARG_DECOMPOSE_FILL_MOST 0.2
 
-/* Cuts the volume that fills a mesh with holes (starg_tetmesh_from_open_mesh). Errors: as for
- * starg_decompose, and MESH, also if the volume is too far from the mesh. */
+/* Cuts a mesh with open edges. Where they close once faces share what they touch (STRICT), that
+ * surface is cut (`joined`), otherwise the volume that fills it (starg_tetmesh_from_open_mesh).
+ * Errors: as for starg_decompose, and MESH, also if the volume is too far from the mesh. */
 STARG_API starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                                  const starg_decompose_options *options,
                                                  starg_decomposition **out);

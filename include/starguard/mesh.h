@@ -53,7 +53,8 @@ typedef enum starg_mesh_format {
     STARG_MESH_PLY_ASCII = 3,
     STARG_MESH_PLY_BINARY = 4, /* little endian when written; both orders are read */
     STARG_MESH_STL_ASCII = 5,
-    STARG_MESH_STL_BINARY = 6
+    STARG_MESH_STL_BINARY = 6,
+    STARG_MESH_VTP = 7 /* VTK XML polydata */
 } starg_mesh_format;
 
 /* Reads a mesh; path "-" is standard input. The format is recognized by content, else by the file
@@ -74,11 +75,13 @@ STARG_API starg_status starg_mesh_read_memory(starg_context *context, const void
  * for their differences: that loses nothing of doubles. Zero for models about the origin. */
 STARG_API void starg_mesh_origin(const starg_mesh *mesh, double origin[3]);
 
-/* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY and OFF store them. */
+/* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY, OFF and VTP store them,
+ * and only VTP stores marks. */
 typedef struct starg_mesh_write_options {
     starg_mesh_format format;
     const uint8_t *face_colors; /* face_count x 3, or NULL */
     double origin[3];           /* subtracted; PLY, OBJ and STL say so in a comment */
+    const int32_t *face_marks;  /* face_count, or NULL */
 } starg_mesh_write_options;
 
 STARG_API void starg_mesh_write_options_default(starg_mesh_write_options *options);

@@ -30,7 +30,7 @@ NO_VERTEX = 2**32 - 1
 _REPAIR = Options("starg_repair_options", old={"max_rounds": "rounds"})
 _FORMATS = {"auto": lib.STARG_MESH_AUTO, "off": lib.STARG_MESH_OFF, "obj": lib.STARG_MESH_OBJ,
             "ply": lib.STARG_MESH_PLY_BINARY, "ply-ascii": lib.STARG_MESH_PLY_ASCII,
-            "stl": lib.STARG_MESH_STL_BINARY, "stl-ascii": lib.STARG_MESH_STL_ASCII}
+            "stl": lib.STARG_MESH_STL_BINARY, "stl-ascii": lib.STARG_MESH_STL_ASCII, "vtp": lib.STARG_MESH_VTP}
 
 _QUARTERS = int(ffi.cast("size_t", -2))  # STARG_QUARTERS
 
@@ -119,8 +119,8 @@ class Mesh:
 
     def write(self, path: PathLike, *, format: str = "auto",
               face_colors: ArrayLike | None = None, origin: ArrayLike | None = None) -> None:
-        """Writes OFF, OBJ, PLY or STL, by the file extension or by `format`: "off", "obj", "ply",
-        "ply-ascii", "stl" or "stl-ascii". `face_colors` is (m, 3), 0 to 255; PLY and OFF store it.
+        """Writes OFF, OBJ, PLY, STL or VTP, by the file extension or by `format`: "off", "obj", "ply",
+        "ply-ascii", "stl", "stl-ascii" or "vtp". `face_colors` is (m, 3), 0 to 255; PLY, OFF and VTP store it.
         `origin` is subtracted from all vertices, and stands in a comment of PLY, OBJ and STL; binary STL
         refuses what single precision would change.
 

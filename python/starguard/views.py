@@ -22,7 +22,8 @@ from .verification import Certificate, PiecesMesh, PiecesReport, pieces_mesh_of,
 from .visibility import Bits, visible
 
 _FORMATS = {"auto": lib.STARG_SCENE_AUTO, "glb": lib.STARG_SCENE_GLB, "vtu": lib.STARG_SCENE_VTU,
-            "ply": lib.STARG_SCENE_PLY, "obj": lib.STARG_SCENE_OBJ}
+            "ply": lib.STARG_SCENE_PLY, "obj": lib.STARG_SCENE_OBJ,
+            "3mf": lib.STARG_SCENE_3MF}
 
 
 def _joined(meshes: Sequence[Mesh]) -> Mesh:
@@ -76,7 +77,7 @@ def write_scene(path: PathLike, model: Any = None, *, guards: Guards | None = No
                 pieces: Decomposition | PiecesMesh | None = None, report: PiecesReport | None = None,
                 skeleton: Skeleton | None = None, format: str = "auto") -> None:
     """Writes a model and results to one file, by the file extension or by `format`: "glb" (Blender,
-    browsers), "vtu" (ParaView), "ply" (MeshLab) or "obj" (docs/formats.md).
+    browsers), "vtu" (ParaView), "ply" (MeshLab), "obj" or "3mf" (printers) (docs/formats.md).
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)

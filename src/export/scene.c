@@ -35,6 +35,10 @@ static starg_status check_guards(starg_context *context, const starg_scene *s) {
         return starg_fail(
             context, STARG_ERROR_ARGUMENT, STAGE,
             "visibility needs one row per guard and one column per face of the model");
+    if (s->groups != NULL &&
+        (s->model == NULL || s->groups->face_count != starg_mesh_face_count(s->model)))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "groups need a model with as many faces");
     return STARG_OK;
 }
 
@@ -195,7 +199,8 @@ static starg_scene_format format_of(const char *path) {
     static const char *const extensions[] = {[STARG_SCENE_GLB] = ".glb",
                                              [STARG_SCENE_VTU] = ".vtu",
                                              [STARG_SCENE_PLY] = ".ply",
-                                             [STARG_SCENE_OBJ] = ".obj"};
+                                             [STARG_SCENE_OBJ] = ".obj",
+                                             [STARG_SCENE_3MF] = ".3mf"};
     for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
         if (extensions[i] != NULL && starg_has_extension(path, extensions[i]))
             return (starg_scene_format)i;
@@ -210,7 +215,8 @@ static starg_status choose_format(starg_context *context, const char *path,
         return STARG_OK;
     return starg_fail(
         context, STARG_ERROR_ARGUMENT, STAGE,
-        "'%.300s' has no known format; use a name that ends in .glb, .vtu, .ply or .obj", path);
+        "'%.300s' has no known format; use a name that ends in .glb, .vtu, .ply, .obj or .3mf",
+        path);
 }
 
 static starg_status write_as(starg_context *context, const scene_job *job, const char *path,
@@ -224,6 +230,8 @@ static starg_status write_as(starg_context *context, const scene_job *job, const
         return scene_write_ply(context, job, path);
     case STARG_SCENE_OBJ:
         return scene_write_obj(context, job, path);
+    case STARG_SCENE_3MF:
+        return scene_write_3mf(context, job, path);
     case STARG_SCENE_AUTO:
         break;
     }

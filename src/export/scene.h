@@ -64,3 +64,4 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
 starg_status scene_write_vtu(starg_context *context, const scene_job *job, const char *path);
 starg_status scene_write_ply(starg_context *context, const scene_job *job, const char *path);
 starg_status scene_write_obj(starg_context *context, const scene_job *job, const char *path);
+starg_status scene_write_3mf(starg_context *context, const scene_job *job, const char *path);

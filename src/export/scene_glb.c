@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as binary glTF 2.0. The model is coloured by how many guards see its faces, as far as
- * that is known. Below the root, which is moved to the middle of all, stand the nodes "model",
- * "obstacles", "guards" with "guard_0000" and so on, each with its "camera_0000" if it looks one
- * way, "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard or a piece
- * is in the extras of its node.
+ * that is known. Below the root, which is moved to the middle of all, stand the nodes "model" with
+ * its groups, "obstacles", "guards" with "guard_0000" and so on, each with its "camera_0000" if it
+ * looks one way, "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard
+ * or a piece is in the extras of its node.
  *
  * Numbers stand in one view for each kind, of which accessors take ranges: all pieces share their
  * vertices, and all guards one ball. There are no normals, so that programs shade each face flat,
@@ -52,24 +52,44 @@ typedef struct glb_scene {
     const scene_job *job;
     scene_ball ball;
     view views[VIEW_KINDS + 1];
-    uint32_t *by_times; /* faces of the model, sorted by how many guards see them, or NULL */
-    size_t times[SCENE_TIMES + 1]; /* the first corner of each number in them */
+    uint32_t *sorted;     /* faces of the model: by group, those of none first, then by times */
+    size_t *start;        /* of each part in it, in corners, and the end */
+    size_t groups, times; /* how many of both, at least 1 */
+    json_int_t looks[SCENE_TIMES]; /* materials of the parts, or -1 */
     size_t bytes;
     bool failed; /* memory was out while JSON was made */
     json_t *root, *nodes, *meshes, *materials, *accessors, *buffer_views, *cameras;
 } glb_scene;
 
-/* Sorts the model's faces by how many guards see them. */
+/* The part of the model that a face belongs to. */
+static size_t part_of(const glb_scene *s, size_t face) {
+    const scene_job *job = s->job;
+    const starg_face_groups *groups = job->scene->groups;
+    bool grouped = groups != NULL && groups->of[face] != UINT32_MAX;
+    return (grouped ? groups->of[face] + (size_t)1 : 0) * s->times +
+           (job->times != NULL ? job->times[face] : 0);
+}
+
+/* Sorts the faces of the model by groups and by how many guards see them. */
 static starg_status sort_faces(starg_context *context, glb_scene *s) {
     const scene_job *job = s->job;
-    if (job->times == NULL || job->model_faces == 0)
+    if (job->model_faces == 0)
         return STARG_OK;
     const uint32_t *faces = starg_mesh_faces(job->scene->model);
-    NEW(context, STAGE, s->by_times, 3 * job->model_faces);
-    for (size_t k = 0, at = 0; k < SCENE_TIMES; s->times[++k] = at)
-        for (size_t f = 0; f < job->model_faces; f++)
-            for (size_t c = 0; job->times[f] == k && c < 3; c++)
-                s->by_times[at++] = faces[3 * f + c];
+    s->groups = 1 + (job->scene->groups != NULL ? job->scene->groups->count : 0);
+    s->times = job->times != NULL ? SCENE_TIMES : 1;
+    NEW(context, STAGE, s->sorted, 3 * job->model_faces);
+    NEW_ZERO(context, STAGE, s->start, s->groups * s->times + 1);
+    for (size_t f = 0; f < job->model_faces; f++)
+        s->start[part_of(s, f) + 1] += 3;
+    for (size_t p = 0; p < s->groups * s->times; p++)
+        s->start[p + 1] += s->start[p];
+    SCOPED size_t *at = NULL;
+    NEW(context, STAGE, at, s->groups * s->times);
+    memcpy(at, s->start, s->groups * s->times * sizeof *at);
+    for (size_t f = 0; f < job->model_faces; f++)
+        for (size_t c = 0, *place = &at[part_of(s, f)]; c < 3; c++)
+            s->sorted[(*place)++] = faces[3 * f + c];
     return STARG_OK;
 }
 
@@ -87,9 +107,7 @@ static void list_views(glb_scene *s) {
         v[VIEW_MODEL_POINTS] = (view){.reals = starg_mesh_vertices(scene->model),
                                       .count = job->model_vertices,
                                       .centered = true};
-        v[VIEW_MODEL_FACES] =
-            (view){.words = s->by_times != NULL ? s->by_times : starg_mesh_faces(scene->model),
-                   .count = 3 * job->model_faces};
+        v[VIEW_MODEL_FACES] = (view){.words = s->sorted, .count = 3 * job->model_faces};
     }
     if (job->obstacle_faces > 0) {
         v[VIEW_OBSTACLE_POINTS] = (view){.reals = starg_mesh_vertices(scene->obstacles),
@@ -264,24 +282,37 @@ static json_int_t add_mesh(glb_scene *s, json_int_t positions, json_int_t indice
         json_pack("{s:[o]}", "primitives", primitive(s, positions, indices, mode, material)));
 }
 
-/* The model, a primitive for each number of guards that see faces. */
-static json_int_t add_counted(glb_scene *s, json_int_t positions) {
+/* The material of faces that so many guards see, or of the model where that is not known. */
+static json_int_t look_of(glb_scene *s, size_t times, bool alone) {
     static const char *const names[SCENE_TIMES] = {"seen by none", "seen by 1", "seen by 2",
                                                    "seen by 3 or more", "need not be seen"};
+    uint8_t rgb[3];
+    if (s->looks[times] >= 0)
+        return s->looks[times];
+    if (s->times == 1)
+        return s->looks[times] = add_material(s, SCENE_NEUTRAL, alone ? 1 : 0.3);
+    scene_count_color(times, rgb);
+    s->looks[times] = add_material(s, rgb, 0.45);
+    put(s, json_array_get(s->materials, (size_t)s->looks[times]), "name",
+        json_string(names[times]));
+    return s->looks[times];
+}
+
+/* The mesh of a group, a primitive for each number of guards; -1: it has no faces. */
+static json_int_t add_group(glb_scene *s, json_int_t positions, size_t group, bool alone) {
     json_t *list = json_array();
-    for (size_t k = 0; k < SCENE_TIMES; k++) {
-        uint8_t rgb[3];
-        size_t count = s->times[k + 1] - s->times[k];
-        if (count == 0)
-            continue;
-        scene_count_color(k, rgb);
-        json_int_t material = add_material(s, rgb, 0.45);
-        put(s, json_array_get(s->materials, (size_t)material), "name", json_string(names[k]));
-        append(s, list,
-               primitive(s, positions, add_indices(s, VIEW_MODEL_FACES, s->times[k], count),
-                         MODE_TRIANGLES, material));
+    for (size_t k = 0; k < s->times; k++) {
+        const size_t *start = s->start + group * s->times + k;
+        if (start[1] > start[0])
+            append(s, list,
+                   primitive(s, positions,
+                             add_indices(s, VIEW_MODEL_FACES, start[0], start[1] - start[0]),
+                             MODE_TRIANGLES, look_of(s, k, alone)));
     }
-    return append(s, s->meshes, json_pack("{s:o}", "primitives", list));
+    if (json_array_size(list) > 0)
+        return append(s, s->meshes, json_pack("{s:o}", "primitives", list));
+    json_decref(list);
+    return -1;
 }
 
 /* A node below another. */
@@ -311,15 +342,21 @@ static void add_model(glb_scene *s) {
     if (job->model_faces == 0)
         return;
     bool alone = job->guards + job->surfaces.piece_count + job->nodes == 0;
-    json_int_t points = add_reals(s, VIEW_MODEL_POINTS), mesh;
-    if (s->by_times != NULL) {
-        mesh = add_counted(s, points);
-    } else {
-        json_int_t faces = add_indices(s, VIEW_MODEL_FACES, 0, 3 * job->model_faces);
-        mesh = add_mesh(s, points, faces, MODE_TRIANGLES,
-                        add_material(s, SCENE_NEUTRAL, alone ? 1 : 0.3));
+    for (size_t k = 0; k < SCENE_TIMES; k++)
+        s->looks[k] = -1;
+    json_int_t points = add_reals(s, VIEW_MODEL_POINTS);
+    json_t *parent = NULL;
+    for (size_t g = 0; g < s->groups; g++) {
+        json_int_t mesh = add_group(s, points, g, alone);
+        if (g == 0)
+            parent = add_node(s, s->root, "model", SIZE_MAX, mesh);
+        if (g == 0 || mesh < 0)
+            continue;
+        json_t *node = add_node(s, parent, "group", g - 1, mesh);
+        json_t *name = json_string(job->scene->groups->names[g - 1]); /* NULL: no UTF-8 */
+        if (name != NULL)
+            put(s, node, "name", name);
     }
-    add_node(s, s->root, "model", SIZE_MAX, mesh);
 }
 
 /* A node of its own, which programs hide and show. */
@@ -488,6 +525,6 @@ starg_status scene_write_glb(starg_context *context, const scene_job *job, const
     STARG_TRY(glb_write(context, STAGE, path, json, s.bytes, put_numbers, &s));
 done:
     json_decref(json);
-    starg_release(context, s.by_times);
+    RELEASE(s.sorted, s.start);
     return status;
 }

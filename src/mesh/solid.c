@@ -28,6 +28,11 @@ const char *starg_check_advice(const starg_check *check) {
         return "most of its faces are loose triangles: 'starguard guard --soup' takes them as they "
                "are; corners that should be one are joined by 'starguard repair --merge-distance "
                "D'";
+    if (check->findings[STARG_FINDING_OPEN_EDGE].count > 0 &&
+        check->findings[STARG_FINDING_SELF_CONTACT].count > 0)
+        return "some faces touch where they share no edge (T-junctions): 'starguard repair MODEL "
+               "-o "
+               "SOLID.off' joins these, and then fills holes";
     return "try 'starguard repair'";
 }
 

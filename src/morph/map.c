@@ -143,6 +143,26 @@ static starg_status check_surface(starg_context *context, const starg_check *che
     return STARG_OK;
 }
 
+/* A surface with a boundary gets a message of its own. */
+static starg_status make_closed(starg_context *context, const starg_mesh *mesh, const char *name,
+                                starg_solid **out) {
+    starg_check *check = NULL;
+    starg_status status = solid_make_in_time(context, mesh, out);
+    if (status != STARG_ERROR_MESH)
+        return status;
+    TRY(starg_mesh_check(context, mesh, &check));
+    size_t open = check->findings[STARG_FINDING_OPEN_EDGE].count;
+    starg_check_free(context, check);
+    if (open == 0)
+        return solid_make_in_time(context, mesh, out); /* with its message */
+    return starg_fail(
+        context, STARG_ERROR_MESH, STAGE,
+        "surface %s has a boundary (open edges: %zu); surfaces with different faces "
+        "are mapped via the sphere, so they must be closed: disks, such as faces and "
+        "terrains, cannot be mapped. If these are holes, 'starguard repair' fills them",
+        name, open);
+}
+
 static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
                                     const starg_mesh *b, const starg_map_options *options) {
     const uint32_t *pairs = options->landmarks;
@@ -198,7 +218,7 @@ static starg_status spread_surface(starg_context *context, const starg_mesh *mes
                                    spread *out) {
     SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
     /* it may touch itself: only shared topology counts */
-    TRY(solid_make_in_time(context, mesh, &solid));
+    TRY(make_closed(context, mesh, name, &solid));
     TRY(solid_must_not_share(context, solid, STAGE));
     TRY(check_surface(context, starg_solid_check(solid), name));
     TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
@@ -337,7 +357,7 @@ static starg_status look_from(starg_context *context, const starg_mesh *mesh, co
                               uint64_t attempt, double center[3], double **directions,
                               bool *found) {
     SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
-    TRY(solid_make_in_time(context, mesh, &solid));
+    TRY(make_closed(context, mesh, name, &solid));
     TRY(solid_must_not_share(context, solid, STAGE));
     TRY(check_surface(context, starg_solid_check(solid), name));
     TRY(stars_center(context, starg_solid_mesh(solid), attempt, center, found));

@@ -260,7 +260,8 @@ static starg_status decompose_surface(starg_context *context, const starg_solid 
     return STARG_OK;
 }
 
-/* A surface that intersects itself is cut where it does; *out stays NULL where that cannot be. */
+/* A surface that intersects itself is cut where it does; *out stays NULL where that cannot be. The
+ * bound is that of the union. */
 static starg_status decompose_union(starg_context *context, const starg_solid *solid,
                                     const starg_decompose_options *options,
                                     starg_decomposition **out) {
@@ -271,9 +272,30 @@ static starg_status decompose_union(starg_context *context, const starg_solid *s
     TRY(decompose_surface(context, united, options, out));
     if (*out == NULL)
         return STARG_OK;
-    (*out)->lower_bound = 0; /* it is that of the union */
+    (*out)->lower_bound = 0;
     (*out)->optimal = false;
-    return united_report(context, solid, united, *out);
+    return united_report(context, solid->mesh, united, *out);
+}
+
+/* A surface that is closed once its faces share what they touch; *out stays NULL where it is not.
+ */
+static starg_status decompose_joined(starg_context *context, const starg_mesh *surface,
+                                     const starg_decompose_options *options,
+                                     starg_decomposition **out) {
+    SCOPED_BY(starg_solid_drop) starg_solid *joined = NULL;
+    bool exact = false;
+    TRY(united_join(context, surface, &joined, &exact));
+    if (joined == NULL)
+        return STARG_OK;
+    TRY(decompose_surface(context, joined, options, out));
+    if (*out == NULL)
+        TRY(decompose_union(context, joined, options, out));
+    if (*out == NULL)
+        return STARG_OK;
+    (*out)->joined = true;
+    (*out)->lower_bound = exact ? (*out)->lower_bound : 0;
+    (*out)->optimal = exact && (*out)->optimal;
+    return united_report(context, surface, joined, *out);
 }
 
 /* What is asked for: one of the three models is given. */
@@ -298,6 +320,8 @@ static starg_status decompose_model(const request *r, const starg_decompose_opti
         TRY(decompose_surface(context, solid, options, out));
     if (strict && *out == NULL)
         TRY(decompose_union(context, solid, options, out));
+    if (r->surface != NULL && options->mode == STARG_DECOMPOSE_STRICT)
+        TRY(decompose_joined(context, r->surface, options, out));
     if (*out == NULL)
         TRY(decompose_filled(context, solid, r->surface, options, out));
     starg_decomposition *d = *out;

@@ -69,9 +69,14 @@ starg_status deviation_bound(starg_context *context, const starg_mesh *from, con
  * intersections. Errors: MEMORY, CANCELLED, TIME. */
 starg_status united_make(starg_context *context, const starg_solid *solid, starg_solid **out);
 
-/* Tells in `out`, pieces of the union, which faces of the solid's surface are kept, and how far the
- * rest is from the boundary. Errors: MEMORY, CANCELLED. */
-starg_status united_report(starg_context *context, const starg_solid *solid,
+/* The solid bounded by a surface with open edges, where these close once its faces share what they
+ * touch; else *out is NULL. *exact: nothing has moved. Errors: MEMORY, CANCELLED, TIME. */
+starg_status united_join(starg_context *context, const starg_mesh *surface, starg_solid **out,
+                         bool *exact);
+
+/* Tells in `out`, pieces of the union, which faces of the model are kept, and how far the rest is
+ * from the boundary. Errors: MEMORY, CANCELLED. */
+starg_status united_report(starg_context *context, const starg_mesh *model,
                            const starg_solid *united, starg_decomposition *out);
 
 /* Star decomposition by growth from guards [YL11, section 4]. */

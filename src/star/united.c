@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A surface that intersects itself is replaced by the boundary of what it encloses (mesh/union),
- * from which strict pieces are made. The pieces then have that boundary: faces of the
+ * and one whose faces touch without sharing edges by one whose do (mesh/union/conform.c): from
+ * these strict pieces are made. The pieces then have that boundary: faces of the
  * model that meet no others, exactly, parts of the others up to the rounding of new vertices, and
  * nothing of what lies inside. How far the one is from the other is bounded for all points, to a
  * thousandth of the diagonal (star/decomposition.h). */
@@ -9,6 +10,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
+#include "mesh/union/conform.h"
 #include "starguard/repair.h"
 
 static const char STAGE[] = "pieces";
@@ -69,38 +71,62 @@ static starg_status find_lost(starg_context *context, const starg_mesh *model,
     return STARG_OK;
 }
 
-starg_status united_report(starg_context *context, const starg_solid *solid,
+starg_status united_report(starg_context *context, const starg_mesh *model,
                            const starg_solid *united, starg_decomposition *out) {
-    starg_status status = STARG_OK;
-    starg_mesh lost = {0}, *boundary = NULL;
-    bvh *tree = NULL;
-    double extent = solid->check->diagonal;
-    STARG_TRY(find_lost(context, solid->mesh, united->mesh, &lost));
-    out->faces_kept = solid->mesh->face_count - lost.face_count;
-    STARG_TRY(starg_tetmesh_surface(context, out->mesh, &boundary, NULL));
-    STARG_TRY(
-        bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
+    SCOPED_BY(starg_mesh_drop) starg_mesh *boundary = NULL;
+    SCOPED_BY(bvh_drop) bvh *tree = NULL, *model_tree = NULL;
+    SCOPED uint32_t *lost_faces = NULL;
+    starg_mesh lost = {0};
+    double lower[3], upper[3];
+    starg_mesh_bounds(model, lower, upper);
+    double extent = vec3_distance(lower, upper);
+    TRY(find_lost(context, model, united->mesh, &lost));
+    lost_faces = lost.faces;
+    out->faces_kept = model->face_count - lost.face_count;
+    TRY(starg_tetmesh_surface(context, out->mesh, &boundary, NULL));
+    TRY(bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
+    TRY(bvh_create(context, model->vertices, model->faces, model->face_count, &model_tree));
     out->tetra = (starg_tetra_report){0};
-    STARG_TRY(deviation_bound(context, boundary, solid->tree, extent, STEP * extent,
-                              &out->tetra.distance));
-    STARG_TRY(deviation_bound(context, solid->mesh, tree, extent, STEP * extent,
-                              &out->tetra.distance_back));
+    TRY(deviation_bound(context, boundary, model_tree, extent, STEP * extent,
+                        &out->tetra.distance));
+    TRY(deviation_bound(context, model, tree, extent, STEP * extent, &out->tetra.distance_back));
     out->tetra.to_surface = out->tetra.distance;
     out->tetra.from_surface = out->tetra.distance_back;
-done:
-    bvh_free(tree);
-    starg_mesh_free(boundary);
-    starg_release(context, lost.faces);
-    return status;
+    return STARG_OK;
 }
 
-/* ---- the union ---- */
+/* ---- T-junctions ---- */
 
 /* Errors that leave the lattice as a way out. */
 static bool is_refusal(starg_status status) {
     return status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE ||
            status == STARG_ERROR_SOLVER;
 }
+
+starg_status united_join(starg_context *context, const starg_mesh *surface, starg_solid **out,
+                         bool *exact) {
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    starg_repair_report report;
+    bool closed;
+    *out = NULL;
+    TRY(conform_closes(context, surface, 0, &closed));
+    if (!closed)
+        return STARG_OK;
+    starg_status status = starg_mesh_repair(context, surface, NULL, &mesh, &report);
+    if (status == STARG_OK && report.holes_filled > 0)
+        return STARG_OK;
+    if (status != STARG_OK)
+        return is_refusal(status) ? STARG_OK : status;
+    TRY(solid_make(context, mesh, out));
+    *exact = report.conforming == 0;
+    starg_log(context, STARG_LOG_NOTICE,
+              "faces that touch without sharing edges (T-junctions) were joined: %zu of them "
+              "divided, nothing moved farther than %.3g, no hole filled",
+              report.faces_divided, report.conforming);
+    return STARG_OK;
+}
+
+/* ---- the union ---- */
 
 static starg_status make(starg_context *context, const starg_solid *solid, starg_solid **out) {
     SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;

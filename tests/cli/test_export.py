@@ -7,8 +7,10 @@ import shutil
 import struct
 import subprocess
 import unittest
+import zipfile
+from xml.etree import ElementTree
 
-from support import Case, main
+from support import BUILD, Case, main
 
 try:
     import vtk
@@ -29,6 +31,8 @@ validator.validateBytes(bytes).then(report => console.log(JSON.stringify(report)
 def without(name):
     """A decorator: the test is skipped where a reader is missing, with a printed reason."""
     there = {"vtk": (vtk is not None, "python3-vtk9 is not installed: VTK opens no file"),
+             "import": (os.path.exists(os.path.join(BUILD, "starguard-import")),
+                        "libassimp-dev is not installed: there is no starguard-import"),
              "assimp": (shutil.which("assimp"), "assimp-utils is not installed: assimp opens no file"),
              "validator": (NODE and os.path.isdir(VALIDATOR),
                            "npm has not fetched gltf-validator: .glb is not validated")}
@@ -43,6 +47,11 @@ def glb_json(data):
     magic, version, length, size, kind = struct.unpack_from("<4sIII4s", data)
     assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON")
     return json.loads(data[20:20 + size]), data[28 + size:]
+
+
+def determinant(a, b, c):
+    return (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]))
 
 
 class Export(Case):
@@ -238,11 +247,61 @@ class Export(Case):
         self.assertEqual(objects, [f"piece_{i:04}" for i in range(len(self.pieces))]
                          + [f"guard_{i:04}" for i in range(len(self.guards))] + ["skeleton"])
 
+    # ---- 3MF ----
+
+    def objects_of(self, name):
+        """The objects of a 3MF by name: corners and faces."""
+        with zipfile.ZipFile(self.path(name)) as archive:
+            self.assertIsNone(archive.testzip())
+            self.assertEqual(archive.namelist()[0], "[Content_Types].xml")
+            relations = ElementTree.fromstring(archive.read("_rels/.rels"))
+            model = ElementTree.fromstring(archive.read(relations[0].get("Target")[1:]))
+        space = "{" + model.tag[1:].split("}")[0] + "}"
+        found = {}
+        for thing in model.iter(space + "object"):
+            found[thing.get("id")] = (
+                thing.get("name"), [[float(v.get(k)) for k in "xyz"] for v in thing.iter(space + "vertex")],
+                [[int(t.get(f"v{k}")) for k in (1, 2, 3)] for t in thing.iter(space + "triangle")])
+        self.assertEqual([item.get("objectid") for item in model.iter(space + "item")], list(found))
+        return list(found.values())
+
+    def test_3mf(self):
+        """Each piece is an object, closed, of the volume that the report says."""
+        self.results()
+        self.export("p.vtk", "p.json", name="all.3mf")
+        objects = self.objects_of("all.3mf")
+        self.assertEqual([o[0] for o in objects], [f"piece_{i:04}" for i in range(len(self.pieces))])
+        for (_, points, faces), piece in zip(objects, self.pieces):
+            sides = {(f[i], f[(i + 1) % 3]) for f in faces for i in range(3)}
+            self.assertEqual(len(sides), 3 * len(faces))
+            self.assertEqual(sides, {(b, a) for a, b in sides})
+            self.assertEqual({i for f in faces for i in f}, set(range(len(points))))
+            volume = sum(determinant(*(points[i] for i in f)) for f in faces) / 6
+            self.assertAlmostEqual(volume, piece["volume"], 9)
+        self.export(self.model, name="model.3mf")
+        [(name, points, faces)] = self.objects_of("model.3mf")
+        self.assertEqual((name, len(points), len(faces)), ("model", *self.counts()))
+        self.assertIn("there are none", self.run_text("export", "s.vtk", "-o", "s.3mf", status=1)[1])
+
+    @without("import")
+    def test_3mf_by_assimp(self):
+        self.results()
+        self.export(self.model, name="model.3mf")
+        volume = self.run_json("check", self.model)["volume"]
+        self.assertAlmostEqual(self.run_json("check", "model.3mf")["volume"] / volume, 1, 5)
+        self.export("p.vtk", "p.json", name="all.3mf")
+        ply = subprocess.run([os.path.join(BUILD, "starguard-import"), self.path("all.3mf")], check=True,
+                             capture_output=True).stdout
+        faces = sum(len(o[2]) for o in self.objects_of("all.3mf"))
+        self.assertIn(f"element face {faces}\n".encode(), ply)
+        for i in range(len(self.pieces)):
+            self.assertIn(f"piece_{i:04}".encode(), ply)
+
     # ---- the command ----
 
     def test_the_same_bytes(self):
         files = self.results()
-        for name in ("a.glb", "a.vtu", "a.ply", "a.obj"):
+        for name in ("a.glb", "a.vtu", "a.ply", "a.obj", "a.3mf"):
             self.export(*files, "--threads", "1", name=name)
             self.export(*files[::-1], "--threads", "3", name="b" + name[1:])
             self.assertEqual(self.read(name), self.read("b" + name[1:]))
@@ -260,8 +319,8 @@ class Export(Case):
     def test_usage(self):
         self.usage_error("export", says="RESULT")
         model = self.sample("star")
-        self.usage_error("export", model, says="-o FILE.glb, .vtu, .ply or .obj")
-        self.usage_error("export", model, "-o", "a.stl", says="writes FILE.glb|.vtu|.ply|.obj")
+        self.usage_error("export", model, says="-o FILE.glb, .vtu, .ply, .obj or .3mf")
+        self.usage_error("export", model, "-o", "a.stl", says="writes FILE.glb|.vtu|.ply|.obj|.3mf")
 
     def test_what_does_not_fit(self):
         self.results()

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes as people have them: voxel bodies with T-junctions, solids to be united, formats of scenes."""
+import io
+import json
 import os
 import random
 import shutil
 import subprocess
 import sys
+import zipfile
 
-from support import BUILD, SHARED, Case, main
+from support import BUILD, Case, main
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bench"))
 import families  # noqa: E402
@@ -30,13 +33,65 @@ class Families(Case):
             with self.subTest(seed=seed):
                 self.check_case(families.pair(random.Random(seed)), "--union")
 
+    def test_slivers(self):
+        """Solids in nearly the same place, far from the origin: what rounding makes is joined before it grows."""
+        for seed in (160, 188, 207):
+            with self.subTest(seed=seed):
+                case = families.pair(random.Random(seed))
+                self.check_case(case, "--union")
+                self.assertLess(len(families.read(self.path("out.off"))[1]), 8 * len(case.faces))
+
+
+class Junctions(Case):
+    """T-junctions where a solid is needed: joined, or the command that joins them."""
+
+    def decompose(self, case, surface):
+        families.write(self.path("in.off"), case.vertices, case.faces)
+        report = self.run_json("decompose", "in.off", "-o", "p.vtk", "--report", "p.json", "--effort", "20")
+        result = json.loads(self.read("p.json"))
+        told = [line["message"] for line in report["log"]]
+        joined = [line for line in told if "(T-junctions) were joined" in line]
+        self.assertEqual((len(joined), any("stuffing" in line for line in told)), (surface, not surface), told)
+        self.run_text("verify", "in.off", "p.json", "p.vtk")
+        return result
+
+    def test_decompose(self):
+        open_ = 0
+        for seed in range(8):
+            with self.subTest(seed=seed):
+                case = families.voxels(random.Random(seed), 4 + 3 * seed, seed % 2 == 1)
+                families.write(self.path("in.off"), case.vertices, case.faces)
+                if self.run_json("check", "in.off", status=None)["usable"]:
+                    continue
+                open_ += 1
+                result = self.decompose(case, True)
+                self.assertLess(abs(sum(p["volume"] for p in result["pieces"]) - case.volume), 2 * case.loose)
+                size = max(max(p[k] for p in case.vertices) - min(p[k] for p in case.vertices) for k in range(3))
+                self.assertLess(max(result["distance"], result["distance_back"]), 1e-8 * size)
+        self.assertGreater(open_, 4)
+
+    def test_hole(self):
+        """What joining does not close is filled as before."""
+        case = families.voxels(random.Random(3), 12)
+        case.faces.pop()
+        result = self.decompose(case, False)
+        self.assertNotIn("faces_kept", result)
+
+    def test_guard(self):
+        case = families.voxels(random.Random(3), 12)
+        families.write(self.path("MODEL"), case.vertices, case.faces)
+        _, err = self.run_text("guard", "MODEL", "-o", "g.json", status=2)
+        command = err.split("'")[err.split("'").index("starguard check") + 2]
+        self.assertEqual(command, "starguard repair MODEL -o SOLID.off")
+        self.run_text(*command.split()[1:])
+        self.run_text("guard", "SOLID.off", "-o", "g.json")
+
 
 class Scenes(Case):
     """Scenes by starguard-import, and what happens without it or with broken files."""
 
     def setUp(self):
         super().setUp()
-        self.glb = os.path.join(SHARED, "data", "plain", "tetra.glb")
         if not os.path.exists(os.path.join(BUILD, "starguard-import")):
             self.skipTest("starguard-import is not built: libassimp-dev is missing")
 
@@ -46,23 +101,89 @@ class Scenes(Case):
         self.run_text("export", "g.json", "-o", "gallery.glb")
         self.run_text("check", "gallery.glb")
 
+    def test_corners(self):
+        """Objects whose rims meet are one surface; closed ones that touch keep their corners."""
+        corners = [(i & 1, i >> 1 & 1, i >> 2) for i in range(8)]
+        sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        text = ""
+        for box in range(2):
+            text += "".join(f"v {x + box} {y} {z}\n" for x, y, z in corners)
+            for number, side in enumerate(sides):
+                text += f"o wall{number}\n" if box == 0 else "o box\n" if number == 0 else ""
+                text += "f " + " ".join(str(i + 1 + 8 * box) for i in side) + "\n"
+        self.write("two.obj", text)
+        ran = subprocess.run([os.path.join(BUILD, "starguard-import"), self.path("two.obj")], capture_output=True, check=True)
+        self.write("two.ply", ran.stdout)
+        told = self.run_json("check", "two.ply")
+        self.assertEqual((told["model"]["vertices"], round(told["volume"], 9), told["components"]), (16, 2, 2))
+        self.assertEqual(told["findings"]["duplicate_vertices"]["count"], 4)
+        self.assertNotIn("isolated_vertices", told["findings"])
+
+    def test_groups(self):
+        """A room from groups to cameras and back: names stay, and are words for --see again."""
+        names = {"floor": 2, "ceil & ing": 2, "z\u00fcrich": 2}
+        text = "".join(f"v {8 * (i & 1)} {6 * (i >> 1 & 1)} {3 * (i >> 2)}\n" for i in range(8))
+        sides = iter([(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)])
+        for name in names:
+            text += f"g {name}\nf " + " ".join(map(str, next(sides))) + "\n"
+        text += "o\ng\n" + "".join("f " + " ".join(map(str, side)) + "\n" for side in sides)
+        self.write("room.obj", text)
+        self.run_text("export", "room.obj", "-o", "room.glb")
+        self.assertAlmostEqual(self.run_json("check", "room.glb")["volume"], 144, 4)
+        self.run_text("guard", "room.glb", "-o", "g.json", "--see", "floor", "--see", "ceil & ing", "--table", "t.csv")
+        rows = [line.split(",") for line in self.read("t.csv").decode().splitlines()[1:]]
+        self.assertEqual(sorted(row[1] for row in rows), ["ceil & ing"] * 2 + ["floor"] * 2)
+        for row in rows:
+            self.assertAlmostEqual(float(row[2]), 24, 4)
+        self.run_text("export", "g.json", "-o", "back.glb")
+        data = self.read("back.glb")
+        nodes = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["nodes"]
+        found = [node["name"] for node in nodes]
+        for name in [*names, "model", "guards"]:
+            self.assertIn(name, found)
+        model = nodes[found.index("model")]
+        self.assertEqual([nodes[i]["name"] for i in model["children"]], ["model", *names])
+
+    def damaged(self, rng, name, data):
+        """Bytes changed or cut off; of a 3MF sometimes those of the XML in a sound archive."""
+        inner = name.endswith("3mf") and rng.random() < 0.5
+        if inner:
+            with zipfile.ZipFile(io.BytesIO(data)) as archive:
+                parts = {part: archive.read(part) for part in archive.namelist()}
+            data = parts["3D/3dmodel.model"]
+        bytes_ = bytearray(data[:rng.randint(20, len(data))] if rng.random() < 0.3 else data)
+        for _ in range(rng.randint(1, 8)):
+            bytes_[rng.randrange(12, len(bytes_))] = rng.randrange(256)
+        if not inner:
+            return bytes(bytes_)
+        parts["3D/3dmodel.model"] = bytes(bytes_)
+        out = io.BytesIO()
+        with zipfile.ZipFile(out, "w") as archive:
+            for part, text in parts.items():
+                archive.writestr(part, text)
+        return out.getvalue()
+
     def test_damaged(self):
-        if not os.path.exists(self.glb):
-            self.skipTest(f"no {self.glb}")
-        with open(self.glb, "rb") as file:
-            data = file.read()
+        """200 broken files: a result or a message, and nothing else is left."""
         rng = random.Random(1)
-        for _ in range(20):
-            bytes_ = bytearray(data[:rng.randint(20, len(data))] if rng.random() < 0.3 else data)
-            for _ in range(rng.randint(1, 8)):
-                bytes_[rng.randrange(12, len(bytes_))] = rng.randrange(256)
-            self.write("bad.glb", bytes(bytes_))
-            with self.start("repair", "bad.glb", "-o", "out.off") as process:
-                process.communicate()
-            self.assertIn(process.returncode, (0, 2))
-            self.assertEqual(self.names(), ["bad.glb", "out.off"] if process.returncode == 0 else ["bad.glb"])
-            if process.returncode == 0:
-                os.remove(self.path("out.off"))
+        self.write("box.obj", "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8)) + "g floor\nf 1 3 4 2\n"
+                   "g rest\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
+        outcomes = set()
+        for name in ("bad.glb", "bad.3mf"):
+            self.run_text("export", "box.obj", "-o", name)
+            good = self.read(name)
+            for _ in range(100):
+                self.write(name, self.damaged(rng, name, good))
+                with self.start("repair", name, "-o", "out.off") as process:
+                    _, err = process.communicate()
+                outcomes.add((name, process.returncode))
+                self.assertIn(process.returncode, (0, 2), err)
+                self.assertTrue(process.returncode == 0 or err)
+                self.assertEqual("out.off" in self.names(), process.returncode == 0)
+                self.assertEqual(set(self.names()) - {"bad.glb", "bad.3mf", "box.obj", "out.off"}, set())
+                if process.returncode == 0:
+                    os.remove(self.path("out.off"))
+        self.assertEqual(len(outcomes), 4)
 
     def test_missing_program(self):
         os.makedirs(self.path("bin"))

@@ -251,7 +251,7 @@ class Morph(Case):
         self.write("odd.txt", "1 2 3\n")
         names = self.names()
         for words, says in ((["torus.off", "ball.off"], "genus 1"),
-                            (["ball.off", "open.off"], "open"),
+                            (["ball.off", "open.off"], "disks"),
                             (["cat0.off", "ball.off", "--landmarks", "far.txt"], "line 1"),
                             (["cat0.off", "ball.off", "--landmarks", "twice.txt"], "same vertex"),
                             (["cat0.off", "ball.off", "--landmarks", "odd.txt"], "line 1"),

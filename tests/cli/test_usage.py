@@ -203,8 +203,8 @@ class Mistakes(support.Case):
         self.usage_error("sample", "zzzzzz", "-o", "h.off", says="--list")
 
     def test_endings(self):
-        self.usage_error("sample", "horse", "-o", "h.xyz", says=".off, .obj, .ply or .stl")
-        self.usage_error("repair", "m.off", "-o", "noextension", says=".off, .obj, .ply or .stl")
+        self.usage_error("sample", "horse", "-o", "h.xyz", says=".off, .obj, .ply, .stl or .vtp")
+        self.usage_error("repair", "m.off", "-o", "noextension", says=".off, .obj, .ply, .stl or .vtp")
         self.usage_error("check", "m.off", "--marks", "marks.png", says=".ply")
         self.usage_error("visible", "m.off", "--from", "0,0,0", "-o", "v.off", says=".ply")
         self.usage_error("guard", "m.off", "-o", "g.json", "--picture", "p.jpg", says=".png")

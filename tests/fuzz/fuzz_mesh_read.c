@@ -39,7 +39,9 @@ static void require_explained(const starg_context *context, starg_status status)
 }
 
 int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size) {
-    enum { BYTES_PER_BYTE = 64, SLACK = 1 << 16 };
+    enum { SLACK = 1 << 16 };
+    /* zlib saves a factor of 1032, and a coordinate of one byte becomes one of eight */
+    const size_t bytes_per_byte = strstr(FUZZ_NAME, ".vtp") != NULL ? 1 << 14 : 64;
     starg_context *context = NULL;
     starg_mesh *mesh = NULL;
     require(starg_context_create(NULL, &context) == STARG_OK, "a context can be made");
@@ -51,7 +53,7 @@ int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size) {
         require_explained(context, status);
     starg_mesh_free(mesh);
     require(starg_context_live_blocks(context) == 0, "all memory is returned");
-    require(starg_context_peak_bytes(context) <= SLACK + BYTES_PER_BYTE * size,
+    require(starg_context_peak_bytes(context) <= SLACK + bytes_per_byte * size,
             "memory stays in proportion to the input");
     starg_context_free(context);
     return 0;

@@ -63,6 +63,14 @@ static const char ply[] =
 static const char stl[] = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
                           "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
 
+static const char vtp[] =
+    "<VTKFile type=\"PolyData\" compressor=\"vtkZLibDataCompressor\"><PolyData>"
+    "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\">"
+    "<Points><DataArray type=\"UInt8\" Name=\"p\" "
+    "format=\"binary\">AQAAAEAAAAAJAAAADgAAAA==eJxjYGBgZABhAAARAAM=</DataArray></Points>"
+    "<Polys><DataArray type=\"Int32\" Name=\"connectivity\">0 1 2</DataArray>"
+    "<DataArray type=\"Int32\" Name=\"offsets\">3</DataArray></Polys></Piece></PolyData></VTKFile>";
+
 static starg_status meshes(starg_context *context) {
     FAILING_BY(starg_context_create, "", context_create(context));
     MESH(starg_mesh_create, "", starg_mesh_vertices(in.cube), starg_mesh_vertex_count(in.cube),
@@ -74,10 +82,12 @@ static starg_status meshes(starg_context *context) {
     READ_TEXT(starg_mesh_read_memory, "polygon", polygon);
     READ_TEXT(starg_mesh_read_memory, "ply", ply);
     READ_TEXT(starg_mesh_read_memory, "stl", stl);
+    READ_TEXT(starg_mesh_read_memory, "vtp", vtp);
     WRITE(starg_mesh_write, "off", OFF);
     WRITE(starg_mesh_write, "obj", OBJ);
     WRITE(starg_mesh_write, "ply", PLY_BINARY);
     WRITE(starg_mesh_write, "stl", STL_BINARY);
+    WRITE(starg_mesh_write, "vtp", VTP);
     return STARG_OK;
 }
 

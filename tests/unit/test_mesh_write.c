@@ -216,7 +216,7 @@ static void failures(void **state) {
     (void)state;
     expect_failure(path_of("a.xyz"), STARG_MESH_AUTO, 1, STARG_ERROR_ARGUMENT, ".off");
     expect_failure("-", STARG_MESH_AUTO, 1, STARG_ERROR_ARGUMENT, "format");
-    expect_failure(path_of("a.off"), (starg_mesh_format)7, 1, STARG_ERROR_ARGUMENT, "format");
+    expect_failure(path_of("a.off"), (starg_mesh_format)8, 1, STARG_ERROR_ARGUMENT, "format");
     expect_failure(path_of("a.stl"), STARG_MESH_AUTO, 1e39, STARG_ERROR_RANGE, "vertex 1");
     expect_failure(path_of("missing/a.off"), STARG_MESH_AUTO, 1, STARG_ERROR_WRITE, "No such file");
     expect_failure("/proc/a.off", STARG_MESH_AUTO, 1, STARG_ERROR_WRITE, "cannot write");

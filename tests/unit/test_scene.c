@@ -184,8 +184,8 @@ static void test_what_does_not_fit(void **state) {
     (void)state;
     stage s = make_stage();
     starg_scene scene = whole_scene(&s);
-    refuse(&s, &scene, "scene.stl", STARG_SCENE_AUTO, ".glb, .vtu, .ply or .obj");
-    refuse(&s, &scene, "scene", STARG_SCENE_AUTO, ".glb, .vtu, .ply or .obj");
+    refuse(&s, &scene, "scene.stl", STARG_SCENE_AUTO, ".glb, .vtu, .ply, .obj or .3mf");
+    refuse(&s, &scene, "scene", STARG_SCENE_AUTO, ".glb, .vtu, .ply, .obj or .3mf");
     refuse(&s, &scene, "scene.glb", (starg_scene_format)77, "77");
     refuse(&s, &(starg_scene){0}, "scene.glb", 0, "nothing to write");
 

@@ -137,15 +137,18 @@ bool starg_obj_matches(const starg_source *source);
 bool starg_ply_matches(const starg_source *source);
 bool starg_stl_matches(const starg_source *source);
 bool starg_vtk_matches(const starg_source *source);
+bool starg_vtp_matches(const starg_source *source);
 starg_status starg_off_read(starg_mesh_builder *builder);
 starg_status starg_obj_read(starg_mesh_builder *builder);
 starg_status starg_ply_read(starg_mesh_builder *builder);
 starg_status starg_stl_read(starg_mesh_builder *builder);
 starg_status starg_vtk_read(starg_mesh_builder *builder);
+starg_status starg_vtp_read(starg_mesh_builder *builder);
 
 /* What a file holds beside the mesh, as far as its format can. */
 typedef struct starg_mesh_extras {
     const uint8_t *colors; /* face_count x 3, or NULL */
+    const int32_t *marks;  /* face_count, or NULL */
     char note[96];         /* a comment, or empty */
 } starg_mesh_extras;
 
@@ -153,7 +156,7 @@ typedef struct starg_mesh_extras {
 typedef void starg_mesh_writer(FILE *stream, const starg_mesh *mesh,
                                const starg_mesh_extras *extras);
 starg_mesh_writer starg_off_write, starg_obj_write, starg_ply_write_ascii, starg_ply_write_binary,
-    starg_stl_write_ascii, starg_stl_write_binary;
+    starg_stl_write_ascii, starg_stl_write_binary, starg_vtp_write;
 
 /* Writes vertices and faces as lines of text, as in OFF and PLY. */
 void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);

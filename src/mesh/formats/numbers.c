@@ -7,18 +7,22 @@ starg_place numbers_place(const number_scan *numbers) {
     return starg_at_byte((size_t)(numbers->scan.at - numbers->scan.source->bytes));
 }
 
-static size_t type_bytes(number_type type) {
-    return type == NUMBER_INT8 ? 1 : type == NUMBER_INT32 || type == NUMBER_FLOAT32 ? 4 : 8;
+size_t numbers_bytes(number_type type) {
+    static const unsigned char bytes[] = {
+        [NUMBER_INT8] = 1,    [NUMBER_UINT8] = 1, [NUMBER_INT16] = 2,
+        [NUMBER_UINT16] = 2,  [NUMBER_INT32] = 4, [NUMBER_UINT32] = 4,
+        [NUMBER_FLOAT32] = 4, [NUMBER_INT64] = 8, [NUMBER_FLOAT64] = 8};
+    return bytes[type];
 }
 
 size_t numbers_least_bytes(const number_scan *numbers, number_type type) {
-    return numbers->encoding == NUMBERS_TEXT ? 2 : type_bytes(type);
+    return numbers->encoding == NUMBERS_TEXT ? 2 : numbers_bytes(type);
 }
 
 /* The next bytes as a 64-bit number, zero extended. */
 static starg_status take_bits(number_scan *numbers, number_type type, const char *what,
                               uint64_t *bits) {
-    size_t size = type_bytes(type);
+    size_t size = numbers_bytes(type);
     if ((size_t)(numbers->scan.end - numbers->scan.at) < size)
         return starg_source_fail(numbers->scan.source, numbers_place(numbers),
                                  "the file ends where %s is expected; it seems to be truncated",
@@ -32,6 +36,12 @@ static starg_status take_bits(number_scan *numbers, number_type type, const char
     return STARG_OK;
 }
 
+static int64_t decode_integer(uint64_t bits, number_type type) {
+    bool is_signed = type == NUMBER_INT8 || type == NUMBER_INT16 || type == NUMBER_INT32;
+    uint64_t sign = is_signed ? UINT64_C(1) << (8 * numbers_bytes(type) - 1) : 0;
+    return (int64_t)(bits ^ sign) - (int64_t)sign;
+}
+
 static double decode_real(uint64_t bits, number_type type) {
     double wide;
     float narrow;
@@ -40,6 +50,8 @@ static double decode_real(uint64_t bits, number_type type) {
         memcpy(&wide, &bits, sizeof wide);
         return wide;
     }
+    if (type != NUMBER_FLOAT32)
+        return (double)decode_integer(bits, type);
     memcpy(&narrow, &half, sizeof narrow);
     return (double)narrow;
 }
@@ -60,10 +72,7 @@ starg_status numbers_integer(number_scan *numbers, number_type type, const char 
     if (numbers->encoding == NUMBERS_TEXT)
         return starg_scan_integer(&numbers->scan, what, value);
     TRY(take_bits(numbers, type, what, &bits));
-    if (type == NUMBER_INT8)
-        *value = (int64_t)(bits ^ 0x80) - 0x80;
-    else
-        *value = type == NUMBER_INT32 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
+    *value = decode_integer(bits, type);
     return STARG_OK;
 }
 

@@ -10,7 +10,11 @@ typedef enum number_type {
     NUMBER_INT64,
     NUMBER_FLOAT32,
     NUMBER_FLOAT64,
-    NUMBER_INT8
+    NUMBER_INT8,
+    NUMBER_INT16,
+    NUMBER_UINT8,
+    NUMBER_UINT16,
+    NUMBER_UINT32
 } number_type;
 
 typedef struct number_scan {
@@ -24,6 +28,9 @@ starg_place numbers_place(const number_scan *numbers);
 starg_status numbers_real(number_scan *numbers, number_type type, const char *what, double *value);
 starg_status numbers_integer(number_scan *numbers, number_type type, const char *what,
                              int64_t *value);
+
+/* Size of a number in binary data. */
+size_t numbers_bytes(number_type type);
 
 /* Smallest size of a number: in text one digit and a blank. */
 size_t numbers_least_bytes(const number_scan *numbers, number_type type);

@@ -12,7 +12,7 @@ static const struct format {
 } formats[] = {
     {".ply", starg_ply_matches, starg_ply_read}, {".vtk", starg_vtk_matches, starg_vtk_read},
     {".stl", starg_stl_matches, starg_stl_read}, {".off", starg_off_matches, starg_off_read},
-    {".obj", starg_obj_matches, starg_obj_read},
+    {".obj", starg_obj_matches, starg_obj_read}, {".vtp", starg_vtp_matches, starg_vtp_read},
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -44,7 +44,7 @@ static starg_status detect(const starg_source *source, const char *name,
                                  "not from memory or standard input");
     return starg_source_fail(
         source, starg_at_file(),
-        "unknown format; use OFF, OBJ, PLY, STL or VTK, to which Blender, MeshLab "
+        "unknown format; use OFF, OBJ, PLY, STL or VTK (.vtk, .vtp), to which Blender, MeshLab "
         "or 'assimp export FILE MODEL.ply' convert others");
 }
 

@@ -12,6 +12,7 @@ static starg_mesh_writer *const writers[] = {
     [STARG_MESH_PLY_BINARY] = starg_ply_write_binary,
     [STARG_MESH_STL_ASCII] = starg_stl_write_ascii,
     [STARG_MESH_STL_BINARY] = starg_stl_write_binary,
+    [STARG_MESH_VTP] = starg_vtp_write,
 };
 
 void starg_mesh_write_options_default(starg_mesh_write_options *options) {
@@ -27,6 +28,8 @@ static starg_mesh_format format_by_name(const char *path) {
         return STARG_MESH_PLY_BINARY;
     if (starg_has_extension(path, ".stl"))
         return STARG_MESH_STL_BINARY;
+    if (starg_has_extension(path, ".vtp"))
+        return STARG_MESH_VTP;
     return STARG_MESH_AUTO;
 }
 
@@ -34,11 +37,11 @@ static starg_status choose_format(starg_context *context, const char *path,
                                   starg_mesh_format *format) {
     if (*format == STARG_MESH_AUTO)
         *format = format_by_name(path);
-    if (*format >= STARG_MESH_OFF && *format <= STARG_MESH_STL_BINARY)
+    if (*format >= STARG_MESH_OFF && *format <= STARG_MESH_VTP)
         return STARG_OK;
     return starg_fail(context, STARG_ERROR_ARGUMENT, STARG_MESH_FILE,
-                      "'%s' has no known format; use a name that ends in .off, .obj, .ply or .stl, "
-                      "or give a format",
+                      "'%s' has no known format; use a name that ends in .off, .obj, .ply, .stl or "
+                      ".vtp, or give a format",
                       path);
 }
 
@@ -95,7 +98,7 @@ starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh, co
     SCOPED_BY(starg_output_discard) starg_output output = {0};
     SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     SCOPED_BY(starg_mesh_drop) starg_mesh *moved = NULL;
-    starg_mesh_extras extras = {.colors = options->face_colors};
+    starg_mesh_extras extras = {.colors = options->face_colors, .marks = options->face_marks};
     TRY(choose_format(context, path, &format));
     TRY(starg_c_locale_enter(context, &locale));
     TRY(move_to_origin(context, mesh, options->origin, &extras, &moved));

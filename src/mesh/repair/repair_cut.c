@@ -68,33 +68,14 @@ starg_status repair_conform(repair_state *state) {
     return STARG_OK;
 }
 
-static starg_status has_open_edges(const union_surface *surface, bool *open) {
-    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
-    const starg_mesh view = {.context = surface->context,
-                             .vertex_count = surface->vertices.count / 3,
-                             .face_count = union_face_count(surface),
-                             .vertices = surface->vertices.data,
-                             .faces = surface->faces.data};
-    TRY(topology_create(surface->context, &view, &topology));
-    *open = view.face_count == 0;
-    for (uint32_t h = 0; h < 3 * view.face_count && !*open; h++)
-        *open = topology->ring[h] == h;
-    return STARG_OK;
-}
-
 starg_status repair_suggest(const repair_state *state, double *distance) {
-    SCOPED_BY(union_surface_free) union_surface surface = {.context = state->context};
-    bool open = true;
+    bool closed = false;
     *distance = 0;
     if (state->input->face_count > MOST_SUGGESTED)
         return STARG_OK;
-    for (double trial = 1e-11; trial < 2e-3 && open; trial *= 10) {
-        conform_report report;
-        union_surface_free(&surface);
-        TRY(union_surface_make(state->context, state->input, &surface));
-        TRY(surface_conform(&surface, conform_distance(&surface, trial), &report));
-        TRY(has_open_edges(&surface, &open));
-        *distance = open ? 0 : trial;
+    for (double trial = 1e-11; trial < 2e-3 && !closed; trial *= 10) {
+        TRY(conform_closes(state->context, state->input, trial, &closed));
+        *distance = closed ? trial : 0;
     }
     return STARG_OK;
 }

@@ -12,6 +12,7 @@
  * To evaluate a change, its faces are marked REPAIR_GONE and appended to the mesh again: first in
  * their old, then in their new form. */
 #include "geometry/vec3.h"
+#include "mesh/examine.h"
 #include "mesh/repair/repair.h"
 
 /* Largest displacement of an input vertex, as a fraction of the diagonal. */
@@ -391,7 +392,7 @@ static starg_status untangle_once(repair_state *state, size_t *work, bool *chang
     STARG_NEW_ZERO(context, REPAIR_STAGE, u.marked, vertices);
     STARG_NEW_ZERO(context, REPAIR_STAGE, u.touched, vertices);
     STARG_NEW(context, REPAIR_STAGE, u.next, vertices);
-    bvh_query_pairs(u.index.tree, note_pair, &u);
+    STARG_TRY(face_pairs_visit(context, &view, u.index.tree, note_pair, &u));
     join_patches(&u);
     STARG_TRY(mend_patches(&u));
     *changed = u.changed;

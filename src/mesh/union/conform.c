@@ -709,3 +709,22 @@ starg_status surface_conform(union_surface *surface, double distance, conform_re
     report->left = changed || full;
     return STARG_OK;
 }
+
+starg_status conform_closes(starg_context *context, const starg_mesh *mesh, double merge,
+                            bool *closed) {
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED_BY(union_surface_free) union_surface surface = {.context = context};
+    conform_report report;
+    TRY(union_surface_make(context, mesh, &surface));
+    TRY(surface_conform(&surface, conform_distance(&surface, merge), &report));
+    const starg_mesh view = {.context = context,
+                             .vertex_count = surface.vertices.count / 3,
+                             .face_count = union_face_count(&surface),
+                             .vertices = surface.vertices.data,
+                             .faces = surface.faces.data};
+    TRY(topology_create(context, &view, &topology));
+    *closed = view.face_count > 0;
+    for (uint32_t h = 0; h < 3 * view.face_count && *closed; h++)
+        *closed = topology->ring[h] != h;
+    return STARG_OK;
+}

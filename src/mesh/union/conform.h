@@ -24,6 +24,10 @@ double conform_distance(const union_surface *surface, double merge);
  */
 starg_status surface_conform(union_surface *surface, double distance, conform_report *report);
 
+/* Has the mesh no open edge then? `merge` as above. Errors: MEMORY, CANCELLED, TIME. */
+starg_status conform_closes(starg_context *context, const starg_mesh *mesh, double merge,
+                            bool *closed);
+
 /* place[v] is v, or the earlier vertex that it joins: the nearest of those kept that lie within the
  * distance, so that nothing moves farther. Errors: MEMORY. */
 starg_status near_weld(starg_context *context, const double *vertices, size_t count,
@@ -68,3 +72,18 @@ starg_status near_find(starg_context *context, const double *place, const uint32
 /* Sorts all and drops repetitions. */
 void near_sort(near_facts *facts);
 void near_free(near_facts *facts);
+
+/* ---- faces that cannot lie on one another ---- */
+
+typedef struct near_fans {
+    size_t count;
+    uint32_t *of;    /* per face: its fan, from 1 on; 0: none */
+    size_t *start;   /* faces of fan k, 0 for those of none: faces[start[k]] up to start[k + 1] */
+    uint32_t *faces; /* ascending in each */
+} near_fans;
+
+/* Faces of a fan have no common area, and no edges that cross. No face repeats a corner. Errors:
+ * MEMORY. */
+starg_status near_fans_find(starg_context *context, const double *place, const uint32_t *faces,
+                            size_t face_count, near_fans *out);
+void near_fans_free(near_fans *fans);

@@ -3,8 +3,10 @@
  * edges that meet where two faces lie in one plane, and faces with a common area. (Edges that meet
  * elsewhere make no gaps; joining them would not end where two surfaces cross at a small angle.)
  *
- * Each face asks the tree for the faces near it. Most are neighbours that turn away from its plane
- * and are passed over at once. An edge is looked at from one of its faces only.
+ * Each face asks trees for the faces near it: one tree of each fan (near_fans.c), and one of all
+ * other faces. Most are neighbours that turn away from its plane and are passed over at once. An
+ * edge is looked at from one of its faces only. Faces of one fan are not asked for each other, but
+ * for the vertices on them.
  *
  * Distances are rounded, which is harmless: they select what is joined, and what is left apart
  * stays as it was. Cost: that of the pairs of faces whose boxes meet. */
@@ -27,6 +29,12 @@ typedef struct seeker {
     uint32_t face;
     const double *corner[3];
     double normal[3], length; /* of the normal */
+    near_fans fans;
+    uint32_t *corners; /* of the faces in the order of the fans */
+    bvh **trees;       /* of each fan; 0: of the faces of none */
+    uint32_t fan;      /* of the tree that is asked */
+    bvh_box box;       /* that it is asked about */
+    uint32_t vertex;   /* whose place is sought in its own fan */
     size_t pairs;
     starg_status status;
 } seeker;
@@ -204,34 +212,30 @@ static bool same_corners(const uint32_t *a, const uint32_t *b) {
 
 /* ---- pairs ---- */
 
-static starg_status seek_on_edges(seeker *s, uint32_t other) {
+/* Is the vertex on edges that the face owns? */
+static starg_status seek_on_edges(seeker *s, uint32_t vertex) {
     for (uint32_t h = 3 * s->face; h < 3 * s->face + 3; h++) {
-        uint32_t edge = s->out->edge[h];
-        if (s->out->owner[edge] != h)
+        near_on_edge fact = {s->out->edge[h], vertex, 0};
+        if (s->out->owner[fact.edge] != h || ends_at(s->out, fact.edge, vertex) ||
+            !is_on_edge(s, fact.edge, vertex, &fact.at))
             continue;
-        for (size_t k = 0; k < 3; k++) {
-            near_on_edge fact = {edge, s->faces[3 * (size_t)other + k], 0};
-            if (ends_at(s->out, edge, fact.vertex) || !is_on_edge(s, edge, fact.vertex, &fact.at))
-                continue;
-            PUSH(s->out->context, UNION_STAGE, &s->out->on, fact);
-            note_distance(s, distance_from_edge(s, edge, fact.vertex));
-        }
+        PUSH(s->out->context, UNION_STAGE, &s->out->on, fact);
+        note_distance(s, distance_from_edge(s, fact.edge, vertex));
     }
     return STARG_OK;
 }
 
-static starg_status seek_in_face(seeker *s, uint32_t other, const int side[3]) {
+/* Is the vertex, which lies in the plane of the face, in the face? */
+static starg_status seek_in_face(seeker *s, uint32_t vertex) {
     const uint32_t *own = s->faces + 3 * (size_t)s->face;
-    for (size_t k = 0; k < 3; k++) {
-        near_in_face fact = {s->face, s->faces[3 * (size_t)other + k]};
-        bool corner = fact.vertex == own[0] || fact.vertex == own[1] || fact.vertex == own[2];
-        if (side[k] != 0 || corner || !is_inside(s, place_of(s, fact.vertex)))
-            continue;
-        double w[3];
-        vec3_subtract(place_of(s, fact.vertex), s->corner[0], w);
-        PUSH(s->out->context, UNION_STAGE, &s->out->in, fact);
-        note_distance(s, fabs(vec3_dot(s->normal, w)) / s->length);
-    }
+    const near_in_face fact = {s->face, vertex};
+    double w[3];
+    if (vertex == own[0] || vertex == own[1] || vertex == own[2] ||
+        !is_inside(s, place_of(s, vertex)))
+        return STARG_OK;
+    vec3_subtract(place_of(s, vertex), s->corner[0], w);
+    PUSH(s->out->context, UNION_STAGE, &s->out->in, fact);
+    note_distance(s, fabs(vec3_dot(s->normal, w)) / s->length);
     return STARG_OK;
 }
 
@@ -293,15 +297,17 @@ static bool turns_away(const seeker *s, uint32_t other, const int side[3]) {
 }
 
 static starg_status look_at_pair(seeker *s, uint32_t other) {
-    int side[3];
-    if (other == s->face)
-        return seek_on_edges(s, other);
-    for (int k = 0; k < 3; k++)
-        side[k] = side_of(s, place_of(s, s->faces[3 * (size_t)other + (size_t)k]));
-    if (turns_away(s, other, side))
+    const uint32_t *theirs = s->faces + 3 * (size_t)other;
+    int side[3] = {1, 1, 1};
+    for (int k = 0; k < 3 && other != s->face; k++)
+        side[k] = side_of(s, place_of(s, theirs[k]));
+    if (other != s->face && turns_away(s, other, side))
         return STARG_OK;
-    TRY(seek_on_edges(s, other));
-    TRY(seek_in_face(s, other, side));
+    for (int k = 0; k < 3; k++) {
+        TRY(seek_on_edges(s, theirs[k]));
+        if (side[k] == 0)
+            TRY(seek_in_face(s, theirs[k]));
+    }
     if (side[0] == 0 && side[1] == 0 && side[2] == 0) {
         join_if_overlapping(s, other);
         TRY(seek_crossings(s, other));
@@ -309,41 +315,157 @@ static starg_status look_at_pair(seeker *s, uint32_t other) {
     return STARG_OK;
 }
 
-static bool visit_pair(void *user, uint32_t other) {
-    seeker *s = user;
-    s->status = look_at_pair(s, other);
+/* Stops at an error, and where there is too much. */
+static bool goes_on(seeker *s) {
     if (s->status == STARG_OK && ++s->pairs % PAIRS_PER_CLOCK == 0)
         s->status = starg_check_cancel(s->out->context, UNION_STAGE);
     return s->status == STARG_OK && !s->out->full;
 }
 
-static void ask_for(seeker *s, uint32_t face, const bvh *tree) {
-    bvh_box box;
+static uint32_t face_at(const seeker *s, uint32_t rank) {
+    return s->fans.faces[s->fans.start[s->fan] + rank];
+}
+
+static bool visit_pair(void *user, uint32_t rank) {
+    seeker *s = user;
+    s->status = look_at_pair(s, face_at(s, rank));
+    return goes_on(s);
+}
+
+static void look_at(seeker *s, uint32_t face) {
     s->face = face;
     for (int k = 0; k < 3; k++)
         s->corner[k] = place_of(s, s->faces[3 * (size_t)face + (size_t)k]);
     vec3_triangle_normal(s->corner[0], s->corner[1], s->corner[2], s->normal);
     s->length = vec3_length(s->normal);
+}
+
+static starg_status look_at_vertex(seeker *s) {
+    TRY(seek_on_edges(s, s->vertex));
+    return side_of(s, place_of(s, s->vertex)) == 0 ? seek_in_face(s, s->vertex) : STARG_OK;
+}
+
+static bool visit_vertex(void *user, uint32_t rank) {
+    seeker *s = user;
+    look_at(s, face_at(s, rank));
+    s->status = look_at_vertex(s);
+    return goes_on(s);
+}
+
+/* The box of some points, with the distance around it. */
+static bvh_box box_of(const seeker *s, const double *const *points, int count) {
+    bvh_box box;
     for (int k = 0; k < 3; k++) {
-        double a = s->corner[0][k], b = s->corner[1][k], c = s->corner[2][k];
-        box.lower[k] = fmin(a, fmin(b, c)) - s->distance;
-        box.upper[k] = fmax(a, fmax(b, c)) + s->distance;
+        box.lower[k] = INFINITY;
+        box.upper[k] = -INFINITY;
+        for (int i = 0; i < count; i++) {
+            box.lower[k] = fmin(box.lower[k], points[i][k]);
+            box.upper[k] = fmax(box.upper[k], points[i][k]);
+        }
+        box.lower[k] -= s->distance;
+        box.upper[k] += s->distance;
     }
-    bvh_query_box(tree, &box, visit_pair, s);
+    return box;
+}
+
+static bool ask_fan(void *user, uint32_t fan) {
+    seeker *s = user;
+    s->fan = fan;
+    return (fan > 0 && fan == s->fans.of[s->face]) ||
+           bvh_query_box(s->trees[fan], &s->box, visit_pair, s);
+}
+
+static void ask_for(seeker *s, uint32_t face, const bvh *roots) {
+    look_at(s, face);
+    s->box = box_of(s, s->corner, 3);
+    bvh_query_box(roots, &s->box, ask_fan, s);
+}
+
+static int compare_vertices(const void *left, const void *right) {
+    const uint32_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+/* The vertices of a fan in its own faces. */
+static starg_status ask_for_vertices(seeker *s, uint32_t fan) {
+    size_t first = s->fans.start[fan], count = 3 * (s->fans.start[fan + 1] - first);
+    SCOPED uint32_t *list = NULL;
+    NEW(s->out->context, UNION_STAGE, list, count);
+    memcpy(list, s->corners + 3 * first, count * sizeof *list);
+    qsort(list, count, sizeof *list, compare_vertices);
+    s->fan = fan;
+    for (size_t i = 0; i < count && s->status == STARG_OK && !s->out->full; i++) {
+        if (i > 0 && list[i] == list[i - 1])
+            continue;
+        s->vertex = list[i];
+        const double *p = place_of(s, s->vertex);
+        s->box = box_of(s, &p, 1);
+        bvh_query_box(s->trees[fan], &s->box, visit_vertex, s);
+    }
+    return s->status;
+}
+
+/* A tree of the faces of each fan, and one of the boxes of all these trees: a box is that of a
+ * triangle of two of its corners. Each is empty where there are no faces. */
+typedef struct tree_roots {
+    STARG_ARRAY(double) corners;
+    STARG_ARRAY(uint32_t) triangles;
+    bvh *tree;
+} tree_roots;
+
+static void free_roots(tree_roots *roots) {
+    RELEASE(roots->corners.data, roots->triangles.data);
+    bvh_free(roots->tree);
+}
+
+static starg_status make_trees(seeker *s, tree_roots *roots) {
+    starg_context *context = s->out->context;
+    const near_fans *fans = &s->fans;
+    NEW(context, UNION_STAGE, s->corners, 3 * s->out->face_count);
+    NEW_ZERO(context, UNION_STAGE, s->trees, fans->count + 1);
+    for (size_t i = 0; i < 3 * s->out->face_count; i++)
+        s->corners[i] = s->faces[3 * (size_t)fans->faces[i / 3] + i % 3];
+    for (size_t k = 0; k <= fans->count; k++) {
+        size_t first = fans->start[k], count = fans->start[k + 1] - first;
+        bvh_box box = {{INFINITY, INFINITY, INFINITY}, {INFINITY, INFINITY, INFINITY}};
+        TRY(bvh_create(context, s->place, s->corners + 3 * first, count, &s->trees[k]));
+        if (count > 0)
+            box = s->trees[k]->nodes[0].box;
+        for (int i = 0; i < 3; i++) {
+            PUSH(context, UNION_STAGE, &roots->triangles, (uint32_t)(2 * k + (i > 0)));
+        }
+        for (int i = 0; i < 3; i++)
+            PUSH(context, UNION_STAGE, &roots->corners, box.lower[i]);
+        for (int i = 0; i < 3; i++)
+            PUSH(context, UNION_STAGE, &roots->corners, box.upper[i]);
+    }
+    return bvh_create(context, roots->corners.data, roots->triangles.data, fans->count + 1,
+                      &roots->tree);
+}
+
+static void free_seeker(seeker *s) {
+    for (size_t k = 0; s->trees != NULL && k <= s->fans.count; k++)
+        bvh_free(s->trees[k]);
+    RELEASE(s->trees, s->corners);
+    near_fans_free(&s->fans);
 }
 
 starg_status near_find(starg_context *context, const double *place, const uint32_t *faces,
                        size_t face_count, double distance, near_facts *out) {
-    SCOPED_BY(bvh_drop) bvh *tree = NULL;
+    SCOPED_BY(free_roots) tree_roots roots = {0};
     *out = (near_facts){.context = context, .face_count = face_count};
+    SCOPED_BY(free_seeker)
     seeker s = {.out = out, .place = place, .faces = faces, .distance = distance};
     TRY(number_edges(out, faces));
     NEW(context, UNION_STAGE, out->sheet, face_count);
     sets_make(out->sheet, face_count);
-    TRY(bvh_create(context, place, faces, face_count, &tree));
+    TRY(near_fans_find(context, place, faces, face_count, &s.fans));
+    TRY(make_trees(&s, &roots));
     for (uint32_t f = 0; f < face_count && s.status == STARG_OK && !out->full; f++)
-        ask_for(&s, f, tree);
+        ask_for(&s, f, roots.tree);
     TRY(s.status);
+    for (uint32_t k = 1; k <= s.fans.count; k++)
+        TRY(ask_for_vertices(&s, k));
     TRY(starg_check_cancel(context, UNION_STAGE));
     near_sort(out);
     return STARG_OK;

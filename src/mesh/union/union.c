@@ -12,13 +12,15 @@
  *    and triangles that lose their area go. What is left bounds a region again, up to the rounding.
  *
  * Later rounds look only at faces that are new, and there are few of those whose rounding matters.
- * Where it still makes contacts after EXACT_ROUNDS, each round begins with step 0, whatever that
- * adds: contacts within rounding are shared then, and none of them is made anew. A surface that
- * grows to more than MOST_GROWTH times the largest of the first rounds is given up.
+ * Where it still makes contacts after EXACT_ROUNDS, or more than in the round before, each round
+ * begins with step 0, whatever that adds: contacts within rounding are shared then, and none of
+ * them is made anew. A
+ * surface that grows to more than MOST_GROWTH times the largest of the first rounds is given up.
  * Invariants: vertices of the mesh never move but by step 0, faces that meet no others stay as they
  * are, and the result has no pair of step 1. */
 #include "mesh/union/union.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "geometry/predicates.h"
@@ -27,6 +29,10 @@
 #include "mesh/union/conform.h"
 
 enum { EXACT_ROUNDS = 4, MOST_ROUNDS = 20, MOST_GROWTH = 8, SPARE_FACES = 4096 };
+
+/* Each time that there are more contacts the distance of step 0 becomes 2^WIDER times as much, but
+ * no more than MOST_WIDER times. */
+enum { WIDER = 2, MOST_WIDER = 6 };
 
 void union_surface_free(union_surface *surface) {
     RELEASE(surface->vertices.data, surface->faces.data, surface->origin.data, surface->flags.data);
@@ -258,7 +264,10 @@ static starg_status run_round(union_surface *surface, double distance, union_rep
                               bool *done) {
     SCOPED_BY(bvh_drop) bvh *tree = NULL;
     SCOPED union_contacts contacts = {0};
-    bool first = !report->chosen, joined = false, late = report->rounds >= EXACT_ROUNDS;
+    bool first = !report->chosen, joined = false,
+         late = report->rounds >= EXACT_ROUNDS || report->grew > 0;
+    distance =
+        ldexp(distance, WIDER * (int)(report->grew < MOST_WIDER ? report->grew : MOST_WIDER));
     if (first || (late && !has_run_away(surface, report)))
         TRY(snap(surface, distance, late, &report->moved, &joined));
     drop_flat_faces(surface);
@@ -267,6 +276,9 @@ static starg_status run_round(union_surface *surface, double distance, union_rep
     TRY(union_find_contacts(surface, tree, first, &contacts));
     if (first)
         report->pairs = contacts.count;
+    if (report->rounds > 1)
+        report->grew += contacts.count > report->contacts;
+    report->contacts = contacts.count;
     *done = contacts.count == 0 && !joined && !first;
     if (*done)
         return STARG_OK;

@@ -31,11 +31,12 @@ static inline const double *union_corner(const union_surface *surface, uint32_t 
 }
 
 typedef struct union_report {
-    size_t pairs;  /* of faces that meet away from common corners, at the start    */
-    size_t rounds; /* of arrangement and rounding                                  */
-    double moved;  /* how far a new point is at most from where exact points lie   */
-    bool chosen;   /* winding numbers have been counted                            */
-    size_t most;   /* faces that a surface had in the first rounds, at most */
+    size_t pairs;          /* of faces that meet away from common corners, at the start    */
+    size_t rounds;         /* of arrangement and rounding                                  */
+    double moved;          /* how far a new point is at most from where exact points lie   */
+    size_t contacts, grew; /* of the last round; how often there were more than before */
+    bool chosen;           /* winding numbers have been counted                            */
+    size_t most;           /* faces that a surface had in the first rounds, at most */
 } union_report;
 
 /* Makes the boundary of the region where the winding number of `mesh` is positive: a surface whose
