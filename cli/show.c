@@ -443,7 +443,6 @@ void cli_show_free(cli_session *session, cli_show *show) {
     starg_patches_free(context, show->uncovered);
     starg_certificate_outline_free(context, show->proof);
     starg_solid_free(show->solid);
-    free(show->model_file);
     starg_mesh_free(show->model);
     starg_mesh_free(show->obstacles);
     starg_tetmesh_free(show->tetmesh);
