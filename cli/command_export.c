@@ -96,16 +96,34 @@ static starg_status read_groups(cli_session *session, const values *v, const cli
     return starg_face_groups_read(session->context, file, groups);
 }
 
+/* The same of what is shown: of patches in place of faces the group of the face; free `of`. */
+static starg_status fit_groups(cli_session *session, const cli_show *show,
+                               const starg_face_groups *groups, uint32_t **of,
+                               starg_face_groups *out) {
+    *out = *groups;
+    if (groups->count > 0 && show->patches != NULL &&
+        groups->face_count == show->guards->face_count) {
+        TRY(starg_guards_patch_faces(session->context, show->solid, show->guards, of,
+                                     &out->face_count));
+        for (size_t i = 0; i < out->face_count; i++)
+            (*of)[i] = groups->of[(*of)[i]];
+        out->of = *of;
+    }
+    return STARG_OK;
+}
+
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     cli_show show = {0};
-    starg_face_groups groups = {0};
+    starg_face_groups groups = {0}, shown;
+    uint32_t *of = NULL;
     const starg_page *page = &show.page;
     CLI_TRY(cli_show_read(session, v->model, STARG_SIGNATURE_DEFAULT, &show));
     CLI_TRY(check_kinds(session, page));
     CLI_TRY(read_groups(session, v, &show, &groups));
-    bool fit = page->model != NULL && groups.face_count == starg_mesh_face_count(page->model);
+    CLI_TRY(fit_groups(session, &show, &groups, &of, &shown));
+    bool fit = page->model != NULL && shown.face_count == starg_mesh_face_count(page->model);
     const starg_scene scene = {.model = page->model,
                                .obstacles = page->obstacles,
                                .guards = page->guards,
@@ -113,11 +131,12 @@ static starg_status run(cli_session *session, void *data) {
                                .pieces = page->pieces,
                                .report = page->report,
                                .skeleton = page->skeleton,
-                               .groups = fit && groups.count > 0 ? &groups : NULL};
+                               .groups = fit && shown.count > 0 ? &shown : NULL};
     CLI_TRY(starg_scene_write(session->context, &scene,
                               cli_outputs_place(&session->outputs, v->output), v->format));
     tell(session, v, &show);
 done:
+    starg_patches_free(session->context, of);
     starg_face_groups_free(session->context, &groups);
     cli_show_free(session, &show);
     return status;
