@@ -94,6 +94,16 @@ class StarMaps(Case):
             self.run_text("verify", f"{a}.off", f"{b}.off", "m.vtu")
             self.fills("m.vtu", solids[a], solids[b])
 
+    def test_balls(self):
+        """Random plain solids without holes, most of which no point sees."""
+        for seed in range(9):
+            rng = random.Random(seed)
+            solids = self.write_all([(name, star_solids.random_ball(rng)[1]) for name in "ab"])
+            report = self.run_json("map", "--solid", "a.off", "b.off", "-o", "m.vtu")
+            self.run_text("verify", "a.off", "b.off", "m.vtu")
+            if report["tetrahedra"] < 1000:
+                self.fills("m.vtu", solids["a"], solids["b"])
+
     @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
     def test_connectivity(self):
         """B in A's faces: the first line and the file tell what is missed, and verify checks it."""
