@@ -87,9 +87,11 @@ class Scene(Solid):
     (lower and upper corner) for guards; `start` a point, with the size of cubes `cell`, from which
     they can be reached. With `over` (faces, height) they stand straight above one of these faces,
     along `up` (by default y), with `mount` (faces, distance) no farther from one of them than that.
-    `weights` has a number for each face: how often its area counts. Each of `zones` tells whether guards
+    `weights` has a number for each face: how often its area counts; in its place `see` are the faces to be
+    seen, or `ignore` those that need not be. Each of `zones` tells whether guards
     may stand in it, and is a box or a closed model. Faces of `clear` block no view. `needs` are faces with
-    the number of guards that must see them, and a density of pixels (0: as others).
+    the number of guards that must see them, and a density of pixels (0: as others). Faces are numbers, or names
+    that the model's file has for them (groups, objects, materials; * and ? stand for others), one or a list.
 
     >>> import starguard
     >>> part = starguard.Scene(starguard.sample("torus", vertices=500), outside=True, standoff=(1, 4))
@@ -103,7 +105,8 @@ class Scene(Solid):
                  standoff: tuple[float, float] | None = None, within: ArrayLike | None = None,
                  start: ArrayLike | None = None, cell: float | None = None,
                  over: tuple[ArrayLike, float] | None = None, up: ArrayLike | None = None,
-                 mount: tuple[ArrayLike, float] | None = None,
+                 mount: tuple[ArrayLike, float] | None = None, see: ArrayLike | None = None,
+                 ignore: ArrayLike | None = None,
                  zones: Sequence[tuple[bool, Any]] = (), clear: ArrayLike | None = None,
                  needs: Sequence[tuple[int, int, float]] = (),
                  weights: ArrayLike | None = None, threads: int | None = None,
@@ -128,13 +131,13 @@ class Scene(Solid):
         lists: list[Any] = []  # alive until the call is over
         for name, bound, distance in ("over", over, "height"), ("mount", mount, "mount_distance"):
             if bound is not None:
-                faces = np.unique(_arrays.given(bound[0], name)).astype(np.uint32)
+                faces = self._faces(session, bound[0], name)
                 lists.append(faces)
                 setattr(options, name, _arrays.pointer("uint32_t[]", faces))
                 setattr(options, name + "_count", len(faces))
                 setattr(options, distance, bound[1])
         if clear is not None:
-            faces = np.unique(_arrays.given(clear, "clear")).astype(np.uint32)
+            faces = self._faces(session, clear, "clear")
             lists.append(faces)
             options.clear, options.clear_count = _arrays.pointer("uint32_t[]", faces), len(faces)
         given = ffi.new("starg_zone[]", max(len(zones), 1))
@@ -151,6 +154,13 @@ class Scene(Solid):
         self._handle = session.make("starg_solid", lib.starg_solid_free, lib.starg_space_create,
                                     session.context, self.model._handle, self._pointers(),
                                     len(self.obstacles), options, progress=progress)
+        if sum(given is not None for given in (see, ignore, weights)) > 1:
+            raise ArgumentError("see, ignore and weights exclude each other; weights say it all")
+        if see is not None or ignore is not None:
+            shares = np.full(len(self.model.faces), float(see is None))
+            chosen, what = (see, "see") if see is not None else (ignore, "ignore")
+            shares[self._faces(session, chosen, what)] = float(see is not None)
+            weights = shares
         if weights is not None:
             self._weigh(session, weights)
         if needs:
@@ -162,6 +172,26 @@ class Scene(Solid):
 
     def _pointers(self) -> Any:
         return ffi.new("starg_mesh *[]", [o._handle for o in self.obstacles] or [ffi.NULL])
+
+    def _faces(self, session: Session, chosen: ArrayLike, what: str) -> Array:
+        """Numbers of faces, ascending, from numbers or names."""
+        names = [chosen] if isinstance(chosen, str) else chosen
+        if not (isinstance(names, (list, tuple)) and names and all(isinstance(name, str) for name in names)):
+            faces = np.unique(_arrays.given(chosen, what))
+            if len(faces) > 0 and not 0 <= faces[0] <= faces[-1] < len(self.model.faces):
+                raise ArgumentError(f"{what}: the model has the faces 0 to {len(self.model.faces) - 1}")
+            return faces.astype(np.uint32)
+        if self.model.file is None:
+            raise ArgumentError(f"{what} has names, which are those of a model's file, and this model has none; "
+                                "read it by Mesh.read, or give numbers of faces")
+        found = np.zeros(len(self.model.faces), bool)
+        values = ffi.new("double **")
+        for name in names:
+            session.call(lib.starg_faces_named, session.context, _arrays.path(self.model.file), name.encode(),
+                         len(found), values)
+            found |= np.frombuffer(ffi.buffer(values[0], 8 * len(found))) != 0
+            lib.starg_weights_free(session.context, values[0])
+        return np.flatnonzero(found).astype(np.uint32)
 
     def _weigh(self, session: Session, weights: ArrayLike) -> None:
         faces = len(self.model.faces)

@@ -3,6 +3,7 @@
 import contextlib
 import importlib.util
 import io
+import pathlib
 import shutil
 import unittest
 
@@ -32,6 +33,29 @@ class Comfort(Case):
         self.assertEqual(len(self.read("t.csv").splitlines()), 1 + len(self.room.faces))
         self.assertEqual(self.read("s.csv").count(b"camera,"), len(guards))
         self.assertIn(b"<h1>A &lt;room&gt;</h1>", self.read("sheet.html"))
+
+    def test_names_of_faces(self):
+        """Groups of the model's file, as on the command line: a box with a floor and two walls by name."""
+        corners = [(x, y, z) for z in (0, 3) for y in (0, 4) for x in (0, 5)]
+        quads = {"Floor": (1, 3, 4, 2), "Ceiling": (5, 6, 8, 7), "wall west": (1, 5, 7, 3), "wall east": (2, 4, 8, 6),
+                 "front": (1, 2, 6, 5), "back": (3, 7, 8, 4)}
+        lines = ["v %d %d %d" % corner for corner in corners]
+        for name, quad in quads.items():
+            lines += [f"g {name.replace(' ', '_')}", "f " + " ".join(map(str, quad[::-1]))]
+        pathlib.Path("room.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        room = starguard.Mesh.read("room.obj")
+        options = {"soup": True, "start": (1.1, 1.1, 2.4), "cell": 0.2, "up": (0, 0, 1)}
+        for see, ignore in (["Floor", "wall*"], None), (None, ["Ceiling", "front", "back"]):
+            named = starguard.Scene(room, see=see, ignore=ignore, mount=("Ceiling", 1), **options)
+            numbers = starguard.Scene(room, see=[0, 1, 4, 5, 6, 7], mount=([2, 3], 1), **options)
+            positions = [starguard.guard(scene, patch=1.0).positions for scene in (named, numbers)]
+            np.testing.assert_array_equal(*positions)
+        for wrong, error in ({"see": "Roof"}, starguard.Error), ({"see": [99]}, starguard.ArgumentError), (
+                {"see": "Floor", "ignore": "front"}, starguard.ArgumentError):
+            with self.assertRaises(error):
+                starguard.Scene(room, **wrong, **options)
+        with self.assertRaisesRegex(starguard.ArgumentError, "Mesh.read"):
+            starguard.Scene(starguard.Mesh(room.vertices, room.faces), see="Floor", **options)
 
     def test_bar(self):
         error = io.StringIO()
