@@ -18,6 +18,8 @@ from fixtures import PROGRAM, SOURCE, Fixtures
 BUILD = os.environ.get("STARGUARD_BUILD", os.path.dirname(PROGRAM))
 MADE = {"docs/c-api.md", "docs/fields.md", "docs/python-api.md"}
 
+MOST_WORDS = 50000  # in all pages of docs/ but those that are made
+
 PAGES = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "examples/README.md"] + sorted(
     os.path.relpath(path, SOURCE)
     for path in glob.glob(os.path.join(SOURCE, "docs", "**", "*.md"), recursive=True))
@@ -121,6 +123,14 @@ class Pages(unittest.TestCase):
                 head, *rows = csv.reader(file)
             self.assertTrue(rows and len(set(head)) == len(head) and all(head), path)
             self.assertEqual({len(row) for row in rows}, {len(head)}, path)
+
+    def test_words(self):
+        """The pages of docs/ stay short enough to be read."""
+        words = {page: len(read(page).split()) for page in PAGES if page.startswith("docs/") and page not in MADE}
+        longest = sorted(words, key=words.get, reverse=True)[:5]
+        self.assertLessEqual(sum(words.values()), MOST_WORDS, "docs/ has too many words: shorten the pages that were "
+                             "changed last, or the longest ones, "
+                             + ", ".join(f"{page} ({words[page]})" for page in longest))
 
     def test_every_page_is_in_the_index(self):
         """docs/README.md names all pages beside it."""
