@@ -739,6 +739,7 @@ static void test_last_candidates(void **state) {
         uint64_t *seen = union_of(pool.rows, pool.rows->rows);
         assert_false(covers(pool.rows, seen, selection.lower_bound - 1));
         free(seen);
+        starg_release(context, record.steps);
         selection_free(&selection);
         pool_free(&pool);
         column_weights_free(&problem.weights);
