@@ -156,11 +156,10 @@ class Scene(Solid):
                                     len(self.obstacles), options, progress=progress)
         if sum(given is not None for given in (see, ignore, weights)) > 1:
             raise ArgumentError("see, ignore and weights exclude each other; weights say it all")
-        if see is not None or ignore is not None:
-            shares = np.full(len(self.model.faces), float(see is None))
-            chosen, what = (see, "see") if see is not None else (ignore, "ignore")
-            shares[self._faces(session, chosen, what)] = float(see is not None)
-            weights = shares
+        if see is not None:
+            weights = np.isin(np.arange(len(self.model.faces)), self._faces(session, see, "see")).astype(float)
+        if ignore is not None:
+            weights = 1.0 - np.isin(np.arange(len(self.model.faces)), self._faces(session, ignore, "ignore"))
         if weights is not None:
             self._weigh(session, weights)
         if needs:
