@@ -243,11 +243,12 @@ test("a dropped GLB, guarded with a field of view, is what starguard-import make
             "starguard guard hall.ply -o guards.json --patch auto --soup --fov 90,60 --see 'Hall of glass' --from 1,1,1 --two-sided --effort quick",
         ]);
     });
+    // there the matrices of nodes are in single precision
     const check = (name) => JSON.parse(native("check", name, "--json"));
     const [own, made] = [check("hall.glb"), check("hall.ply")];
     assert.deepEqual([made.model.vertices, made.model.faces], [own.model.vertices, own.model.faces]);
     for (const key of ["area", "volume", "diagonal"])
-        assert.ok(Math.abs(made[key] - own[key]) <= 1e-12 * own[key], `${key}: ${made[key]}, ${own[key]}`);
+        assert.ok(Math.abs(made[key] - own[key]) <= 1e-6 * own[key], `${key}: ${made[key]}, ${own[key]}`);
 });
 
 test("a second mesh is an obstacle, and can be taken away", async () => {
