@@ -54,14 +54,16 @@ static bool writes(const cli_option *o, const char *extension) {
     return false;
 }
 
-/* The command of which -o writes that extension; NULL: none. */
-static const cli_command *find_writer(const cli_command *const *table, const char *extension) {
+/* The command of which -o, or with `any` whatever option, writes that extension; NULL: none. */
+static const cli_command *find_writer(const cli_command *const *table, const char *extension,
+                                      bool any, const cli_option **by) {
     for (size_t c = 0; table[c] != NULL; c++) {
         for (size_t i = 0; i < table[c]->option_count; i++)
-            if (table[c]->options[i].letter == 'o' && writes(&table[c]->options[i], extension))
+            if ((any || table[c]->options[i].letter == 'o') &&
+                writes(*by = &table[c]->options[i], extension))
                 return table[c];
         const cli_command *member =
-            table[c]->members != NULL ? find_writer(table[c]->members, extension) : NULL;
+            table[c]->members != NULL ? find_writer(table[c]->members, extension, any, by) : NULL;
         if (member != NULL)
             return member;
     }
@@ -70,8 +72,10 @@ static const cli_command *find_writer(const cli_command *const *table, const cha
 
 static starg_status check_extension(cli_session *session, const cli_option *o, const char *name) {
     static const cli_command *const likely[] = {&cli_command_export, &cli_command_view,
-                                                &cli_command_repair, &cli_command_decompose, NULL};
+                                                &cli_command_repair, &cli_command_decompose,
+                                                &cli_command_guard,  NULL};
     const cli_command *command = session->command, *writer = NULL;
+    const cli_option *by = NULL;
     const char letter[] = {o->letter, '\0'}, *slash = strrchr(name, '/');
     const char *extension = strrchr(slash != NULL ? slash : name, '.');
     const char *dashes = o->letter != 0 ? "-" : "--", *shown = o->letter != 0 ? letter : o->option;
@@ -83,10 +87,17 @@ static starg_status check_extension(cli_session *session, const cli_option *o, c
                             "%s%s writes %s, not '%.200s'; such files are written by --%s %s",
                             dashes, shown, o->value, name, command->options[i].option,
                             command->options[i].value);
-    writer = find_writer(likely, extension);
-    writer = writer != NULL ? writer : find_writer(cli_commands, extension);
+    writer = find_writer(likely, extension, false, &by);
+    writer = writer != NULL ? writer : find_writer(cli_commands, extension, false, &by);
+    writer = writer != NULL ? writer : find_writer(likely, extension, true, &by);
+    writer = writer != NULL ? writer : find_writer(cli_commands, extension, true, &by);
     if (writer == NULL)
         return STARG_OK;
+    if (by->letter != 'o')
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "%s%s writes %s, not '%.200s'; such files are written by --%s %s of "
+                        "'starguard %s'",
+                        dashes, shown, o->value, name, by->option, by->value, writer->name);
     return cli_fail(session, STARG_ERROR_ARGUMENT,
                     "%s%s writes %s, not '%.200s'; such files are written by 'starguard %s %s'",
                     dashes, shown, o->value, name, writer->name, writer->usage);

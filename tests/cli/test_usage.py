@@ -219,7 +219,8 @@ class Mistakes(support.Case):
                             ("describe m.off -o d.vtk", "starguard decompose"), ("view g.json -o v.glb", "export"),
                             ("repair m.off -o r.vtu", "export"), ("map m.off m.off -o m.vtu", "--solid"),
                             ("map --solid m.off m.off -o m.json", "--solid"), ("db matrix d -o m.html", "view"),
-                            ("morph m.off m.off --frames 2 -o m.glb", "--glb FILE.glb")]:
+                            ("morph m.off m.off --frames 2 -o m.glb", "--glb FILE.glb"),
+                            ("view m.off -o v.png", "--picture FILE.png of"), ("sample cube -o c.png", "--picture")]:
             self.usage_error(*words.split(), says=says)
         self.run_text("guard", "m.off", "-o", "guards.txt")
 
