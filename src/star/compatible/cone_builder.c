@@ -34,7 +34,7 @@ const double *cones_place_of(const cone_builder *b, int end, uint32_t vertex) {
     return b->places[end].data + 3 * (size_t)vertex;
 }
 
-uint32_t cones_side(const cone_builder *b, uint32_t triangle, size_t side) {
+static uint32_t side_of_triangle(const cone_builder *b, uint32_t triangle, size_t side) {
     return b->sides.data[2 * (size_t)triangle + side];
 }
 
@@ -189,7 +189,7 @@ void cones_snap(const number_list *faces, double *heights) {
 /* ---- loops ---- */
 
 void cones_free_loops(cut_loops *loops) {
-    RELEASE(loops->nodes.data, loops->lengths.data, loops->rooms.data);
+    RELEASE(loops->nodes.data, loops->lengths.data);
 }
 
 static uint64_t edge_name(uint32_t u, uint32_t v) {
@@ -358,7 +358,7 @@ starg_status cones_place_loop(const cone_builder *b, int end, const cut_node *no
 }
 
 /* Two directions across a unit normal. */
-void cones_axes_across(const double normal[3], double axes[2][3]) {
+static void axes_across(const double normal[3], double axes[2][3]) {
     int least = fabs(normal[0]) < fabs(normal[1]) ? 0 : 1;
     least = fabs(normal[2]) < fabs(normal[least]) ? 2 : least;
     const double unit[3] = {least == 0, least == 1, least == 2};
@@ -381,7 +381,7 @@ starg_status cones_find_hub(cone_builder *b, const loop_places *loop, double hub
     *room = 0;
     if (!(vec3_length(loop->normal) > 0 && loop->extent > 0))
         return STARG_OK;
-    cones_axes_across(loop->normal, axes);
+    axes_across(loop->normal, axes);
     NEW(b->context, STAGE, rows, 4 * count);
     NEW(b->context, STAGE, order, count);
     for (size_t i = 0; i < count; i++) {
@@ -454,8 +454,8 @@ starg_status cones_part(cone_builder *b, uint32_t which, const edge_list *edges,
     PUSH(b->context, STAGE, &stack, cones_across(edges, loop[1].from, loop[0].from));
     while (stack.count > 0) {
         uint32_t t = stack.data[--stack.count], corners[3];
-        size_t side = cones_side(b, t, 0) == which ? 0 : 1;
-        if (cones_side(b, t, side) != which)
+        size_t side = side_of_triangle(b, t, 0) == which ? 0 : 1;
+        if (side_of_triangle(b, t, side) != which)
             continue;
         cones_corners_of(b, t, which, corners);
         b->sides.data[2 * (size_t)t + side] = fresh;
@@ -467,7 +467,8 @@ starg_status cones_part(cone_builder *b, uint32_t which, const edge_list *edges,
     }
     own = &b->pieces.data[which].triangles;
     for (size_t i = 0; i < own->count; i++)
-        if (cones_side(b, own->data[i], 0) == which || cones_side(b, own->data[i], 1) == which)
+        if (side_of_triangle(b, own->data[i], 0) == which ||
+            side_of_triangle(b, own->data[i], 1) == which)
             own->data[kept++] = own->data[i];
     own->count = kept;
     return STARG_OK;

@@ -52,7 +52,6 @@ typedef struct cut_node {
 typedef struct cut_loops {
     STARG_ARRAY(cut_node) nodes; /* one loop after the other */
     number_list lengths;
-    STARG_ARRAY(double) rooms; /* of hubs, the least of both places; 0: there is none inside */
 } cut_loops;
 
 /* A loop in one place. */
@@ -65,8 +64,6 @@ void cones_free(cone_builder *b) STARG_PRIVATE(cones_free);
 /* Where a vertex is in one of both places. */
 const double *cones_place_of(const cone_builder *b, int end, uint32_t vertex)
     STARG_PRIVATE(cones_place_of);
-uint32_t cones_side(const cone_builder *b, uint32_t triangle, size_t side)
-    STARG_PRIVATE(cones_side);
 /* The corners of a triangle, counter-clockwise seen from outside of the piece. */
 void cones_corners_of(const cone_builder *b, uint32_t triangle, uint32_t which, uint32_t out[3])
     STARG_PRIVATE(cones_corners_of);
@@ -107,8 +104,6 @@ starg_status cones_find_loops(const cone_builder *b, uint32_t which, const edge_
 /* A loop in one place. */
 starg_status cones_place_loop(const cone_builder *b, int end, const cut_node *nodes, size_t count,
                               loop_places *out) STARG_PRIVATE(cones_place_loop);
-/* Two directions across a unit normal. */
-void cones_axes_across(const double normal[3], double axes[2][3]) STARG_PRIVATE(cones_axes_across);
 /* A point from which the loop, seen along its normal, is passed to the left: the one farthest from
  * the lines of its edges. *room: its distance, over the extent; at most 0: there is none. */
 starg_status cones_find_hub(cone_builder *b, const loop_places *loop, double hub[3], double *room)
