@@ -142,9 +142,10 @@ const starg_ranks *network_ranks(network *net) {
     return &net->ends[0].ranks;
 }
 
-void network_end_all(network *net) {
+bool network_end_all(network *net) {
     starg_context *context = test_context(1);
-    if (starg_ranks_release(context, network_ranks(net)) != STARG_OK)
+    bool sound = starg_ranks_release(context, network_ranks(net)) == STARG_OK;
+    if (!sound)
         break_way(net);
     test_context_free(context);
     for (int i = 1; i < net->count; i++) {
@@ -158,4 +159,5 @@ void network_end_all(network *net) {
     }
     cnd_destroy(&net->changed);
     mtx_destroy(&net->lock);
+    return sound;
 }

@@ -49,7 +49,7 @@ void network_begin_failing(network *net, int count, size_t *left);
 const starg_ranks *network_ranks(network *net);
 
 /* Releases the helpers or, if that fails, breaks the connections; waits for them, and asserts that
- * they have no memory left. */
-void network_end_all(network *net);
+ * they have no memory left. Whether the release succeeded. */
+bool network_end_all(network *net);
 
 #endif

@@ -389,7 +389,7 @@ static void test_garbled_replies(void **state) {
 }
 
 /* Each of a helper's allocations fails once: the call fails with that or, if it was for a message,
- * with the loss of the helper. */
+ * with the loss of the helper; or the end of the run does, where that message came too late. */
 static void test_memory_of_a_helper(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -403,9 +403,9 @@ static void test_memory_of_a_helper(void **state) {
         starg_status status = look(context, solid);
         failed += status == STARG_ERROR_MEMORY;
         lost += status == STARG_ERROR_RANK;
-        network_end_all(&net);
+        bool sound = network_end_all(&net);
         assert_true(status == STARG_OK
-                        ? n < 4 || left > 0
+                        ? n < 4 || left > 0 || !sound
                         : status == STARG_ERROR_MEMORY || status == STARG_ERROR_RANK);
     }
     assert_true(failed > 10);
