@@ -8,8 +8,8 @@ STRICT  := $(CMAKE) -DSTARGUARD_WERROR=ON
 # One more than there are cores: some tests wait for a browser or a limit.
 CTEST   := ctest --output-on-failure -j $(shell expr $(JOBS) + 1)
 
-LONG_PARTS := analysis slow exact memory threads mpi matrix aarch64
-.PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
+LONG_PARTS := analysis slow web exact memory threads mpi matrix aarch64
+.PHONY: build demo tests check check-build sanitize-build check-long $(LONG_PARTS:%=check-%) \
 	coverage mpi web site lint fuzz bench install package wheel release deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
 
@@ -21,22 +21,21 @@ build: deps
 demo: build
 	@scripts/demo.sh $(BUILD)
 
-tests: deps-check
+check-build: deps-check
 	@$(STRICT) -S . -B $(BUILD) -DSTARGUARD_TESTS=ON > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 
-check: lint tests
-	@if command -v emcc > /dev/null; then scripts/web.sh $(BUILD) $(BUILD)-web $(JOBS); fi
-	@$(CTEST) --test-dir $(BUILD) -LE slow
-	@$(MAKE) --no-print-directory sanitize
+tests: check-build
+	@cmake --build $(BUILD) -j $(JOBS) --target other_tests
+
+# Each test once, with sanitizers where that leaves it quick.
+check: lint check-build sanitize-build
+	@$(CTEST) --test-dir $(BUILD) -LE 'slow|sanitized|web'
+	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
 sanitize-build: deps-check
 	@$(STRICT) -S . -B $(BUILD)-sanitize -DSTARGUARD_SANITIZE=address,undefined > /dev/null
 	@cmake --build $(BUILD)-sanitize -j $(JOBS)
-
-# The test suite once more, under the address and undefined-behaviour sanitizers.
-sanitize: sanitize-build
-	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
 # What takes too long for every change, hours in all; each part can be asked for alone.
 check-long: check $(LONG_PARTS:%=check-%) coverage package wheel
@@ -46,11 +45,17 @@ check-analysis: tests
 	@scripts/tidy.sh $(BUILD)
 	@scripts/cppcheck.sh
 
-# 200 kills of each command; every allocation that can fail, and what else sanitizers make slow.
+# All cases of the tests that check samples; with sanitizers what check runs without, and the other way round.
 check-slow: tests sanitize-build
-	@cmake --build $(BUILD)-sanitize -j $(JOBS) --target slow_tests
-	@$(CTEST) --test-dir $(BUILD) -L slow
+	@cmake --build $(BUILD)-sanitize -j $(JOBS) --target other_tests
+	@$(CTEST) --test-dir $(BUILD) -L 'slow|sanitized'
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
+
+# The browser version, opened and used.
+check-web: tests
+	@scripts/install-deps.sh web
+	@scripts/web.sh $(BUILD) $(BUILD)-web $(JOBS)
+	@$(CTEST) --test-dir $(BUILD) -L web
 
 # A million cases for each exact decision.
 check-exact: tests
@@ -84,9 +89,9 @@ check-aarch64: deps-check
 coverage: deps-check
 	@scripts/install-deps.sh coverage
 	@CC=gcc $(STRICT) -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O1 -DSTARGUARD_COVERAGE=ON -S . -B $(BUILD)-coverage > /dev/null
-	@cmake --build $(BUILD)-coverage -j $(JOBS)
+	@cmake --build $(BUILD)-coverage -j $(JOBS) --target all other_tests
 	@find $(BUILD)-coverage -name '*.gcda' -delete
-	@$(CTEST) --test-dir $(BUILD)-coverage -LE slow -E '^install/|cli/test_(interrupt|limits)'
+	@$(CTEST) --test-dir $(BUILD)-coverage -LE 'slow|web' -E '^install/|cli/test_(interrupt|limits)'
 	@scripts/coverage.py $(BUILD)-coverage
 
 # The command line for mpirun (docs/scaling.md): build-mpi/starguard.

@@ -85,18 +85,24 @@ static starg_status solve_goal(cover_run *run, cover_instance *instance, uint64_
     return solve_part(run, instance, goal, exact, answer);
 }
 
-/* The most weight with `limit` rows, if the goal takes more. */
+/* The most weight with `limit` rows, and the fewest rows for the goal unless it takes more. */
 static starg_status solve_limit(cover_run *run, cover_instance *instance, size_t limit,
                                 uint64_t goal, bool exact, cover_answer *answer, uint64_t *most) {
     starg_status status = STARG_OK;
     cover_answer limited = {0};
-    bool unreachable = answer->lower_bound > limit;
     STARG_TRY(cover_reduce_partial(run, instance));
     STARG_TRY(cover_solve_limited(run, instance, limit, goal, exact, &limited, most));
-    if (unreachable && *most >= goal)
-        *most = goal - 1;
-    if (limited.weight >= goal && limited.lower_bound < answer->lower_bound)
-        limited.lower_bound = answer->lower_bound;
+    if (*most >= goal) {
+        STARG_TRY(solve_goal(run, instance, goal, exact, answer));
+        if (answer->rows.count <= limit) {
+            *most = instance->total;
+            goto done;
+        }
+        if (answer->lower_bound > limit)
+            *most = goal - 1;
+        if (limited.weight >= goal && limited.lower_bound < answer->lower_bound)
+            limited.lower_bound = answer->lower_bound;
+    }
     STARG_ARRAY_FREE(run->context, &answer->rows);
     *answer = limited;
     limited = (cover_answer){0};
@@ -178,8 +184,9 @@ starg_status starg_cover_solve(starg_context *context, const starg_cover_problem
     uint64_t most = instance.total;
     if (options->prices && exact && goal == instance.total)
         STARG_NEW_ZERO(context, "cover", run.prices, problem->rows->columns);
-    STARG_TRY(solve_goal(&run, &instance, goal, exact, &answer));
-    if (problem->max_rows != 0 && answer.rows.count > problem->max_rows)
+    if (problem->max_rows == 0)
+        STARG_TRY(solve_goal(&run, &instance, goal, exact, &answer));
+    else
         STARG_TRY(solve_limit(&run, &instance, problem->max_rows, goal, exact, &answer, &most));
     STARG_TRY(finish(&run, &instance, &answer, goal, most, given, out));
 done:

@@ -35,7 +35,7 @@ typedef struct cover_run {
     size_t max_nodes;
     size_t nodes;      /* branch-and-bound nodes used so far */
     bool time_limited; /* the time limit cut some stage short */
-    bool relaxed;      /* full covers: nothing beyond the linear relaxation */
+    bool relaxed;      /* nothing beyond the linear relaxation */
     bool local;        /* full covers: nothing but a short local search */
     double *prices;    /* per column of the caller's matrix, or NULL */
 } cover_run;

@@ -78,16 +78,21 @@ static starg_status close_weight_gap(cover_run *run, const cover_instance *insta
     return STARG_OK;
 }
 
-/* Lower bound on the rows for the weight reached, at most the goal. */
+/* Lower bound on the rows for the weight reached, at most the goal: by the multipliers of `limited`
+ * or, if the choice should be the best there is, by a relaxation of its own. */
 static starg_status bound_rows(cover_run *run, const cover_instance *instance,
-                               const cover_state *choice, uint64_t goal, size_t *least) {
+                               const cover_state *choice, uint64_t goal, bool exact,
+                               const cover_weight_bound *limited, size_t *least) {
     SCOPED_BY(cover_weight_bound_free) cover_weight_bound bound = {0};
     *least = 0;
     if (choice->count == 0)
         return STARG_OK;
     uint64_t reached = choice->weight < goal ? choice->weight : goal;
     TRY(cover_weight_bound_create(instance, choice->count - 1, reached, &bound));
-    TRY(cover_weight_bound_relax(run, instance, true, choice->count, &bound));
+    memcpy(bound.trial, limited->multipliers, instance->columns * sizeof *bound.trial);
+    cover_weight_bound_take(instance, &bound);
+    if (exact)
+        TRY(cover_weight_bound_relax(run, instance, true, choice->count, &bound));
     *least = bound.least;
     return STARG_OK;
 }
@@ -105,7 +110,7 @@ starg_status cover_solve_limited(cover_run *run, const cover_instance *instance,
     if (exact && choice.weight < goal)
         TRY(close_weight_gap(run, instance, goal, &bound, &choice));
     cover_drop_needless(&choice, choice.weight < goal ? choice.weight : goal);
-    TRY(bound_rows(run, instance, &choice, goal, &answer->lower_bound));
+    TRY(bound_rows(run, instance, &choice, goal, exact, &bound, &answer->lower_bound));
     TRY(cover_state_names(&choice, &answer->rows));
     answer->weight = choice.weight;
     *most = bound.most;

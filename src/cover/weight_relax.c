@@ -46,7 +46,9 @@ enum {
     MOST_ENTRIES = INT_MAX / 2
 };
 
-static const double TOLERANCE = 1e-7; /* for overestimates, as a fraction of the total weight */
+/* For overestimates, as a fraction of the total weight; the second for bounds that a relaxed run
+ * gives of the weight of a number of rows, which is no worse by more. */
+static const double TOLERANCE = 1e-7, ROUGH_TOLERANCE = 1e-3;
 
 /* Half width of the bend h = demand while choosing sides, as a fraction of the demand. */
 static const double BEND = 0.1;
@@ -61,7 +63,8 @@ typedef struct relaxing {
     cover_weight_bound *bound;
     bool by_goal;    /* K follows the bound for the goal */
     uint64_t enough; /* rows for the goal or weight of the rows: stop at this bound */
-    size_t limit;    /* K */
+    double tolerance;
+    size_t limit; /* K */
     Clp_Simplex *model;
     double unit;             /* mean weight, 1 in the model */
     uint64_t *inside, *kept; /* masks: in the model; replaced by w */
@@ -242,7 +245,7 @@ static double find_overstated(relaxing *relax, size_t *count) {
 static bool add_overstated(relaxing *relax) {
     double lower[MOST_ADDED], upper[MOST_ADDED];
     size_t count, added = 0;
-    if (find_overstated(relax, &count) <= TOLERANCE * (double)relax->instance->columns)
+    if (find_overstated(relax, &count) <= relax->tolerance * (double)relax->instance->columns)
         return false;
     relax->starts[0] = 0;
     for (size_t c = 0; c < count && added < MOST_ADDED; c++) {
@@ -359,6 +362,7 @@ starg_status cover_weight_bound_relax(cover_run *run, const cover_instance *inst
     STARG_TRY(relaxing_make(instance, bound, &relax));
     relax.by_goal = by_goal;
     relax.enough = enough;
+    relax.tolerance = run->relaxed && !by_goal ? ROUGH_TOLERANCE : TOLERANCE;
     STARG_TRY(find_sides(run, &relax));
     if (is_enough(&relax))
         goto done;

@@ -2,7 +2,8 @@
 /* How much of the area 1, 2, ... guards see, and the set cover that they come from.
  *
  * For each number up to that of the guards, the most weight that so many of the final candidates
- * see, as far as a short search finds it, and an upper bound of it (cover/weight_bound.c). More
+ * see, as far as greedy choices and swaps find it, and an upper bound of it by a linear relaxation
+ * (cover/weight_relax.c). The guards themselves are the choice for the last number. More
  * guards see no less, so that each number takes over what a smaller one found, and the bound of a
  * larger one. Guards that stay are not counted; what they see is in all values.
  *
@@ -16,21 +17,47 @@
 
 static const char STAGE[] = "curve";
 
-enum { NODES = 30 };
+static void describe(const guard_problem *problem, const guard_pool *pool,
+                     starg_cover_problem *cover) {
+    starg_cover_problem_default(cover);
+    cover->rows = pool->rows;
+    cover->redundancy = problem->options->redundancy;
+    cover->needs = pool->solid->need;
+    cover->weights = problem->weights.weights;
+}
 
-static starg_status solve(const guard_problem *problem, const guard_pool *pool, size_t most,
-                          starg_cover **out) {
-    starg_cover_problem cover;
+static starg_status solve(const guard_problem *problem, const starg_cover_problem *cover,
+                          uint64_t *weight, uint64_t *bound) {
+    starg_cover *found = NULL;
     starg_cover_options options;
-    starg_cover_problem_default(&cover);
     starg_cover_options_default(&options);
-    cover.rows = pool->rows;
-    cover.redundancy = problem->options->redundancy;
-    cover.needs = pool->solid->need;
-    cover.weights = problem->weights.weights;
+    options.method = STARG_COVER_GREEDY;
+    TRY(starg_cover_solve(problem->context, cover, &options, &found));
+    *weight = found->weight;
+    *bound = found->weight_bound;
+    starg_cover_free(found);
+    return STARG_OK;
+}
+
+/* The most weight that `most` candidates see, as far as it is found, and its upper bound. */
+static starg_status solve_number(const guard_problem *problem, const guard_pool *pool, size_t most,
+                                 uint64_t *weight, uint64_t *bound) {
+    starg_cover_problem cover;
+    describe(problem, pool, &cover);
     cover.max_rows = most;
-    options.max_nodes = NODES;
-    return starg_cover_solve(problem->context, &cover, &options, out);
+    return solve(problem, &cover, weight, bound);
+}
+
+/* The weight that all the guards see. */
+static starg_status weigh_guards(const guard_problem *problem, const guard_outcome *outcome,
+                                 uint64_t *weight) {
+    starg_cover_problem cover;
+    uint64_t bound;
+    describe(problem, &outcome->pool, &cover);
+    cover.given = outcome->selection.chosen.data;
+    cover.given_count = outcome->selection.chosen.count;
+    cover.target = 0;
+    return solve(problem, &cover, weight, &bound);
 }
 
 starg_status curve_find(const guard_problem *problem, guard_outcome *outcome) {
@@ -41,14 +68,17 @@ starg_status curve_find(const guard_problem *problem, guard_outcome *outcome) {
         return STARG_OK;
     NEW_ZERO(problem->context, STAGE, outcome->worth.seen, count);
     NEW_ZERO(problem->context, STAGE, outcome->worth.bound, count);
+    uint64_t seen = 0, last;
+    TRY(weigh_guards(problem, outcome, &last));
     for (size_t k = 0; k < count; k++) {
-        starg_cover *cover = NULL;
-        TRY(solve(problem, pool, k + 1, &cover));
-        outcome->worth.seen[k] = (kept + (double)cover->weight) / all;
-        outcome->worth.bound[k] = (kept + (double)cover->weight_bound) / all;
-        starg_cover_free(cover);
-        if (k > 0 && outcome->worth.seen[k] < outcome->worth.seen[k - 1])
-            outcome->worth.seen[k] = outcome->worth.seen[k - 1];
+        uint64_t weight, bound;
+        TRY(solve_number(problem, pool, k + 1, &weight, &bound));
+        if (k == count - 1 && last > weight)
+            weight = last;
+        if (weight > seen)
+            seen = weight;
+        outcome->worth.seen[k] = (kept + (double)seen) / all;
+        outcome->worth.bound[k] = (kept + (double)bound) / all;
     }
     for (size_t k = count - 1; k > 0; k--)
         outcome->worth.bound[k - 1] = fmin(outcome->worth.bound[k - 1], outcome->worth.bound[k]);

@@ -13,6 +13,7 @@ PROGRAM = os.environ.get("STARGUARD", "build/starguard")
 BUILD = os.environ.get("STARGUARD_BUILD", os.path.dirname(PROGRAM))  # has what is made while building
 SHARED = os.environ.get("STARGUARD_SHARED", "../shared")
 SANITIZE = os.environ.get("STARGUARD_SANITIZE")
+LONG = bool(os.environ.get("STARGUARD_LONG"))  # all cases of what `make check` samples
 # Limits on processor time grow with it: programs under a sanitizer, or that count lines, are several times
 # slower. No test limits other time, which on a busy machine has no bound; ctest ends what hangs.
 SLOWNESS = int(os.environ.get("STARGUARD_SLOWNESS", "1"))

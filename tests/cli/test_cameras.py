@@ -134,7 +134,7 @@ class Cameras(Case):
 
     def test_density(self):
         """The same plan for a room in metres and in millimetres; no camera counts beyond its depth."""
-        words = ("--fov", "90,60", "--resolution", "1920,1080", "--density", "recognise")
+        words = ("--fov", "90,60", "--resolution", "1920,1080", "--density", "recognise", "--count", "150")
         metres = self.guard(*words)
         self.write("mm.obj", room(1000))
         millimetres = self.guard(*words, "--unit", "mm", model="mm.obj")

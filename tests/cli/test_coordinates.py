@@ -5,7 +5,7 @@ import math
 import os
 import struct
 
-from support import Case, main
+from support import LONG, Case, main
 
 # scale and shift: as they are, map coordinates, and sizes
 PLACES = [(1, (512345.5, 5412345.25, 101)), (1e3, (5e5, 5e6, 0)), (1e-6, (0, 0, 0)), (1e-3, (0.25, 0, 0)),
@@ -112,7 +112,7 @@ class Coordinates(Case):
         listed = [s["name"] for s in self.run_json("sample", "--list")["samples"]][:20]
         self.assertEqual(len(listed), 20)
         refused = {}
-        for i, name in enumerate(listed[::1 if os.environ.get("STARGUARD_LONG") else 3]):
+        for i, name in enumerate(listed[::1 if LONG else 3]):
             vertices, faces = numbers_of(self.read(self.sample(name, 500)).decode())
             for scale, shift in PLACES if i < 2 else (PLACES[0], PLACES[1 + i % 5]):
                 with self.subTest(name=name, scale=scale, shift=shift):

@@ -16,7 +16,7 @@ class Nasty(support.Case):
 
     def walk(self, *options, half=None):
         files = sorted(glob.glob(os.path.join(SHARED, "data", "nasty", "*")))
-        if half is not None and not os.environ.get("STARGUARD_LONG"):
+        if half is not None and not support.LONG:
             files = files[half::2]
         if not files:
             raise unittest.SkipTest(f"no shared data at {SHARED}")

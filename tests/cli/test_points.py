@@ -8,7 +8,7 @@ import random
 import sys
 from fractions import Fraction
 
-from support import Case, main
+from support import LONG, Case, main
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bench"))
 import rooms  # noqa: E402
@@ -252,7 +252,7 @@ class Points(Case):
         """What bisection proves seen is seen, and most of what is, against the exact arrangement of all shadows."""
         dice = random.Random(58)
         checked, missed = 0, []
-        while checked < (1000 if os.environ.get("STARGUARD_LONG") else 250):
+        while checked < (1000 if LONG else 250):
             count = dice.randint(2, 9)
             size = dice.choice((2, 4, 9, 1000))
             corners = [[tuple(Fraction(dice.randint(0, size)) for _ in range(3)) for _ in range(3)]

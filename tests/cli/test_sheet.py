@@ -109,7 +109,7 @@ class Sheet(Case):
     def plan(self, *more):
         self.write("poses.txt", POSES)
         self.run_text("guard", "room.obj", "--keep", "poses.txt", "--fov", "90,60", "--range", str(RANGE), *more,
-                      "--patch", "0.4", "--max-guards", "1", "-o", "g.json", "--quiet")
+                      "--patch", "0.4", "--max-guards", "1", "--count", "100", "-o", "g.json", "--quiet")
         return json.loads(self.read("g.json"))
 
     def test_lenses(self):
@@ -178,7 +178,7 @@ class Sheet(Case):
         """What stands in the sheet is what --table, --summary and --poses say."""
         self.write("poses.txt", "1 1.5 3 1 0 0 0 1 1\n7 1.5 3 1 0 0 0 0 1\n4 2.5 3 0 -1 -1 0 1 0\n4 1 3 0 -1 0 1 0 0\n")
         self.run_text("guard", "room.obj", "--keep", "poses.txt", "--fov", "90,60", "--range", "6", "--resolution",
-                      "1920,1080", "--max-guards", "2", "-o", "g.json", "--poses", "p.csv", "--table", "t.csv",
+                      "1920,1080", "--max-guards", "2", "--count", "100", "-o", "g.json", "--poses", "p.csv", "--table", "t.csv",
                       "--summary", "s.csv", "--quiet")
         tables = self.page("g.json").tables
         lines = {name: [row.split(",") for row in self.read(name).decode().splitlines()]

@@ -106,7 +106,7 @@ class View(Case):
                          "--count", "30", "--see", "0-20,40,50-55"],
                         ["--over", "0-800", "--height", "0.5", "--up", "1,0,0", "--count", "50",
                          "--within", "6,0,0,0,25,25", "--ignore", "3"],
-                        ["--mount", "0-100,200", "--clearance", "0.1", "--count", "20"]):
+                        ["--mount", "0-100,200", "--clearance", "0.1", "--count", "20"])[::1 if support.LONG else 2]:
             with self.subTest(options=options):
                 self.run_text("guard", "it's a maze.off", "-o", "g.json", *options)
                 first = self.read("g.json")
@@ -132,7 +132,7 @@ class View(Case):
                 ("it's a room.off", ["--effort", "9", "--guards", "GUARDS"]),
                 ("it's a room.off", ["--mode", "paper", "--density", "3.7", "--max-pieces", "5"]),
                 ("it's a room.off", ["--mode", "paper", "--generator", "stuffing"]),
-                ("tets.vtk", ["--effort", "9", "--balls"])):
+                ("tets.vtk", ["--effort", "9", "--balls"]))[::1 if support.LONG else 3]:
             with self.subTest(model=model, options=options):
                 self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", *options)
                 first = self.read("p.vtk"), self.read("p.json")

@@ -8,7 +8,7 @@ import time
 
 import support
 
-LONG = os.environ.get("STARGUARD_LONG") == "1"  # make check-long
+LONG = support.LONG
 
 
 def limit(what, size):

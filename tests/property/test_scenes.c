@@ -381,7 +381,7 @@ static uint64_t scenes_of(uint64_t few) {
 static void test_random_scenes(void **state) {
     (void)state;
     size_t points = 0;
-    for (uint64_t seed = 0; seed < scenes_of(24); seed++) {
+    for (uint64_t seed = 0; seed < scenes_of(16); seed++) {
         scene s;
         view all = {0};
         starg_visibility_options_default(&all.options);
@@ -399,7 +399,7 @@ static void test_random_scenes(void **state) {
 static void test_random_sensors(void **state) {
     (void)state;
     size_t seen = 0;
-    for (uint64_t seed = 100; seed < 100 + scenes_of(40); seed++) {
+    for (uint64_t seed = 100; seed < 100 + scenes_of(30); seed++) {
         scene s;
         view v;
         make(&s, seed);
@@ -514,7 +514,7 @@ static size_t check_bound(const scene *s, const starg_space_options *o, starg_rn
 static void test_bound_guards(void **state) {
     (void)state;
     size_t admitted = 0;
-    for (uint64_t seed = 300; seed < 300 + scenes_of(40); seed++) {
+    for (uint64_t seed = 300; seed < 300 + scenes_of(30); seed++) {
         scene s;
         starg_rng rng = starg_rng_make(seed, 45, 0);
         starg_space_options options;
@@ -587,7 +587,7 @@ static void check_verdict(const scene *s, uint64_t seed, const starg_guards *gua
 static void test_guards_of_scenes(void **state) {
     (void)state;
     size_t checked = 0, aimed = 0;
-    for (uint64_t seed = 0; seed < scenes_of(24); seed++) {
+    for (uint64_t seed = 0; seed < scenes_of(16); seed++) {
         scene s;
         view v = {0};
         starg_guards *guards = NULL;

@@ -211,7 +211,7 @@ static void test_default_bounds(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     size_t bounded = 0;
-    for (size_t vertices = 500; vertices <= 800; vertices += 100) {
+    for (size_t vertices = 500; vertices <= 800; vertices += 300) {
         starg_solid *solid = test_sample(context, "torus", vertices);
         check_default(context, solid, &bounded);
         starg_solid_free(solid);
@@ -408,7 +408,7 @@ static void test_more_work(void **state) {
     starg_context *context = test_context(2);
     starg_solid *solid = test_sample(context, "horse", 500);
     size_t bound = 0, count = SIZE_MAX;
-    for (uint64_t work = 20000; work < 400000; work += work / 3) {
+    for (uint64_t work = 20000; work < 400000; work *= 2) {
         starg_guard_options options = proving(work);
         starg_guards *guards = test_guard(context, solid, &options);
         assert_true(guards->lower_bound_everywhere >= bound);
@@ -717,7 +717,7 @@ static void test_last_candidates(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     size_t fewer = 0;
-    for (uint64_t seed = 0; seed < 4; seed++) {
+    for (uint64_t seed = 0; seed < test_rounds(2, 4); seed++) {
         starg_solid *solid = comb_solid(context, seed);
         starg_guard_options options = proving(0);
         guard_problem problem = {.context = context, .solid = solid, .options = &options};

@@ -251,11 +251,11 @@ static void test_scales(void **state) {
  * but for what the search finds by chance. */
 static void test_pressed(void **state) {
     (void)state;
-    static const double factors[] = {1, 0x1p-12, 0x1p-35, 0x1p-60};
+    static const double factors[] = {1, 0x1p-35, 0x1p-60};
     starg_context *context = test_context(1);
     const starg_decompose_options options = small_effort(100);
-    size_t counts[4];
-    for (size_t i = 0; i < 4; i++) {
+    size_t counts[3];
+    for (size_t i = 0; i < 3; i++) {
         shape s = shape_columns();
         for (size_t v = 0; v < s.vertex_count; v++)
             s.vertices[3 * v + 1] *= factors[i];
@@ -268,9 +268,8 @@ static void test_pressed(void **state) {
         starg_solid_free(solid);
         shape_free(&s);
     }
-    print_message("pieces: %zu, pressed %zu, %zu, %zu\n", counts[0], counts[1], counts[2],
-                  counts[3]);
-    for (size_t i = 1; i < 4; i++)
+    print_message("pieces: %zu, pressed %zu, %zu\n", counts[0], counts[1], counts[2]);
+    for (size_t i = 1; i < 3; i++)
         assert_true(counts[i] <= counts[0] + 1);
     test_context_free(context);
 }
@@ -422,7 +421,7 @@ static void test_memory(void **state) {
     (void)state;
     starg_status status = STARG_ERROR_MEMORY;
     size_t failures = 0;
-    for (size_t ration = 0; status != STARG_OK; ration += 1 + ration / 24, failures++) {
+    for (size_t ration = 0; status != STARG_OK; ration += 1 + ration / 10, failures++) {
         size_t left = SIZE_MAX;
         starg_context *context = test_scarce_context(1, &left);
         starg_tetmesh *mesh = random_tetmesh(context, 6, 24, false, 1);
@@ -438,7 +437,7 @@ static void test_memory(void **state) {
         starg_tetmesh_free(mesh);
         test_context_free(context);
     }
-    assert_true(failures > 50);
+    assert_true(failures > 25);
 }
 
 int main(void) {

@@ -483,18 +483,18 @@ static void test_nothing_seen(void **state) {
     starg_context *context = test_context(1);
     starg_solid *solid = test_sample(context, "l-room", 500);
     double diagonal = starg_solid_check(solid)->diagonal;
-    for (int directed = 0; directed < 2; directed++)
-        for (int unit = 0; unit < 2; unit++) {
-            starg_guard_options options = small_options();
-            starg_guards *guards;
-            options.visibility.range = unit ? diagonal / 1e4 : diagonal / 900;
-            options.visibility.cone = directed ? 60 : 360;
-            assert_int_equal(starg_guard(context, solid, &options, &guards), STARG_ERROR_MESH);
-            assert_null(guards);
-            const char *said = starg_context_error(context)->message;
-            assert_int_equal(strstr(said, "another unit") != NULL, unit);
-            assert_int_equal(strstr(said, "a wider view") != NULL, directed && !unit);
-        }
+    for (int unit = 0; unit < 2; unit++) {
+        bool directed = !unit;
+        starg_guard_options options = small_options();
+        starg_guards *guards;
+        options.visibility.range = unit ? diagonal / 1e4 : diagonal / 900;
+        options.visibility.cone = directed ? 60 : 360;
+        assert_int_equal(starg_guard(context, solid, &options, &guards), STARG_ERROR_MESH);
+        assert_null(guards);
+        const char *said = starg_context_error(context)->message;
+        assert_int_equal(strstr(said, "another unit") != NULL, unit);
+        assert_int_equal(strstr(said, "a wider view") != NULL, directed);
+    }
     starg_solid_free(solid);
     test_context_free(context);
 }

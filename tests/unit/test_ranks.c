@@ -184,28 +184,28 @@ static void assert_same_guards(const starg_guards *a, const starg_guards *b) {
 static void test_cells(void **state) {
     (void)state;
     static const starg_target targets[] = {STARG_TARGET_FACES, STARG_TARGET_VERTICES};
-    for (int i = 0; i < 2; i++)
-        for (int count = 2; count <= 4; count += 2) {
-            network net;
-            starg_guards *expected = NULL, *guards = NULL;
-            starg_context *alone = test_context(1), *context = test_context(1);
-            network_begin(&net, count, 1 + i);
-            starg_context_set_ranks(context, network_ranks(&net));
-            test_ok(alone, prove(alone, targets[i], 0.001 * i, &expected));
-            test_ok(context, prove(context, targets[i], 0.001 * i, &guards));
-            assert_true(expected->cells > 300);
-            assert_true(starg_context_helped_items(context) > 100);
-            assert_same_guards(guards, expected);
-            starg_guards_free(context, guards);
-            /* a second search begins anew */
-            test_ok(context, prove(context, targets[i], 0.001 * i, &guards));
-            assert_same_guards(guards, expected);
-            starg_guards_free(context, guards);
-            starg_guards_free(alone, expected);
-            test_context_free(context);
-            test_context_free(alone);
-            network_end_all(&net);
-        }
+    for (int i = 0; i < 2; i++) {
+        int count = 2 + 2 * i;
+        network net;
+        starg_guards *expected = NULL, *guards = NULL;
+        starg_context *alone = test_context(1), *context = test_context(1);
+        network_begin(&net, count, 1 + i);
+        starg_context_set_ranks(context, network_ranks(&net));
+        test_ok(alone, prove(alone, targets[i], 0.001 * i, &expected));
+        test_ok(context, prove(context, targets[i], 0.001 * i, &guards));
+        assert_true(expected->cells > 300);
+        assert_true(starg_context_helped_items(context) > 100);
+        assert_same_guards(guards, expected);
+        starg_guards_free(context, guards);
+        /* a second search begins anew */
+        test_ok(context, prove(context, targets[i], 0.001 * i, &guards));
+        assert_same_guards(guards, expected);
+        starg_guards_free(context, guards);
+        starg_guards_free(alone, expected);
+        test_context_free(context);
+        test_context_free(alone);
+        network_end_all(&net);
+    }
 }
 
 /* The connection breaks after any number of messages, or a helper has too little memory. */

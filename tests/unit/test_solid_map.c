@@ -15,7 +15,7 @@
 #include "starguard/tetra.h"
 #include "tetrahedra.h"
 
-enum { VERTICES = 500 };
+enum { VERTICES = 300 };
 
 /* Few steps of descent. */
 static const starg_solid_map_options QUICK = {.steps = 30, .density = 1};
