@@ -58,9 +58,11 @@ static const cli_option options[] = {
         "Also write morph.json into DIR: what --json reports, for 'starguard verify A B "
         "DIR'.",
         .group = "output"),
-    CLI_TEXT_OPTION("glb", glb, "FILE.glb",
-                    "Frames as one animation of two seconds (glTF, morph targets).",
-                    .group = "output", .brief = "an animation for Blender"),
+    CLI_TEXT_OPTION(
+        "glb", glb, "FILE.glb",
+        "Frames as one animation of two seconds (glTF, morph targets), with the colours of A's "
+        "vertices.",
+        .group = "output", .brief = "an animation for Blender"),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of five time steps, one row each for star, arap and linear.",
                     .group = "output", .brief = "a picture of some frames"),
@@ -207,6 +209,29 @@ static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
            memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
 }
 
+/* A's colours at the vertices of the overlay, as if they were places. */
+static starg_status color_overlay(cli_session *session, const starg_overlay *overlay,
+                                  starg_mesh *refined) {
+    const uint8_t *colors = starg_mesh_colors(session->mesh);
+    size_t count = starg_mesh_vertex_count(session->mesh);
+    SCOPED_BY(starg_mesh_drop) starg_mesh *tinted = NULL;
+    if (colors == NULL)
+        return STARG_OK;
+    SCOPED double *own = malloc((3 * count + 1) * sizeof *own);
+    SCOPED double *parts = malloc((3 * overlay->vertex_count + 1) * sizeof *parts);
+    SCOPED uint8_t *rounded = malloc(3 * overlay->vertex_count + 1);
+    if (own == NULL || parts == NULL || rounded == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < 3 * count; i++)
+        own[i] = colors[i];
+    TRY(starg_mesh_create(session->context, own, count, starg_mesh_faces(session->mesh),
+                          starg_mesh_face_count(session->mesh), &tinted));
+    starg_overlay_positions(overlay, tinted, 0, parts);
+    for (size_t i = 0; i < 3 * overlay->vertex_count; i++)
+        rounded[i] = (uint8_t)(parts[i] + 0.5);
+    return starg_mesh_set_colors(refined, rounded);
+}
+
 /* Both ends with the faces of the overlay. */
 static starg_status refine(cli_session *session, subject *s) {
     const starg_overlay *overlay = &s->map->overlay;
@@ -219,8 +244,9 @@ static starg_status refine(cli_session *session, subject *s) {
         return cli_fail_memory(session);
     starg_overlay_positions(overlay, session->mesh, 0, positions);
     starg_overlay_positions(overlay, s->target, 1, s->images);
-    return starg_mesh_create(session->context, positions, overlay->vertex_count, overlay->faces,
-                             overlay->face_count, &s->refined);
+    TRY(starg_mesh_create(session->context, positions, overlay->vertex_count, overlay->faces,
+                          overlay->face_count, &s->refined));
+    return color_overlay(session, overlay, s->refined);
 }
 
 /* How far the last frame is from B. */
@@ -570,9 +596,11 @@ static starg_status write_report(cli_session *session, const values *v, const su
     return status;
 }
 
-/* Frames have places and faces only. */
-static void warn_of_look(cli_session *session) {
+/* Frames have places and faces only; the animation has the vertices' colours. */
+static void warn_of_look(cli_session *session, const values *v) {
     unsigned look = starg_mesh_left_out(session->mesh);
+    if (v->glb == NULL && starg_mesh_colors(session->mesh) != NULL)
+        look |= STARG_MESH_COLORS;
     if (look != 0)
         cli_warn(session, "the frames leave out the %s of A",
                  look == STARG_MESH_COLORS    ? "colours"
@@ -642,7 +670,7 @@ static starg_status run(cli_session *session, void *data) {
         CLI_TRY(write_animation(session, v, &s, morph));
     if (v->picture != NULL)
         CLI_TRY(write_picture(session, v, &s));
-    warn_of_look(session);
+    warn_of_look(session, v);
     say_morph(session, v, &s, morph, &found, &sum);
     if (session->report != NULL)
         report_morph(session, session->report, v, &s, morph, &found, frames);

@@ -32,9 +32,15 @@ STARG_API const double *starg_mesh_vertices(const starg_mesh *mesh);
 /* face_count x 3, owned by the mesh. */
 STARG_API const uint32_t *starg_mesh_faces(const starg_mesh *mesh);
 
+/* Red, green and blue of the vertices (sRGB), vertex_count x 3, owned by the mesh; NULL: it has
+ * none. A mesh that is read has those of its file (OBJ, OFF, PLY). Setting copies them; NULL
+ * removes them. Errors: MEMORY. */
+STARG_API const uint8_t *starg_mesh_colors(const starg_mesh *mesh);
+STARG_API starg_status starg_mesh_set_colors(starg_mesh *mesh, const uint8_t *colors);
+
 /* What the file of the mesh has and the mesh has not: bits of starg_mesh_look. */
 typedef enum starg_mesh_look {
-    STARG_MESH_COLORS = 1, /* of vertices, faces or materials */
+    STARG_MESH_COLORS = 1, /* of faces or materials */
     STARG_MESH_TEXTURE = 2 /* texture coordinates */
 } starg_mesh_look;
 STARG_API unsigned starg_mesh_left_out(const starg_mesh *mesh);

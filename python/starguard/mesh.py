@@ -181,6 +181,15 @@ class Mesh:
         return float(largest[0])
 
     @property
+    def colors(self) -> Array | None:
+        """Red, green and blue of the vertices, (n, 3) of uint8, if its file has them; a copy."""
+        held = lib.starg_mesh_colors(self._handle)
+        if held == ffi.NULL:
+            return None
+        count = lib.starg_mesh_vertex_count(self._handle)
+        return np.frombuffer(ffi.buffer(held, 3 * count), dtype=np.uint8).reshape(count, 3).copy()
+
+    @property
     def left_out(self) -> tuple[str, ...]:
         """What the file of the mesh has and the mesh has not: "colors", "texture"."""
         bits = lib.starg_mesh_left_out(self._handle)

@@ -3,8 +3,9 @@
  *
  * Numbers, all four bytes wide, in this order: vertex indices of the faces; positions of the first
  * frame; for each other frame the displacements from the first; the times of the frames; the
- * weights of the targets at each time, one of them 1 and the others 0. Each is a view and an
- * accessor of its own. Little endian, as the format requires, on any machine. */
+ * weights of the targets at each time, one of them 1 and the others 0; the colours of the vertices
+ * where they have some, linear as the format wants them. Each is a view and an accessor of its
+ * own. Little endian, as the format requires, on any machine. */
 #include "starguard/animation.h"
 
 #include <math.h>
@@ -85,33 +86,40 @@ static void find_box(animation *a) {
 
 /* ---- description ---- */
 
-/* Number of values in accessor `index`. Accessors: indices, positions, targets, times, weights. */
+/* Accessors: indices, positions, targets, times, weights, colours. */
+static size_t accessors_of(const animation *a) {
+    return a->count + (starg_mesh_colors(a->mesh) != NULL ? 4 : 3);
+}
+
+static bool has_vectors(const animation *a, size_t index) {
+    return (index >= 1 && index <= a->count) || index == a->count + 3;
+}
+
+/* Number of values in accessor `index`. */
 static size_t accessor_count(const animation *a, size_t index) {
     if (index == 0)
         return a->indices;
-    if (index <= a->count)
+    if (has_vectors(a, index))
         return a->vertices;
     return index == a->count + 1 ? a->count : a->count * (a->count - 1);
 }
 
 static size_t accessor_bytes(const animation *a, size_t index) {
-    bool vectors = index >= 1 && index <= a->count;
-    return accessor_count(a, index) * (vectors ? 12 : 4);
+    return accessor_count(a, index) * (has_vectors(a, index) ? 12 : 4);
 }
 
 static size_t binary_bytes(const animation *a) {
     size_t sum = 0;
-    for (size_t i = 0; i < a->count + 3; i++)
+    for (size_t i = 0; i < accessors_of(a); i++)
         sum += accessor_bytes(a, i);
     return sum;
 }
 
 static json_t *accessor_json(const animation *a, size_t index) {
-    bool vectors = index >= 1 && index <= a->count;
-    json_t *json =
-        json_pack("{s:I, s:I, s:I, s:s}", "bufferView", (json_int_t)index, "componentType",
-                  (json_int_t)(index == 0 ? GLB_UNSIGNED_INT : GLB_FLOAT), "count",
-                  (json_int_t)accessor_count(a, index), "type", vectors ? "VEC3" : "SCALAR");
+    json_t *json = json_pack(
+        "{s:I, s:I, s:I, s:s}", "bufferView", (json_int_t)index, "componentType",
+        (json_int_t)(index == 0 ? GLB_UNSIGNED_INT : GLB_FLOAT), "count",
+        (json_int_t)accessor_count(a, index), "type", has_vectors(a, index) ? "VEC3" : "SCALAR");
     int failed = 0;
     if (index == 1)
         failed = json_object_set_new(json, "min",
@@ -134,7 +142,7 @@ static bool describe_numbers(const animation *a, json_t *accessors, json_t *view
                              json_t *targets) {
     size_t offset = 0;
     int failed = 0;
-    for (size_t i = 0; i < a->count + 3; i++) {
+    for (size_t i = 0; i < accessors_of(a); i++) {
         failed |= json_array_append_new(accessors, accessor_json(a, i));
         failed |= json_array_append_new(
             views, json_pack("{s:i, s:I, s:I}", "buffer", 0, "byteOffset", (json_int_t)offset,
@@ -148,7 +156,11 @@ static bool describe_numbers(const animation *a, json_t *accessors, json_t *view
 
 static json_t *describe(const animation *a) {
     json_t *accessors = json_array(), *views = json_array(), *targets = json_array();
-    if (!describe_numbers(a, accessors, views, targets)) {
+    json_t *attributes = json_pack("{s:i}", "POSITION", 1);
+    if (!describe_numbers(a, accessors, views, targets) ||
+        (starg_mesh_colors(a->mesh) != NULL &&
+         json_object_set_new(attributes, "COLOR_0", json_integer((json_int_t)a->count + 3)) != 0)) {
+        json_decref(attributes);
         json_decref(accessors);
         json_decref(views);
         json_decref(targets);
@@ -156,11 +168,11 @@ static json_t *describe(const animation *a) {
     }
     size_t times = a->count + 1; /* accessor */
     return json_pack("{s:{s:s}, s:i, s:[{s:[i]}], s:[{s:i, s:[f, f, f]}],"
-                     " s:[{s:[{s:{s:i}, s:i, s:o}]}], s:[{s:[{s:i, s:{s:i, s:s}}],"
+                     " s:[{s:[{s:o, s:i, s:o}]}], s:[{s:[{s:i, s:{s:i, s:s}}],"
                      " s:[{s:I, s:I, s:s}]}], s:o, s:o, s:[{s:I}]}",
                      "asset", "version", "2.0", "scene", 0, "scenes", "nodes", 0, "nodes", "mesh",
                      0, "translation", a->center[0], a->center[1], a->center[2], "meshes",
-                     "primitives", "attributes", "POSITION", 1, "indices", 0, "targets", targets,
+                     "primitives", "attributes", attributes, "indices", 0, "targets", targets,
                      "animations", "channels", "sampler", 0, "target", "node", 0, "path", "weights",
                      "samplers", "input", (json_int_t)times, "output", (json_int_t)times + 1,
                      "interpolation", "LINEAR", "accessors", accessors, "bufferViews", views,
@@ -168,6 +180,12 @@ static json_t *describe(const animation *a) {
 }
 
 /* ---- bytes ---- */
+
+/* The light of a part of an sRGB colour. */
+static float light_of(uint8_t part) {
+    double x = part / 255.0;
+    return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
+}
 
 static void put_numbers(FILE *stream, const void *user) {
     const animation *a = user;
@@ -183,6 +201,9 @@ static void put_numbers(FILE *stream, const void *user) {
     for (size_t f = 0; f < a->count; f++)
         for (size_t target = 1; target < a->count; target++)
             little_put_float(stream, target == f ? 1 : 0);
+    const uint8_t *colors = starg_mesh_colors(a->mesh);
+    for (size_t i = 0; colors != NULL && i < 3 * a->vertices; i++)
+        little_put_float(stream, light_of(colors[i]));
 }
 
 starg_status starg_animation_write(starg_context *context, const starg_mesh *mesh,

@@ -74,6 +74,15 @@ starg_status starg_builder_vertex(starg_mesh_builder *builder, const double poin
     return STARG_OK;
 }
 
+starg_status starg_builder_color(starg_mesh_builder *builder, const double color[3], double most) {
+    for (int k = 0; k < 3; k++) {
+        double part = fmax(0, fmin(1, color[k] / most)); /* of NaN: 0 */
+        PUSH(builder->source->context, STARG_MESH_FILE, &builder->colors,
+             (uint8_t)lround(255 * part));
+    }
+    return STARG_OK;
+}
+
 starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, starg_place place) {
     size_t count = starg_builder_vertex_count(builder);
     if (vertex < 0 || (uint64_t)vertex >= count || vertex > UINT32_MAX)
@@ -141,7 +150,13 @@ starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out)
                                            builder->vertices.count / 3, builder->faces.data,
                                            builder->faces.count / 3, out);
     if (status == STARG_OK) {
-        (*out)->left_out = builder->left_out;
+        bool colored = builder->colors.count == builder->vertices.count;
+        (*out)->left_out =
+            builder->left_out | (builder->colors.count > 0 && !colored ? STARG_MESH_COLORS : 0);
+        if (colored) {
+            (*out)->colors = builder->colors.data;
+            builder->colors.data = NULL;
+        }
         builder->vertices.data = NULL;
         builder->faces.data = NULL;
     }
@@ -149,5 +164,6 @@ starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out)
 }
 
 void starg_builder_free(starg_mesh_builder *builder) {
-    RELEASE(builder->vertices.data, builder->faces.data, builder->corners.data);
+    RELEASE(builder->vertices.data, builder->faces.data, builder->corners.data,
+            builder->colors.data);
 }

@@ -78,7 +78,7 @@ done:
 void starg_mesh_free(starg_mesh *mesh) {
     if (mesh == NULL)
         return;
-    RELEASE(mesh->vertices, mesh->faces, mesh);
+    RELEASE(mesh->vertices, mesh->faces, mesh->colors, mesh);
 }
 
 size_t starg_mesh_vertex_count(const starg_mesh *mesh) {
@@ -87,6 +87,21 @@ size_t starg_mesh_vertex_count(const starg_mesh *mesh) {
 
 size_t starg_mesh_face_count(const starg_mesh *mesh) {
     return mesh->face_count;
+}
+
+const uint8_t *starg_mesh_colors(const starg_mesh *mesh) {
+    return mesh->colors;
+}
+
+starg_status starg_mesh_set_colors(starg_mesh *mesh, const uint8_t *colors) {
+    uint8_t *own = NULL;
+    if (colors != NULL) {
+        NEW(mesh->context, "mesh", own, 3 * mesh->vertex_count);
+        memcpy(own, colors, 3 * mesh->vertex_count);
+    }
+    starg_release(mesh->context, mesh->colors);
+    mesh->colors = own;
+    return STARG_OK;
 }
 
 unsigned starg_mesh_left_out(const starg_mesh *mesh) {

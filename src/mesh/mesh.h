@@ -10,6 +10,7 @@ struct starg_mesh {
     size_t vertex_count, face_count;
     double *vertices;  /* vertex_count x 3 */
     uint32_t *faces;   /* face_count x 3 */
+    uint8_t *colors;   /* vertex_count x 3, sRGB; NULL: none */
     unsigned left_out; /* starg_mesh_look: in its file only */
 };
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nothing is dropped without a word: what an input asks for and does not get is said."""
 import json
+import struct
 
 from support import OPEN, TETRAHEDRON, Case, main
 from test_coordinates import boxes, off
@@ -82,6 +83,46 @@ class Told(Case):
             _, err = self.run_text("morph", name, "b.ply", "--frames", "2", "-o", "frames", "--method", "linear")
             self.assertEqual(look is not None, "leave out the" in err, (name, err))
             self.assertIn(look or "", err)
+
+    def color_of_glb(self, name):
+        """COLOR_0 of the first primitive, as read by the format's own words."""
+        data = self.read(name)
+        length, = struct.unpack("<I", data[12:16])
+        scene, binary = json.loads(data[20:20 + length]), data[28 + length:]
+        accessor = scene["accessors"][scene["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
+        view = scene["bufferViews"][accessor["bufferView"]]
+        self.assertEqual((accessor["componentType"], accessor["type"]), (5126, "VEC3"))
+        return struct.unpack(f"<{3 * accessor['count']}f", binary[view["byteOffset"]:][:view["byteLength"]])
+
+    def test_colours_of_animation(self):
+        """Colours of A's vertices are in the animation, of whatever format A is, and between the corners where the
+        overlay has vertices of its own."""
+        points = ("0 0 0", "1 0 0", "0 1 0", "0 0 1")
+        self.write("b.off", TETRAHEDRON.replace("1 0 0", "2 0 0"))
+        colors = [(0, 10, 255), (20, 128, 1), (255, 255, 255), (90, 60, 30)]
+        light = [x / 255 / 12.92 if x <= 10 else ((x / 255 + 0.055) / 1.055) ** 2.4 for color in colors for x in color]
+        faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        rows = ["%s %d %d %d" % (p, *c) for p, c in zip(points, colors)]
+        corners = "".join("3 %d %d %d\n" % face for face in faces)
+        self.write("a.off", "COFF\n4 4 0\n" + "".join(f"{row} 255\n" for row in rows) + corners)
+        self.write("a.obj", "".join("v %s %r %r %r\n" % (p, *(x / 255 for x in c)) for p, c in zip(points, colors))
+                   + "".join("f %d %d %d\n" % tuple(i + 1 for i in face) for face in faces))
+        self.write("a.ply", "ply\nformat ascii 1.0\nelement vertex 4\n" + "".join(f"property float {x}\n" for x in "xyz")
+                   + "".join(f"property uchar {c}\n" for c in ("red", "green", "blue"))
+                   + "element face 4\nproperty list uchar int vertex_indices\nend_header\n" + "\n".join(rows) + "\n" + corners)
+        for name in ("a.off", "a.obj", "a.ply"):
+            _, err = self.run_text("morph", name, "b.off", "--frames", "2", "-o", "frames", "--method", "linear", "--glb",
+                                   "m.glb")
+            self.assertNotIn("leave out", err)
+            for found, expected in zip(self.color_of_glb("m.glb"), light, strict=True):
+                self.assertAlmostEqual(found, expected, delta=1e-6)
+        self.sample("sphere", 520, "s.off")
+        self.run_text("morph", "a.ply", "s.off", "--frames", "2", "-o", "frames", "--method", "linear", "--glb", "m.glb",
+                      "--overlay")
+        refined = self.color_of_glb("m.glb")
+        self.assertGreater(len(refined), 3 * 500)
+        self.assertEqual([x for x in refined if not 0 <= x <= 1], [])
+        self.assertGreater(len(set(refined)), 100)
 
     def test_landmarks(self):
         self.sample("sphere", 520, "a.off")

@@ -67,6 +67,7 @@ typedef struct starg_mesh_builder {
     STARG_ARRAY(double) vertices;  /* 3 numbers per vertex */
     STARG_ARRAY(uint32_t) faces;   /* 3 indices per triangle */
     STARG_ARRAY(uint32_t) corners; /* of the open face */
+    STARG_ARRAY(uint8_t) colors;   /* 3 numbers per vertex, or those of fewer: then none count */
     starg_face_values *values;     /* NULL: not wanted */
     unsigned left_out;             /* starg_mesh_look: what the reader passes over */
     size_t ticks;
@@ -78,6 +79,9 @@ starg_status starg_builder_reserve(starg_mesh_builder *builder, size_t vertices,
 /* Appends a vertex. Errors: RANGE, MEMORY. */
 starg_status starg_builder_vertex(starg_mesh_builder *builder, const double point[3],
                                   starg_place place);
+
+/* Gives the last vertex a colour, of numbers from 0 to `most`. Errors: MEMORY. */
+starg_status starg_builder_color(starg_mesh_builder *builder, const double color[3], double most);
 
 /* Appends a corner to the open face. Errors: FORMAT (no such vertex), MEMORY. */
 starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, starg_place place);

@@ -99,6 +99,13 @@ static ply_role find_role(ply_kind kind, bool list, starg_word name) {
     if (kind == PLY_VERTICES && !list && name.length == 1 && name.text[0] >= 'x' &&
         name.text[0] <= 'z')
         return (ply_role)(name.text[0] - 'x');
+    static const char *const colors[3][3] = {{"red", "diffuse_red", "r"},
+                                             {"green", "diffuse_green", "g"},
+                                             {"blue", "diffuse_blue", "b"}};
+    for (int k = 0; k < 3 && kind == PLY_VERTICES && !list; k++)
+        for (int i = 0; i < 3; i++)
+            if (starg_word_is(name, colors[k][i]))
+                return (ply_role)(PLY_RED + k);
     return PLY_OTHER;
 }
 
@@ -163,7 +170,7 @@ static starg_status read_property(ply_reader *ply) {
     TRY(read_type(ply, &property.type));
     TRY(header_word(ply, "the name of the property", &word));
     property.role = find_role(element->kind, property.list, word);
-    if (element->kind == PLY_VERTICES || element->kind == PLY_FACES)
+    if ((element->kind == PLY_VERTICES || element->kind == PLY_FACES) && property.role < PLY_RED)
         ply->builder->left_out |= look_of(word);
     starg_face_values *values = element->kind == PLY_FACES ? ply->builder->values : NULL;
     if (values != NULL && !property.list) {
@@ -174,8 +181,11 @@ static starg_status read_property(ply_reader *ply) {
     }
     for (size_t i = 0; i < element->properties; i++)
         if (property.role != PLY_OTHER &&
-            ply->properties.data[element->first + i].role == property.role)
-            return fail_header(ply, "the property is declared twice");
+            ply->properties.data[element->first + i].role == property.role) {
+            if (property.role < PLY_RED)
+                return fail_header(ply, "the property is declared twice");
+            property.role = PLY_OTHER; /* a colour by another name */
+        }
     PUSH(ply->source->context, STARG_MESH_FILE, &ply->properties, property);
     element->properties++;
     return STARG_OK;

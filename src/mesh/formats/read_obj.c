@@ -3,6 +3,8 @@
  * name the groups, objects and materials that they are in. Faces may refer to later
  * vertices, so a first pass reads vertices and a second one faces. Referenced files are never
  * opened. */
+#include <math.h>
+
 #include "mesh/formats/scan.h"
 
 bool starg_obj_matches(const starg_source *source) {
@@ -38,10 +40,11 @@ static starg_status read_vertex(starg_scan *scan, starg_mesh_builder *builder) {
         TRY(starg_word_real(scan, word, "a coordinate of a vertex", &point[k]));
     }
     TRY(starg_builder_vertex(builder, point, place));
-    starg_scan ahead = *scan;
-    starg_word more[2];
-    if (starg_scan_word_here(&ahead, &more[0]) && starg_scan_word_here(&ahead, &more[1]))
-        builder->left_out |= STARG_MESH_COLORS; /* one number is a weight */
+    double color[3];
+    bool whole;
+    if (starg_scan_peek(*scan, 0, color, &whole)) /* one number is a weight */
+        TRY(starg_builder_color(builder, color,
+                                fmax(color[0], fmax(color[1], color[2])) > 1 ? 255 : 1));
     return starg_scan_extra_numbers(scan, MOST_EXTRAS, "a weight or a colour");
 }
 

@@ -6,7 +6,7 @@
 #include "mesh/formats/scan.h"
 
 typedef struct off_header {
-    bool texture, color;
+    bool texture, color, normal;
     bool vertex_extras; /* normals, colours or texture coordinates follow each position */
     bool homogeneous;   /* 4OFF: four coordinates */
     bool dimension;     /* nOFF: states its number of coordinates */
@@ -26,8 +26,8 @@ static bool parse_keyword(starg_word word, off_header *header) {
     const char *at = word.text, *end = word.text + word.length;
     header->texture = take(&at, end, "ST");
     header->color = take(&at, end, "C");
-    bool normal = take(&at, end, "N");
-    header->vertex_extras = header->texture || header->color || normal;
+    header->normal = take(&at, end, "N");
+    header->vertex_extras = header->texture || header->color || header->normal;
     header->homogeneous = take(&at, end, "4");
     header->dimension = take(&at, end, "n");
     if (!take(&at, end, "OFF"))
@@ -106,10 +106,13 @@ static starg_status read_vertices(starg_scan *scan, const off_header *header, si
                                   starg_mesh_builder *builder) {
     enum { MOST_EXTRAS = 11 }; /* normal 3, colour 4, texture 4 */
     for (size_t i = 0; i < count; i++) {
-        double point[3];
+        double point[3], color[3];
+        bool whole;
         for (int k = 0; k < 3; k++)
             TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
         TRY(starg_builder_vertex(builder, point, starg_at_line(scan->line)));
+        if (header->color && starg_scan_peek(*scan, header->normal ? 3 : 0, color, &whole))
+            TRY(starg_builder_color(builder, color, whole ? 255 : 1));
         if (header->vertex_extras)
             TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "an attribute of a vertex"));
         TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
@@ -142,6 +145,7 @@ static starg_status read_faces(starg_scan *scan, size_t count, starg_mesh_builde
 static starg_status read_data(starg_scan *scan, const off_header *header, size_t vertices,
                               size_t faces, starg_mesh_builder *builder) {
     builder->vertices.count = builder->faces.count = builder->corners.count = 0;
+    builder->colors.count = 0;
     TRY(starg_builder_reserve(builder, vertices, faces));
     TRY(read_vertices(scan, header, vertices, builder));
     TRY(read_faces(scan, faces, builder));
@@ -157,8 +161,7 @@ starg_status starg_off_read(starg_mesh_builder *builder) {
     off_header header;
     size_t vertices = 0, faces = 0;
     STARG_TRY(read_keyword(&scan, &header));
-    builder->left_out =
-        (header.color ? STARG_MESH_COLORS : 0) | (header.texture ? STARG_MESH_TEXTURE : 0);
+    builder->left_out = header.texture ? STARG_MESH_TEXTURE : 0;
     STARG_TRY(read_counts(&scan, &vertices, &faces));
     const starg_scan begin = scan;
     status = read_data(&scan, &header, vertices, faces, builder);

@@ -159,10 +159,16 @@ static double value_of(const ply_reader *ply, ply_naming naming, double number) 
     return 0;
 }
 
+/* The largest part of a colour. */
+static double largest_part(ply_type type) {
+    return type >= PLY_FLOAT32 ? 1 : type == PLY_UINT16 ? 65535 : 255;
+}
+
 /* Reads one item of an element; ignores its values if `skip`. */
 static starg_status read_item(ply_reader *ply, const ply_element *element, bool skip) {
     starg_place before = place_of(ply);
-    double point[3] = {0, 0, 0}, value;
+    double point[3] = {0, 0, 0}, color[3], most = 1, value;
+    int colors = 0;
     if (ply->builder->values != NULL)
         ply->builder->values->current = 0;
     for (size_t i = 0; i < element->properties; i++) {
@@ -173,7 +179,11 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
             TRY(read_list(ply, property, skip));
         else if (property->role <= PLY_Z)
             TRY(read_real(ply, property->type, "a coordinate of a vertex", &point[property->role]));
-        else if (property->naming != PLY_NAMELESS && ply->names.count > 0) {
+        else if (property->role >= PLY_RED && !property->list) {
+            TRY(read_real(ply, property->type, "a colour", &color[property->role - PLY_RED]));
+            most = largest_part(property->type);
+            colors++;
+        } else if (property->naming != PLY_NAMELESS && ply->names.count > 0) {
             TRY(read_real(ply, property->type, "the value of a property", &value));
             value = value_of(ply, property->naming, value);
             if (value > 0)
@@ -187,6 +197,8 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
     starg_place place = place_since(ply, before);
     if (element->kind == PLY_VERTICES)
         TRY(starg_builder_vertex(ply->builder, point, place));
+    if (element->kind == PLY_VERTICES && colors == 3)
+        TRY(starg_builder_color(ply->builder, color, most));
     if (element->kind == PLY_FACES && !element->strips && !skip)
         TRY(starg_builder_face(ply->builder, place));
     return starg_builder_tick(ply->builder, (size_t)(ply->scan.at - ply->source->bytes));
@@ -256,6 +268,7 @@ static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_
     ply->by_lines = by_lines;
     ply->extra = 0;
     ply->builder->vertices.count = ply->builder->faces.count = ply->builder->corners.count = 0;
+    ply->builder->colors.count = 0;
     if (ply->builder->values != NULL)
         ply->builder->values->data.count = 0;
     return read_data(ply);

@@ -113,6 +113,22 @@ starg_status starg_scan_integer(starg_scan *scan, const char *what, int64_t *val
     return status == STARG_OK ? starg_word_integer(scan, word, what, value) : status;
 }
 
+bool starg_scan_peek(starg_scan scan, size_t passed, double numbers[3], bool *whole) {
+    starg_word word;
+    *whole = true;
+    for (size_t i = 0; i < passed + 3; i++) {
+        double number;
+        if (!starg_scan_word_here(&scan, &word) ||
+            !starg_parse_real(word.text, word.length, &number))
+            return false;
+        if (i < passed)
+            continue;
+        numbers[i - passed] = number;
+        *whole = *whole && memchr(word.text, '.', word.length) == NULL;
+    }
+    return true;
+}
+
 starg_status starg_scan_extra_numbers(starg_scan *scan, size_t limit, const char *what) {
     starg_word word;
     for (size_t count = 0; starg_scan_word_here(scan, &word); count++) {

@@ -35,6 +35,10 @@ starg_status starg_scan_expect(starg_scan *scan, const char *what, starg_word *w
 starg_status starg_scan_real(starg_scan *scan, const char *what, double *value);
 starg_status starg_scan_integer(starg_scan *scan, const char *what, int64_t *value);
 
+/* The three numbers that follow `passed` others on the line, which is not left; false if there are
+ * fewer. *whole: none has a point. */
+bool starg_scan_peek(starg_scan scan, size_t passed, double numbers[3], bool *whole);
+
 /* Fails if the rest of the line has words that are not numbers, or more than `limit` numbers. */
 starg_status starg_scan_extra_numbers(starg_scan *scan, size_t limit, const char *what);
 
