@@ -253,8 +253,10 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
     for (size_t k = 0; k < g->redundant_count; k++)
-        cli_say(session, "%s%s seen by at least %s\n", k == 0 ? "redundancy    " : "              ",
+        cli_say(session, "%s%s seen%s by at least %s\n",
+                k == 0 ? "redundancy    " : "              ",
                 cli_count_of(g->redundant_faces[k], "face", "faces").text,
+                g->options.visibility.patch > 0 ? " in all parts" : "",
                 cli_count_of(k + 1, "guard", "guards").text);
     if (g->need_count > 0)
         cli_say(session, "required      %s, %zu as they need\n",
