@@ -422,7 +422,8 @@ static starg_status reach_from(starg_context *context, starg_solid *scene) {
     TRY(flood_create(context, scene, from, o->cell, &scene->reached));
     if (!o->soup)
         return STARG_OK;
-    bvh_box model = scene->tree->nodes[0].box; /* nobody gets out where a box ends no later than it */
+    bvh_box model =
+        scene->tree->nodes[0].box; /* nobody gets out where a box ends no later than it */
     for (int k = 0; k < 3 && is_bounded(o); k++) {
         model.lower[k] = o->within[k] >= model.lower[k] ? -INFINITY : model.lower[k];
         model.upper[k] = o->within[k + 3] <= model.upper[k] ? INFINITY : model.upper[k];
