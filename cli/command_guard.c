@@ -253,8 +253,10 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
     for (size_t k = 0; k < g->redundant_count; k++)
-        cli_say(session, "%s%s seen by at least %s\n", k == 0 ? "redundancy    " : "              ",
+        cli_say(session, "%s%s seen%s by at least %s\n",
+                k == 0 ? "redundancy    " : "              ",
                 cli_count_of(g->redundant_faces[k], "face", "faces").text,
+                g->options.visibility.patch > 0 ? " in all parts" : "",
                 cli_count_of(k + 1, "guard", "guards").text);
     if (g->need_count > 0)
         cli_say(session, "required      %s, %zu as they need\n",
@@ -327,12 +329,56 @@ static starg_status write_marks(cli_session *session, const starg_solid *solid,
     return cli_marks_write(session, d.mesh, d.colors, NULL, d.seen, name);
 }
 
+/* Adds what stands in the way, in its own colour; the vertices of obstacles follow the model's. */
+static starg_status draw_obstacles(cli_session *session, const starg_solid *solid, drawing *d) {
+    static const uint8_t OBSTACLE[3] = {150, 118, 78};
+    const starg_mesh *all = starg_solid_mesh(solid);
+    const size_t own = starg_space_model_vertices(solid), base = starg_mesh_vertex_count(d->mesh),
+                 more = starg_mesh_vertex_count(all) - own;
+    const uint32_t *faces = starg_mesh_faces(all);
+    size_t count = starg_mesh_face_count(d->mesh);
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    if (more == 0)
+        return STARG_OK;
+    double *points = malloc(3 * (base + more) * sizeof *points);
+    uint32_t *corners = malloc(3 * (count + starg_mesh_face_count(all)) * sizeof *corners);
+    uint8_t *colors = malloc(3 * (count + starg_mesh_face_count(all)));
+    if (points == NULL || corners == NULL || colors == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    memcpy(points, starg_mesh_vertices(d->mesh), 3 * base * sizeof *points);
+    memcpy(points + 3 * base, starg_mesh_vertices(all) + 3 * own, 3 * more * sizeof *points);
+    memcpy(corners, starg_mesh_faces(d->mesh), 3 * count * sizeof *corners);
+    memcpy(colors, d->colors, 3 * count);
+    for (size_t f = starg_space_model_faces(solid); f < starg_mesh_face_count(all); f++) {
+        if (faces[3 * f] < own) /* the back of a face of the model */
+            continue;
+        for (size_t k = 0; k < 3; k++)
+            corners[3 * count + k] = (uint32_t)(faces[3 * f + k] - own + base);
+        memcpy(colors + 3 * count++, OBSTACLE, sizeof OBSTACLE);
+    }
+    CLI_TRY(starg_mesh_create(session->context, points, base + more, corners, count, &mesh));
+    starg_mesh_free(d->mesh);
+    free(d->colors);
+    d->mesh = mesh;
+    d->colors = colors;
+    colors = NULL;
+done:
+    free(points);
+    free(corners);
+    free(colors);
+    return status;
+}
+
 static starg_status write_picture(cli_session *session, const starg_solid *solid,
                                   const starg_guards *g, const char *name) {
     starg_picture_options picture;
     SCOPED_BY(drawing_free) drawing d = {0};
     starg_picture_options_default(&picture);
     TRY(draw(session, solid, g, &d));
+    TRY(draw_obstacles(session, solid, &d));
     picture.face_colors = d.colors;
     picture.points = g->positions;
     picture.point_count = g->count;

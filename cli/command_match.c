@@ -5,16 +5,22 @@
 
 typedef struct values {
     int distance;
+    cli_weights weights;
 } values;
 
-static const cli_option options[] = {CLI_CHOICE_OPTION(
-    "distance", distance, cli_distance_words, STARG_SIGNATURE_STAR, "star|paper|shape-dna|d2",
-    "star: what guards see and how pieces conduct, independent of pose. paper: cost of deforming "
-    "one guarding graph into the other. shape-dna: Laplace-Beltrami spectrum. d2: distances "
-    "between random surface points.")};
+static const cli_option options[] = {
+    CLI_CHOICE_OPTION(
+        "distance", distance, cli_distance_words, STARG_SIGNATURE_STAR, "star|paper|shape-dna|d2",
+        "star: what guards see and how pieces conduct, independent of pose. paper: cost of "
+        "deforming "
+        "one guarding graph into the other. shape-dna: Laplace-Beltrami spectrum. d2: distances "
+        "between random surface points."),
+    CLI_ALIGN_OPTIONS(weights)};
 
+/* The mesh, too, if it is one. */
 static starg_status make_signature(cli_session *session, const char *file,
-                                   starg_signature_kind kind, starg_signature **out) {
+                                   starg_signature_kind kind, starg_signature **out,
+                                   starg_mesh **model) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     starg_descriptor *descriptor = NULL;
@@ -29,8 +35,18 @@ static starg_status make_signature(cli_session *session, const char *file,
                           cli_distance_words[kind]);
 done:
     starg_descriptor_free(session->context, descriptor);
-    starg_mesh_free(mesh);
+    *model = mesh;
     return status;
+}
+
+static starg_status align(cli_session *session, const starg_mesh *const *models,
+                          starg_alignment *out) {
+    for (size_t i = 0; i < 2; i++)
+        if (models[i] == NULL)
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "'%s' is a descriptor; --align needs the model itself",
+                            session->operands[i]);
+    return starg_alignment_measure(session->context, models[0], models[1], out);
 }
 
 static starg_status run(cli_session *session, void *data) {
@@ -39,20 +55,32 @@ static starg_status run(cli_session *session, void *data) {
     starg_signature_kind kind = (starg_signature_kind)v->distance;
     starg_status status = STARG_OK;
     starg_signature *a = NULL, *b = NULL;
-    double distance;
-    CLI_TRY(make_signature(session, session->operands[0], kind, &a));
-    CLI_TRY(make_signature(session, session->operands[1], kind, &b));
+    starg_mesh *models[2] = {NULL, NULL};
+    starg_alignment alignment;
+    double distance, weighed;
+    CLI_TRY(cli_weights_check(session, &v->weights));
+    CLI_TRY(make_signature(session, session->operands[0], kind, &a, &models[0]));
+    CLI_TRY(make_signature(session, session->operands[1], kind, &b, &models[1]));
     CLI_TRY(starg_signature_distance(context, a, b, &distance));
-    cli_say(session, "%.6g\n", distance);
+    if (v->weights.align)
+        CLI_TRY(align(session, (const starg_mesh *const *)models, &alignment));
+    weighed = v->weights.align ? cli_weigh(&v->weights, &alignment, distance) : distance;
+    cli_say(session, "%.6g\n", weighed);
+    if (v->weights.align)
+        cli_say_alignment(session, &alignment);
     if (session->report != NULL) {
         cli_report_head(session, "starguard-match", NULL, NULL);
         cli_put(session, session->report, "models",
                 json_pack("[o, o]", cli_json_text(session->operands[0]),
                           cli_json_text(session->operands[1])));
         cli_put(session, session->report, "kind", json_string(cli_distance_words[kind]));
-        cli_put(session, session->report, "distance", cli_json_real(distance));
+        cli_put(session, session->report, "distance", cli_json_real(weighed));
+        if (v->weights.align)
+            cli_put(session, session->report, "alignment", cli_json_alignment(&alignment));
     }
 done:
+    starg_mesh_free(models[0]);
+    starg_mesh_free(models[1]);
     starg_signature_free(context, a);
     starg_signature_free(context, b);
     return status;
@@ -60,7 +88,7 @@ done:
 
 const cli_command cli_command_match = {
     .name = "match",
-    .usage = "A B [--distance star|paper|shape-dna|d2]",
+    .usage = "A B [--distance star|paper|shape-dna|d2] [--align]",
     .summary = "compute the distance between two shapes",
     .description = "Prints the distance between two shapes: 0 for identical shapes, larger for "
                    "less similar ones. A and B are models, or descriptors from 'starguard "
@@ -69,7 +97,9 @@ const cli_command cli_command_match = {
     .examples = "# independent of pose\n"
                 "starguard match cat.off dog.off\n"
                 "# the published distance, from stored descriptors\n"
-                "starguard match cat.json dog.json --distance paper",
+                "starguard match cat.json dog.json --distance paper\n"
+                "# is one the mirror image of the other, and how large?\n"
+                "starguard match cat.off dog.off --align",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),
     .run = run,

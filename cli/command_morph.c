@@ -513,6 +513,7 @@ static starg_status draw_row(cli_session *session, const subject *s, starg_morph
 static starg_status write_picture(cli_session *session, const values *v, const subject *s) {
     static const starg_morph_method rows[] = {STARG_MORPH_STAR, STARG_MORPH_ARAP,
                                               STARG_MORPH_LINEAR};
+    static const char *const names[] = {"star", "arap", "linear"};
     enum { ROWS = sizeof rows / sizeof *rows };
     starg_status status = STARG_OK;
     starg_mesh *meshes[ROWS * SHEET_COLUMNS] = {NULL};
@@ -532,6 +533,7 @@ static starg_status write_picture(cli_session *session, const values *v, const s
     picture.height = TILE_HEIGHT;
     picture.opacity = 1;
     picture.up = v->up;
+    picture.row_names = names;
     for (size_t i = 0; i < ROWS * SHEET_COLUMNS; i++)
         shown[i] = meshes[i];
     CLI_TRY(starg_picture_sheet_write(session->context, shown, ROWS, SHEET_COLUMNS, &picture,

@@ -407,7 +407,8 @@ static void tell_states(cli_session *session, const starg_solid *solid, const ui
                 cli_append(session, faces, json_integer((json_int_t)f));
         }
         cli_say(session, "%-13s %s, %.2f %% of the area%s%s\n", states[i].key,
-                cli_count_of(count, "face", "faces").text, cli_percent(area),
+                cli_count_of(count, "face", "faces").text,
+                cli_percent(count == starg_space_model_faces(solid) ? 1 : area),
                 states[i].name != NULL ? ", " : "", states[i].name != NULL ? states[i].name : "");
         if (faces != NULL && states[i].name != NULL)
             cli_put(session, session->report, states[i].key, faces);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "database.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 const char *const cli_distance_words[] = {
@@ -17,6 +18,31 @@ json_t *cli_json_model(const starg_database_model *model) {
     return json_pack("{s:I, s:o, s:o, s:I, s:I}", "id", (json_int_t)model->id, "name",
                      cli_json_text(model->name), "path", cli_json_text(model->path), "vertices",
                      (json_int_t)model->vertices, "faces", (json_int_t)model->faces);
+}
+
+/* ---- scale and hand ---- */
+
+starg_status cli_weights_check(cli_session *session, const cli_weights *w) {
+    if (w->align || (w->scale == 0 && w->mirror == 0))
+        return STARG_OK;
+    return cli_fail(session, STARG_ERROR_ARGUMENT,
+                    "--weigh-scale and --weigh-mirror weigh what --align finds; add it");
+}
+
+double cli_weigh(const cli_weights *w, const starg_alignment *alignment, double distance) {
+    return distance + w->scale * fabs(log2(alignment->scale)) +
+           (alignment->hand == STARG_HAND_MIRRORED ? w->mirror : 0);
+}
+
+void cli_say_alignment(cli_session *session, const starg_alignment *a) {
+    cli_say(session, "scale %.6g, hand %s (off by %.2g %% of the diagonal, mirrored by %.2g %%)\n",
+            a->scale, starg_hand_name(a->hand), 100 * a->same, 100 * a->mirrored);
+}
+
+json_t *cli_json_alignment(const starg_alignment *a) {
+    return json_pack("{s:o, s:s, s:o, s:o}", "scale", cli_json_real(a->scale), "hand",
+                     starg_hand_name(a->hand), "same", cli_json_real(a->same), "mirrored",
+                     cli_json_real(a->mirrored));
 }
 
 /* ---- all distances ---- */

@@ -2,8 +2,11 @@
 /* Shared by the database commands. */
 #pragma once
 
+#include <stdbool.h>
+
 #include "session.h"
 #include "starguard/database.h"
+#include "starguard/shape.h"
 
 /* Tables as comma-separated values (RFC 4180), reals with 17 significant digits. */
 
@@ -40,6 +43,31 @@ extern const char *const cli_distance_words[];
         "decomposition and how they conduct, whatever the pose; shape-dna, the spectrum of the "   \
         "surface; paper, the deformation of one guarding graph into the other; or d2, the "        \
         "distances between points of the surface.")
+
+/* Options of the commands that compare scale and hand, members of a struct with `cli_weights`
+ * WEIGHTS. */
+typedef struct cli_weights {
+    bool align;
+    double scale, mirror;
+} cli_weights;
+
+#define CLI_ALIGN_OPTIONS(WEIGHTS)                                                                 \
+    {CLI_OPTION("align", STARG_FIELD_FLAG, WEIGHTS.align, NULL,                                    \
+                "Tell the scale, too, and whether one is a mirror image of the other, where a "    \
+                "motion and scaling make copies of them.")},                                       \
+        CLI_REAL_OPTION("weigh-scale", WEIGHTS.scale, "W", 0, 1e6, 0, NULL,                        \
+                        "--align: add W for each doubling or halving of the size."),               \
+        CLI_REAL_OPTION("weigh-mirror", WEIGHTS.mirror, "W", 0, 1e6, 0, NULL,                      \
+                        "--align: add W where one is the mirror image of the other.")
+
+/* Errors: ARGUMENT (a weight without --align). */
+starg_status cli_weights_check(cli_session *session, const cli_weights *weights);
+/* The distance with what the weights add. */
+double cli_weigh(const cli_weights *weights, const starg_alignment *alignment, double distance);
+/* "scale 2, mirrored (0.1 % of the diagonal; same 3 %)" */
+void cli_say_alignment(cli_session *session, const starg_alignment *alignment);
+/* {"scale", "hand", "same", "mirrored"} */
+json_t *cli_json_alignment(const starg_alignment *alignment);
 
 /* Opens the database given by the first operand. */
 starg_status cli_database_open(cli_session *session, starg_database **out);

@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Draws the pictures of docs/ that show results of the command line: guards of four samples, what one guard
-# sees, a morph by three methods, distances of shapes. All from samples. Needs ImageMagick. Usage: doc-pictures.sh [STARGUARD]
+# sees, a morph by three methods, distances of shapes; and those of the tutorials, by their own commands. All from
+# samples. Needs ImageMagick. Usage: doc-pictures.sh [STARGUARD]
 set -eu
 starguard=$(readlink -f "${1:-build/starguard}")
-pictures=$(cd "$(dirname "$0")/../docs/pictures" && pwd)
+docs=$(cd "$(dirname "$0")/../docs" && pwd)
+pictures=$docs/pictures
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/starguard-pictures.XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
@@ -41,3 +43,11 @@ done
 "$starguard" db add shapes.db shapes/*.off
 "$starguard" db matrix shapes.db -o matrix.csv --picture matrix.png --distance star
 cp matrix.png "$pictures"
+
+PATH=$(dirname "$starguard"):$PATH
+for page in room level part; do
+    sed -n '/^```sh$/,/^```$/{/^```/!p}' "$docs/tutorials/$page.md" >$page.sh
+    sh -e $page.sh
+    keep $page.png 800x
+    mv "$pictures/$page.png" "$pictures/tutorials/"
+done

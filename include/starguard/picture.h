@@ -23,10 +23,11 @@ typedef struct starg_picture_options {
     const uint8_t *face_colors; /* face_count x 3 RGB, or NULL for a neutral grey             */
     const double *points;       /* point_count x 3; drawn as shaded balls                     */
     size_t point_count;
-    const uint8_t *point_colors; /* point_count x 3, or NULL for distinct colours             */
-    double point_radius;         /* as a fraction of the bounding box's diagonal              */
-    bool point_numbers;          /* numbers beside points, where none covers a nearer one     */
-    const starg_guards *views;   /* outlines of where these look, if they look one way      */
+    const uint8_t *point_colors;  /* point_count x 3, or NULL for distinct colours             */
+    double point_radius;          /* as a fraction of the bounding box's diagonal              */
+    bool point_numbers;           /* numbers beside points, where none covers a nearer one     */
+    const starg_guards *views;    /* outlines of where these look, if they look one way      */
+    const char *const *row_names; /* written into the rows of a sheet, or NULL */
 } starg_picture_options;
 
 /* 1200 x 900, azimuth 35, elevation 20, up axis 1 (y), opacity 0.35, radius 0.012. */

@@ -70,6 +70,29 @@ STARG_API starg_status starg_signature_distances(starg_context *context,
                                                  starg_signature *const *signatures, size_t count,
                                                  double *distances);
 
+/* ---- scale and hand ---- */
+
+typedef enum starg_hand {
+    STARG_HAND_SAME = 0,
+    STARG_HAND_MIRRORED = 1,
+    STARG_HAND_UNDECIDED = 2 /* symmetric, or no copies of each other */
+} starg_hand;
+
+/* The name of a hand in reports; NULL for an unknown one. */
+STARG_API const char *starg_hand_name(starg_hand hand);
+
+/* How B lies to A once moved and scaled onto it, which signatures do not tell. */
+typedef struct starg_alignment {
+    double scale; /* a length in B by that in A: root of the ratio of areas */
+    starg_hand hand;
+    double same, mirrored; /* root mean square distance of B from A and from A's mirror image, where
+                              a motion makes them least, by the diagonal of A's bounding box */
+} starg_alignment;
+
+/* Measures it. Limbs that bend make shapes differ. Errors: MESH (no area), MEMORY, CANCELLED. */
+STARG_API starg_status starg_alignment_measure(starg_context *context, const starg_mesh *a,
+                                               const starg_mesh *b, starg_alignment *out);
+
 /* ---- retrieval ---- */
 
 enum { STARG_RECALL_LEVELS = 20 };

@@ -21,7 +21,7 @@ from ._session import Defaults, defaults, logger
 from ._types import Progress
 from .covers import Cover, cover
 from .databases import Added, Database, Models, StoredModel
-from .descriptors import (NO_CLASS, Descriptor, Reconstruction, Retrieval, Signature, current_version,
+from .descriptors import (NO_CLASS, Alignment, Descriptor, Reconstruction, Retrieval, Signature, align, current_version,
                           describe, directions, distances, is_descriptor, match, retrieval, signature,
                           signatures)
 from .errors import (ArgumentError, CancelledError, Error, FormatError, MeshError, OutOfMemoryError,
@@ -45,7 +45,7 @@ from .views import page_available, write_page, write_scene
 from .visibility import Bits, cone_cosine, visible, visible_from_box
 
 __all__ = [
-    "Added", "ArgumentError", "Bits", "CancelledError", "Certificate", "Check", "Claim", "Cover", "Database",
+    "Added", "Alignment", "ArgumentError", "Bits", "CancelledError", "Certificate", "Check", "Claim", "Cover", "Database",
     "Decomposition", "Defaults", "Descriptor", "Error", "Finding", "FormatError", "FrameMeasures",
     "Guard", "GuardLevel", "Guards", "Kernel", "Level", "MapFile", "Mesh", "MeshError", "Models", "Morph",
     "MorphReport", "NO_CLASS",
@@ -53,7 +53,7 @@ __all__ = [
     "RangeError", "ReadError", "Reconstruction", "RepairReport", "Retrieval", "SampleInfo",
     "Scene", "Signature", "Skeleton", "Solid", "SolidMap", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
     "TetraReport", "TimeLimitError", "Tour", "Verdict", "WriteError", "__version__", "animation_from_bytes",
-    "as_mesh", "audit",
+    "align", "as_mesh", "audit",
     "candidate_points", "cone_cosine", "cover", "current_version", "decompose", "defaults",
     "describe", "directions", "distances", "distinct_colors", "guard", "guard_many", "is_descriptor",
     "is_tetrahedral", "kernel", "logger", "map_of_morph", "map_solid", "map_surface", "match", "page_available", "picture",

@@ -314,6 +314,32 @@ def match(a: Comparable, b: Comparable, distance: str = "star", *, threads: int 
     return float(out[0])
 
 
+@dataclass(frozen=True)
+class Alignment:
+    """How B lies to A, which distances do not tell: `scale`, a length in B by that in A; `hand`, "same",
+    "mirrored" or "undecided"; and how far B is from A and from A's mirror image, by the diagonal of A."""
+    scale: float
+    hand: str
+    same: float
+    mirrored: float
+
+
+def align(a: Any, b: Any, *, seed: int | None = None, progress: Progress | None = None) -> Alignment:
+    """Moves and scales model A onto B, and its mirror image.
+
+    >>> import starguard
+    >>> tower = starguard.sample("polycube", pose=1, vertices=500)
+    >>> starguard.align(tower, (2 * tower.vertices * (-1, 1, 1), tower.faces[:, ::-1])).hand
+    'mirrored'
+    """
+    first, second = as_mesh(a), as_mesh(b)
+    session = Session(seed=seed)
+    out = ffi.new("starg_alignment *")
+    session.call(lib.starg_alignment_measure, session.context, first._handle, second._handle, out,
+                 progress=progress)
+    return Alignment(out.scale, ffi.string(lib.starg_hand_name(out.hand)).decode(), out.same, out.mirrored)
+
+
 def distances(signatures: Sequence[Signature], *, threads: int | None = None,
               progress: Progress | None = None) -> Array:
     """The symmetric distance matrix of signatures of one kind.

@@ -101,8 +101,9 @@ def picture(model: Any, *, size: tuple[int, int] | None = None, azimuth: float |
 def write_picture_sheet(path: PathLike, models: Sequence[Sequence[Any]], *,
                         size: tuple[int, int] | None = None, azimuth: float | None = None,
                         elevation: float | None = None, up: int | None = None,
-                        opacity: float | None = None, progress: Progress | None = None) -> None:
-    """Draws rows of meshes side by side into one PNG; `size` is that of one mesh.
+                        opacity: float | None = None, names: Sequence[str] | None = None,
+                        progress: Progress | None = None) -> None:
+    """Draws rows of meshes side by side into one PNG; `size` is that of one mesh, `names` are of rows.
 
     >>> import starguard
     >>> poses = [starguard.sample("dog", pose=pose, vertices=500) for pose in range(3)]
@@ -112,8 +113,13 @@ def write_picture_sheet(path: PathLike, models: Sequence[Sequence[Any]], *,
     columns = len(meshes[0]) if meshes else 0
     if any(len(row) != columns for row in meshes):
         raise ArgumentError("all rows of a sheet must have the same length")
+    if names is not None and len(names) != len(meshes):
+        raise ArgumentError(f"{len(names)} names for {len(meshes)} rows")
+    texts = [ffi.new("char[]", name.encode()) for name in names or ()]
     session = Session()
     options = _options([], 0, size, azimuth, elevation, up, opacity, None, None, None, None)
+    kept = ffi.new("char *[]", texts) if texts else ffi.NULL
+    options.row_names = kept
     handles = ffi.new("starg_mesh *[]", [mesh._handle for row in meshes for mesh in row])
     session.call(lib.starg_picture_sheet_write, session.context, handles, len(meshes), columns,
                  options, _arrays.path(path), progress=progress)

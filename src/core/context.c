@@ -82,6 +82,7 @@ starg_status starg_context_create(const starg_context_options *options, starg_co
         return STARG_ERROR_ARGUMENT;
     if (options->threads < 0 || options->threads > MAX_THREADS)
         return STARG_ERROR_ARGUMENT;
+    const bool resizes = allocator.allocate == NULL;
     if (allocator.allocate == NULL) {
         allocator.allocate = default_allocate;
         allocator.release = default_release;
@@ -92,6 +93,7 @@ starg_status starg_context_create(const starg_context_options *options, starg_co
         return STARG_ERROR_MEMORY;
     *context = (starg_context){
         .allocator = allocator,
+        .resizes = resizes,
         .threads = options->threads ? options->threads : machine_threads(),
         .seed = options->seed,
         .log = options->log,

@@ -38,6 +38,7 @@ typedef struct starg_progress {
 } starg_progress;
 
 struct starg_context {
+    bool resizes; /* the allocator is malloc */
     starg_allocator allocator;
     int threads;
     starg_workers *workers; /* NULL: none started yet */

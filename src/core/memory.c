@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/memory.h"
 
+#include <stdlib.h>
+
 /* Precedes every block. Its size keeps the block aligned for any type. */
 typedef union block_header {
     struct {
@@ -47,6 +49,19 @@ void *starg_reallocate(starg_context *context, void *block, size_t count, size_t
         memcpy(grown, block, count * size);
     starg_release(context, block);
     return grown;
+}
+
+void *starg_shrink(starg_context *context, void *block, size_t size) {
+    block_header *header = (block_header *)block - 1;
+    const size_t before = header->of.bytes, bytes = sizeof *header + size;
+    if (!context->resizes || bytes >= before)
+        return block;
+    block_header *smaller = realloc(header, bytes);
+    if (smaller == NULL)
+        return block;
+    smaller->of.bytes = bytes;
+    atomic_fetch_sub(&context->live_bytes, before - bytes);
+    return smaller + 1;
 }
 
 void starg_release(starg_context *context, void *block) {

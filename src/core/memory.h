@@ -19,6 +19,10 @@ void *starg_allocate_zero(starg_context *context, size_t count, size_t size)
 void *starg_reallocate(starg_context *context, void *block, size_t count, size_t capacity,
                        size_t size) STARG_PRIVATE(starg_reallocate);
 
+/* Gives the end of a block back, beyond `size` bytes, where the allocator is malloc; otherwise the
+ * block stays as it is. Returns the block, which may have moved. */
+void *starg_shrink(starg_context *context, void *block, size_t size) STARG_PRIVATE(starg_shrink);
+
 /* Frees a block; NULL is allowed. */
 void starg_release(starg_context *context, void *block) STARG_PRIVATE(starg_release);
 

@@ -348,5 +348,12 @@ starg_status starg_picture_sheet_write(starg_context *context, const starg_mesh 
         for (size_t y = 0; y < o->height; y++)
             memcpy(corner + y * stride, tile + y * line, line);
     }
+    const starg_canvas canvas = {
+        .rgb = sheet, .width = columns * o->width, .height = rows * o->height};
+    const double height = fmax(7, 0.05 * (double)o->height);
+    const starg_lettering style = {.height = height, .ink = {28, 36, 48}, .halo = 0.28 * height};
+    for (size_t i = 0; o->row_names != NULL && i < rows; i++)
+        starg_lettering_draw(&canvas, &style, o->row_names[i], height,
+                             (double)(i * o->height) + 2 * height);
     return starg_png_write(context, path, sheet, columns * o->width, rows * o->height);
 }

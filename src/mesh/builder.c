@@ -37,12 +37,14 @@ starg_status starg_source_fail(const starg_source *source, starg_place place, co
 
 starg_status starg_builder_reserve(starg_mesh_builder *builder, size_t vertices, size_t faces) {
     starg_context *context = builder->source->context;
-    void *points = starg_reallocate(context, builder->vertices.data, builder->vertices.count,
-                                    3 * vertices, sizeof *builder->vertices.data);
-    if (points == NULL)
-        return starg_fail_memory(context, STARG_MESH_FILE);
-    builder->vertices.data = points;
-    builder->vertices.capacity = 3 * vertices;
+    if (builder->vertices.capacity != 3 * vertices) {
+        void *points = starg_reallocate(context, builder->vertices.data, builder->vertices.count,
+                                        3 * vertices, sizeof *builder->vertices.data);
+        if (points == NULL)
+            return starg_fail_memory(context, STARG_MESH_FILE);
+        builder->vertices.data = points;
+        builder->vertices.capacity = 3 * vertices;
+    }
     void *triangles = starg_reallocate(context, builder->faces.data, builder->faces.count,
                                        3 * faces, sizeof *builder->faces.data);
     if (triangles == NULL)

@@ -422,7 +422,13 @@ static starg_status reach_from(starg_context *context, starg_solid *scene) {
     TRY(flood_create(context, scene, from, o->cell, &scene->reached));
     if (!o->soup)
         return STARG_OK;
-    TRY(flood_find_leak(scene->reached, &scene->tree->nodes[0].box, from, &leak));
+    bvh_box model =
+        scene->tree->nodes[0].box; /* nobody gets out where a box ends no later than it */
+    for (int k = 0; k < 3 && is_bounded(o); k++) {
+        model.lower[k] = o->within[k] >= model.lower[k] ? -INFINITY : model.lower[k];
+        model.upper[k] = o->within[k + 3] <= model.upper[k] ? INFINITY : model.upper[k];
+    }
+    TRY(flood_find_leak(scene->reached, &model, from, &leak));
     scene->leak = leak.way.data;
     scene->leak_points = leak.way.count / 3;
     if (scene->leak_points > 0)

@@ -1,8 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
 """describe and match: descriptors there and back, distances, and what is refused."""
 import json
+import math
+import random
 
 import support
+
+
+def surface(text):
+    """Vertices and triangles of an OFF file."""
+    lines = text.decode().split("\n")
+    count, faces, _ = map(int, lines[1].split())
+    return ([tuple(map(float, line.split())) for line in lines[2:2 + count]],
+            [tuple(map(int, line.split()[1:])) for line in lines[2 + count:2 + count + faces]])
+
+
+def copy(text, dice, scale, mirrored):
+    """A model, moved and scaled, its vertices and faces in another order; the mirror image, its fronts outside."""
+    points, faces = surface(text)
+    q = [dice.gauss(0, 1) for _ in range(4)]
+    w, x, y, z = (number / math.hypot(*q) for number in q)
+    turn = [(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))]
+    shift = [dice.uniform(-5, 5) for _ in range(3)]
+    order = list(range(len(points)))
+    dice.shuffle(order)
+    place = {old: new for new, old in enumerate(order)}
+    lines = []
+    for old in order:
+        p = [-c if mirrored and k == 1 else c for k, c in enumerate(points[old])]
+        lines.append(" ".join(repr(scale * sum(map(lambda a, b: a * b, row, p)) + move)
+                              for row, move in zip(turn, shift)))
+    for a, b, c in dice.sample(faces, len(faces)):
+        lines.append("3 %d %d %d" % tuple(place[v] for v in ((a, c, b) if mirrored else (a, b, c))))
+    return f"OFF\n{len(points)} {len(faces)} 0\n" + "\n".join(lines) + "\n"
 
 
 class Describe(support.Case):
@@ -85,6 +117,81 @@ class Match(support.Case):
         _, err = self.run_text("match", "broken.json", "torus.off", status=2)
         self.assertIn("broken.json", err)
         self.usage_error("match", "torus.off", says="too few arguments")
+
+
+class Align(support.Case):
+    """Scale and hand of copies that are made here, so that both are known."""
+
+    def align(self, a, b, *words):
+        return self.run_json("match", a, b, "--distance", "d2", "--align", *words)
+
+    def test_copies(self):
+        dice = random.Random(7)
+        for name, pose, decided in (("horse", 2, True), ("knot", 0, True), ("polycube", 1, True), ("spikes", 0, True),
+                                    ("human", 0, False), ("torus", 0, False), ("l-room", 0, False),
+                                    ("star", 0, False)):
+            model = self.sample(name, 520, None, "--pose", str(pose))
+            for mirrored in False, True:
+                scale = 10 ** dice.uniform(-3, 3)
+                self.write("copy.off", copy(self.read(model), dice, scale, mirrored))
+                told = self.align(model, "copy.off")["alignment"]
+                self.assertAlmostEqual(told["scale"] / scale, 1, 9, name)
+                self.assertEqual(told["hand"], ("mirrored" if mirrored else "same") if decided else "undecided", name)
+                if decided:
+                    self.assertLess(told["mirrored" if mirrored else "same"], 3e-3, name)
+                back = self.align("copy.off", model)["alignment"]
+                self.assertEqual(back["hand"], told["hand"], name)
+                self.assertAlmostEqual(back["scale"] * scale, 1, 9, name)
+
+    def test_other_triangles(self):
+        """A copy of another resolution is one, too."""
+        self.write("copy.off", copy(self.read(self.sample("knot", 2000)), random.Random(1), 3, True))
+        told = self.align(self.sample("knot", 520), "copy.off")["alignment"]
+        self.assertEqual(told["hand"], "mirrored")
+        self.assertAlmostEqual(told["scale"], 3, 1)
+        self.assertLess(told["mirrored"], 0.01)
+
+    def test_no_copies(self):
+        """Shapes that differ, and poses of one, have no hand."""
+        told = self.align(self.sample("knot"), self.sample("horse"))["alignment"]
+        self.assertEqual(told["hand"], "undecided")
+        self.assertGreater(min(told["same"], told["mirrored"]), 0.02)
+
+    def test_weights(self):
+        knot = self.sample("knot")
+        self.write("copy.off", copy(self.read(knot), random.Random(5), 4, True))
+        plain = self.run_json("match", knot, "copy.off", "--distance", "d2")
+        self.assertNotIn("alignment", plain)
+        weighed = self.align(knot, "copy.off", "--weigh-scale", "0.5", "--weigh-mirror", "3")
+        self.assertAlmostEqual(weighed["distance"] - plain["distance"], 0.5 * 2 + 3, 9)
+        self.usage_error("match", knot, "copy.off", "--weigh-mirror", "3", says="--align")
+        self.run_text("describe", knot, "-o", "knot.json", "--effort", "1")
+        _, err = self.run_text("match", "knot.json", knot, "--align", status=1)
+        self.assertIn("needs the model", err)
+
+    def test_query(self):
+        knot = self.sample("knot")
+        dice = random.Random(9)
+        self.write("mirrored.off", copy(self.read(knot), dice, 1, True))
+        self.write("large.off", copy(self.read(knot), dice, 8, False))
+        self.write("gone.off", copy(self.read(knot), dice, 2, False))
+        self.run_text("db", "create", "d.db", "--quiet")
+        self.run_text("db", "add", "d.db", "mirrored.off", "large.off", "gone.off", "--quiet")
+        words = ["db", "query", "d.db", knot, "--distance", "shape-dna", "--align"]
+        with open(self.path("gone.off"), "w", encoding="ascii"):
+            pass
+        for more, first in ((("--weigh-scale", "9"), "mirrored.off"),
+                            (("--weigh-mirror", "90", "--weigh-scale", "9"), "large.off")):
+            found = [m for m in json.loads(self.run_text(*words, *more, "--json")[0])["models"] if m["name"] != "gone.off"]
+            self.assertEqual([m["name"] for m in found][0], first)
+        models = {m["name"]: m for m in json.loads(self.run_text(*words, "--json")[0])["models"]}
+        self.assertEqual(models["mirrored.off"]["alignment"]["hand"], "mirrored")
+        self.assertEqual(models["large.off"]["alignment"]["hand"], "same")
+        self.assertAlmostEqual(models["large.off"]["alignment"]["scale"], 8, 9)
+        self.assertIsNone(models["gone.off"]["alignment"])
+        out, _ = self.run_text(*words)
+        self.assertIn("not aligned", out)
+        self.assertIn("hand mirrored", out)
 
 
 if __name__ == "__main__":

@@ -413,6 +413,14 @@ class Scenes(Case):
                     if (p[0] < x) != (q[0] < x):
                         self.assertLess(abs(p[1] - 3), width / 2)
             os.remove(os.path.join(self.folder, "way.obj"))
+            shut = self.run_json("guard", *words, "--within", "0,0,0,8,6,3") # a box that ends where the model does
+            self.assertEqual("outside" in str(shut["log"]), False)
+            self.assertEqual("way.obj" in self.names(), gap < 1)
+            if gap < 1:
+                os.remove(os.path.join(self.folder, "way.obj"))
+            wide = self.run_json("guard", *words, "--within", "0,0,-1,9,6,3") # one that goes on there
+            self.assertEqual("outside" in str(wide["log"]), "outside" in says)
+            os.remove(os.path.join(self.folder, "way.obj"))
         self.usage_error("guard", "room.off", "--leak", "way.obj", "-o", "n.json", says="--soup --from")
         self.usage_error("guard", "rooms.off", "--soup", "--from", "1,1,1", "--leak", "w.txt", "-o", "n.json", says=".vtk")
 

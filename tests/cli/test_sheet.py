@@ -11,6 +11,7 @@ from html.parser import HTMLParser
 import halls
 from support import Case, main
 from test_cameras import ROOM, room
+from test_scenes import box, off
 
 # One looks at the far wall of the room, beyond its range, one at the near wall, two down.
 POSES = "1 1.5 3  1 0 0\n7 1.5 3  1 0 0\n4 2.5 3  0 -1 -1\n4.6 2.5 3  0 -1 -1\n"
@@ -111,6 +112,18 @@ class Sheet(Case):
         self.run_text("guard", "room.obj", "--keep", "poses.txt", "--fov", "90,60", "--range", str(RANGE), *more,
                       "--patch", "0.4", "--max-guards", "1", "--count", "100", "-o", "g.json", "--quiet")
         return json.loads(self.read("g.json"))
+
+    def test_picture_shows_obstacles(self):
+        """A crate is drawn in a colour that the room has not, also where sheets have two sides."""
+        self.write("crate.off", off(box((2, 0.1, 2), (3, 1, 3))))
+        brown = []
+        for words in [(), ("--obstacles", "crate.off"), ("--obstacles", "crate.off", "--soup", "--two-sided")]:
+            self.run_text("guard", "room.obj", "--fov", "90,60", "--see", "floor", *words, "-o", "p.json", "--picture", "p.png")
+            _, _, rows = pixels(self.read("p.png"))
+            brown.append(sum(row[i] > row[i + 2] + 12 and row[i + 1] > row[i + 2]
+                             for row in rows for i in range(0, len(row), 3)))
+        self.assertLess(brown[0], 2000) # guards
+        self.assertGreater(min(brown[1:]), 10000, brown)
 
     def test_lenses(self):
         """Pixels are in colour where a ray from the camera meets what it sees: in its range."""

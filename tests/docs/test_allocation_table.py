@@ -27,7 +27,7 @@ WITHOUT = {
     "starg_field_expectation": TEXT, "starg_field_group": TEXT,
     "starg_field_default_text": "writes into the text of the caller",
     "starg_finding_name": TEXT, "starg_status_string": TEXT, "starg_version": TEXT,
-    "starg_sample_count": TEXT, "starg_sample_at": TEXT, "starg_signature_name": TEXT,
+    "starg_sample_count": TEXT, "starg_sample_at": TEXT, "starg_signature_name": TEXT, "starg_hand_name": TEXT,
     "starg_signature_version": TEXT, "starg_signature_needs_descriptor": TEXT,
     "starg_page_available": TEXT,
     "starg_context_cancel": "sets a flag; a signal handler may call it",

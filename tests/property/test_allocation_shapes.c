@@ -38,6 +38,7 @@ static starg_status signatures(starg_context *context) {
     static const uint32_t class_of[] = {0, 0, 1};
     const starg_signature *from = in.papers[0];
     starg_retrieval classes[2], overall;
+    starg_alignment alignment;
     double d[4];
     SIGNATURE(starg_signature_create, "d2", in.cube, STARG_SIGNATURE_D2);
     SIGNATURE(starg_signature_create, "shape-dna", in.cube, STARG_SIGNATURE_SHAPE_DNA);
@@ -47,6 +48,7 @@ static starg_status signatures(starg_context *context) {
     FAILING(starg_signature_distance, "star", in.stars[0], in.stars[1], d);
     FAILING(starg_signature_distance, "paper", in.papers[0], in.papers[1], d);
     FAILING(starg_signature_distances, "paper", in.papers, 2, d);
+    FAILING(starg_alignment_measure, "", in.cube, in.cube, &alignment);
     FAILING(starg_retrieval_measure, "", table, class_of, 3, 2, classes, &overall);
     return STARG_OK;
 }

@@ -472,6 +472,69 @@ static void touching_boxes(void **state) {
     test_context_free(context);
 }
 
+/* A prism about the z axis from 0 to 1; the fans of its ends begin at corner `first`. */
+static shape prism(size_t sides, size_t first) {
+    shape s = {.vertex_count = 2 * sides, .face_count = 4 * sides - 4};
+    s.vertices = malloc(3 * s.vertex_count * sizeof *s.vertices);
+    s.faces = malloc(3 * s.face_count * sizeof *s.faces);
+    uint32_t *face = s.faces;
+    for (size_t i = 0; i < sides; i++) {
+        const double angle = 6.283185307179586 * (double)i / (double)sides;
+        const uint32_t a = (uint32_t)i, b = (uint32_t)((i + 1) % sides), n = (uint32_t)sides;
+        for (size_t z = 0; z < 2; z++) {
+            double *v = s.vertices + 3 * (i + z * sides);
+            v[0] = cos(angle);
+            v[1] = sin(angle);
+            v[2] = (double)z;
+        }
+        const uint32_t walls[6] = {a, b, b + n, a, b + n, a + n};
+        memcpy(face, walls, sizeof walls);
+        face += 6;
+    }
+    for (size_t i = 1; i + 1 < sides; i++) {
+        const uint32_t f = (uint32_t)first, n = (uint32_t)sides,
+                       a = (uint32_t)((first + i) % sides), b = (uint32_t)((first + i + 1) % sides);
+        const uint32_t ends[6] = {f, b, a, f + n, a + n, b + n};
+        memcpy(face, ends, sizeof ends);
+        face += 6;
+    }
+    return s;
+}
+
+/* Prisms that stand upon one another, turned and far away: their ends, fans from different corners
+ * that are flat only up to rounding, disappear without a trace. */
+static void flush_prisms(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    const size_t sides[] = {3, 7, 48, 64, 100};
+    for (size_t i = 0; i < 3 * sizeof sides / sizeof *sides; i++) {
+        const size_t n = sides[i / 3];
+        starg_rng rng = starg_rng_make(4, 0, i);
+        const double upon[3] = {0, 0, 1}, far = i % 3 == 2 ? 0 : 1e7 * starg_rng_unit(&rng);
+        shape all = prism(n, 0), other = prism(n, i % 3 == 0 ? 0 : n / 2);
+        const double volume = 2 * starg_rng_unit(&rng), scale = cbrt(volume);
+        shape_append(&all, &other, upon, 0);
+        shape_free(&other);
+        rotate(&all, &rng, scale);
+        for (size_t k = 0; k < 3 * all.vertex_count; k++)
+            all.vertices[k] += far;
+        starg_mesh *mesh = test_mesh_of(context, &all), *out;
+        starg_repair_report report;
+        shape_free(&all);
+        test_ok(context, unite(context, mesh, &out, &report));
+        const double expected =
+            volume * (double)n * sin(6.283185307179586 / (double)n); /* twice that of one */
+        if (starg_mesh_face_count(out) != 6 * n - 4 || report.union_rounds > 1 ||
+            !(fabs(starg_mesh_volume(out) - expected) < 1e-12 * (1e5 + 100 * far)))
+            fail_msg("%zu sides: %zu faces, %zu rounds, volume %.17g, not %.17g", n,
+                     starg_mesh_face_count(out), report.union_rounds, starg_mesh_volume(out),
+                     expected);
+        starg_mesh_free(mesh);
+        starg_mesh_free(out);
+    }
+    test_context_free(context);
+}
+
 /* A double pyramid whose middle lies in the top of a box: each pair of faces only touches there. */
 static void touching_faces_that_cross(void **state) {
     (void)state;
@@ -620,6 +683,7 @@ int main(void) {
         cmocka_unit_test(lattice_soups),
         cmocka_unit_test(tube_through_itself),
         cmocka_unit_test(touching_boxes),
+        cmocka_unit_test(flush_prisms),
         cmocka_unit_test(touching_faces_that_cross),
         cmocka_unit_test(samples),
         cmocka_unit_test(once_is_enough),

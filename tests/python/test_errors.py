@@ -145,6 +145,8 @@ class Cases(Case):
                    [[0, 1]])
         self.fails(starguard.ArgumentError, "same length", starguard.write_picture_sheet, "s.png",
                    [[room], [room, room]])
+        self.fails(starguard.ArgumentError, "2 names for 1 row", starguard.write_picture_sheet, "s.png",
+                   [[room]], names=["a", "b"])
         self.fails(starguard.ArgumentError, "weights", starguard.cover, [[1, 0]], weights=[1])
         self.fails(starguard.ArgumentError, "weights", starguard.cover, [[1, 0]], weights=[1, -1])
         descriptor = starguard.describe(room)

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "support.h"
 
@@ -457,6 +458,68 @@ static void append_real(unsigned char *bytes, size_t *size, double value, size_t
     append(bytes, size, bits, width, little);
 }
 
+/* While a binary file is read, less than twice the memory of its mesh is in use; what comes out is
+ * the same as from memory, where nothing is given back. Where the allocator is the caller's, all
+ * stays. */
+static void ply_memory(void **state) {
+    (void)state;
+    enum { SIDE = 300, VERTICES = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1) };
+    const char *path = "ply_memory.ply";
+    starg_context *context = test_context(1);
+    starg_mesh *mesh = NULL, *same = NULL;
+    size_t size = 0;
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fprintf(file,
+            "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty double x\n"
+            "property double y\nproperty double z\nelement face %d\n"
+            "property list uchar uint vertex_indices\nproperty ushort group\nend_header\n",
+            VERTICES, FACES);
+    for (int i = 0; i < VERTICES; i++)
+        fwrite((double[3]){i % SIDE, i / SIDE, i / 7.0}, sizeof(double), 3, file);
+    for (uint32_t f = 0; f < FACES; f++) {
+        const uint32_t at = f / 2 % (SIDE - 1) + SIDE * (f / 2 / (SIDE - 1));
+        const uint32_t corners[2][3] = {{at, at + 1, at + SIDE},
+                                        {at + 1, at + SIDE + 1, at + SIDE}};
+        fputc(3, file);
+        fwrite(corners[f % 2], sizeof(uint32_t), 3, file);
+        fwrite(&(uint16_t){0}, sizeof(uint16_t), 1, file);
+    }
+    assert_int_equal(fclose(file), 0);
+    const size_t before = starg_context_peak_bytes(context);
+    test_ok(context, starg_mesh_read(context, path, &mesh));
+    const size_t own = 3 * VERTICES * sizeof(double) + 3 * FACES * sizeof(uint32_t);
+    assert_true(starg_context_peak_bytes(context) - before < 2 * own - own / 8);
+    file = fopen(path, "rb");
+    assert_non_null(file);
+    char *bytes = malloc(2 * own);
+    assert_non_null(bytes);
+    size = fread(bytes, 1, 2 * own, file);
+    fclose(file);
+    test_ok(context, starg_mesh_read_memory(context, bytes, size, path, &same));
+    assert_int_equal(starg_mesh_vertex_count(same), VERTICES);
+    assert_int_equal(starg_mesh_face_count(same), FACES);
+    assert_memory_equal(starg_mesh_vertices(mesh), starg_mesh_vertices(same),
+                        3 * VERTICES * sizeof(double));
+    assert_memory_equal(starg_mesh_faces(mesh), starg_mesh_faces(same),
+                        3 * FACES * sizeof(uint32_t));
+    starg_mesh_free(mesh);
+    starg_mesh_free(same);
+    /* The place of a fault is that in the file. */
+    char told[64];
+    memset(bytes + size - 6, 0xff, 4);
+    file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+    assert_int_equal(starg_mesh_read(context, path, &mesh), STARG_ERROR_FORMAT);
+    snprintf(told, sizeof told, "byte %zu", size - 6);
+    assert_non_null(strstr(starg_context_error(context)->message, told));
+    assert_int_equal(unlink(path), 0);
+    free(bytes);
+    test_context_free(context);
+}
+
 typedef struct ply_case {
     const char *coordinate, *count, *index; /* type names */
     size_t coordinate_width, count_width, index_width;
@@ -757,6 +820,7 @@ int main(void) {
         cmocka_unit_test(stl_binary_forms),
         cmocka_unit_test(stl_trailing_bytes),
         cmocka_unit_test(stl_errors),
+        cmocka_unit_test(ply_memory),
         cmocka_unit_test(ply_text_forms),
         cmocka_unit_test(ply_binary_forms),
         cmocka_unit_test(ply_binary_truncations),

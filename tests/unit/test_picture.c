@@ -423,6 +423,40 @@ static void same_bytes_for_any_thread_count(void **state) {
     free(bytes[1]);
 }
 
+/* Each row's name changes pixels at the left of that row, and of no other. */
+static void rows_of_a_sheet_have_names(void **state) {
+    (void)state;
+    static const char *const names[2][2] = {{"first", " "}, {" ", "second"}};
+    starg_context *context = test_context(1);
+    starg_mesh *cube = make_cube(context, 1, 0);
+    const starg_mesh *meshes[4] = {cube, cube, cube, cube};
+    starg_picture_options options = small_options();
+    const char *path = picture_path("sheet.png");
+    test_ok(context, starg_picture_sheet_write(context, meshes, 2, 2, &options, path));
+    image plain = read_png(path);
+    assert_int_equal(plain.width, 2 * options.width);
+    assert_int_equal(plain.height, 2 * options.height);
+    for (size_t row = 0; row < 2; row++) {
+        options.row_names = names[row];
+        test_ok(context, starg_picture_sheet_write(context, meshes, 2, 2, &options, path));
+        image named = read_png(path);
+        size_t inside = 0, outside = 0;
+        for (size_t p = 0; p < 3 * plain.width * plain.height; p++) {
+            size_t x = p / 3 % plain.width, y = p / 3 / plain.width;
+            bool here = x < options.width && y / options.height == row;
+            inside += here && named.rgb[p] != plain.rgb[p];
+            outside += !here && named.rgb[p] != plain.rgb[p];
+        }
+        assert_true(inside > 20);
+        assert_int_equal(outside, 0);
+        free(named.rgb);
+    }
+    assert_int_equal(unlink(path), 0);
+    free(plain.rgb);
+    starg_mesh_free(cube);
+    test_context_free(context);
+}
+
 /* Sizes from subnormal to huge give the same picture; so do places far from the origin. */
 static void scale_does_not_matter(void **state) {
     (void)state;
@@ -632,6 +666,7 @@ int main(void) {
         cmocka_unit_test(bad_options_are_refused),
         cmocka_unit_test(unwritable_places_leave_nothing),
         cmocka_unit_test(memory_failures_leak_nothing),
+        cmocka_unit_test(rows_of_a_sheet_have_names),
         cmocka_unit_test(colors_are_distinct),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

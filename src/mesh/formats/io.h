@@ -64,6 +64,8 @@ typedef struct starg_face_values {
  * their place. Zero-initialize all but `source`. */
 typedef struct starg_mesh_builder {
     const starg_source *source;
+    char **owned; /* the block that begins with the source's bytes, which its reader may shrink, or
+                     NULL */
     STARG_ARRAY(double) vertices;  /* 3 numbers per vertex */
     STARG_ARRAY(uint32_t) faces;   /* 3 indices per triangle */
     STARG_ARRAY(uint32_t) corners; /* of the open face */

@@ -54,7 +54,9 @@ typedef struct ply_element {
 typedef struct ply_reader {
     starg_mesh_builder *builder;
     const starg_source *source;
-    starg_scan scan; /* binary data uses only its `at` */
+    size_t dropped;   /* bytes before the scan's block that are no longer there */
+    const char *base; /* where that block begins */
+    starg_scan scan;  /* binary data uses only its `at` */
     ply_encoding encoding;
     bool has_encoding;
     bool by_lines; /* one item a line; extra values are ignored */

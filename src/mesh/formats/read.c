@@ -64,13 +64,15 @@ void starg_source_shorten(const char *name, char *shown, size_t size) {
         snprintf(shown, size, "...%s", name + length - (size - 4));
 }
 
-starg_status starg_mesh_read_with(starg_context *context, const void *bytes, size_t size,
-                                  const char *name, starg_face_values *values, starg_mesh **out) {
+static starg_status read_source(starg_source source, char **owned, starg_face_values *values,
+                                starg_mesh **out) {
+    starg_context *context = source.context;
+    const char *name = source.name;
     char shown[256];
     starg_source_shorten(name, shown, sizeof shown);
-    starg_source source = {context, shown, bytes, size};
+    source.name = shown;
     SCOPED_BY(starg_builder_free)
-    starg_mesh_builder builder = {.source = &source, .values = values};
+    starg_mesh_builder builder = {.source = &source, .owned = owned, .values = values};
     SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     const struct format *format = NULL;
     *out = NULL;
@@ -81,6 +83,11 @@ starg_status starg_mesh_read_with(starg_context *context, const void *bytes, siz
     TRY(detect(&source, name, &format));
     TRY(format->read(&builder));
     return starg_builder_finish(&builder, out);
+}
+
+starg_status starg_mesh_read_with(starg_context *context, const void *bytes, size_t size,
+                                  const char *name, starg_face_values *values, starg_mesh **out) {
+    return read_source((starg_source){context, name, bytes, size}, NULL, values, out);
 }
 
 starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, size_t size,
@@ -94,5 +101,5 @@ starg_status starg_mesh_read(starg_context *context, const char *path, starg_mes
     *out = NULL;
     TRY(starg_mesh_bytes(context, path, &bytes, &size));
     const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
-    return starg_mesh_read_memory(context, bytes, size, name, out);
+    return read_source((starg_source){context, name, bytes, size}, &bytes, NULL, out);
 }

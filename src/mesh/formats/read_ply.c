@@ -10,9 +10,13 @@
 
 #include "mesh/formats/ply.h"
 
+static size_t bytes_read(const ply_reader *ply) {
+    return ply->dropped + (size_t)(ply->scan.at - ply->base);
+}
+
 static starg_place place_of(const ply_reader *ply) {
     return ply->encoding == PLY_TEXT ? starg_at_line(ply->scan.line)
-                                     : starg_at_byte((size_t)(ply->scan.at - ply->source->bytes));
+                                     : starg_at_byte(bytes_read(ply));
 }
 
 /* The place of the value just read, given the cursor's place before it: a text scanner advances to
@@ -201,7 +205,7 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
         TRY(starg_builder_color(ply->builder, color, most));
     if (element->kind == PLY_FACES && !element->strips && !skip)
         TRY(starg_builder_face(ply->builder, place));
-    return starg_builder_tick(ply->builder, (size_t)(ply->scan.at - ply->source->bytes));
+    return starg_builder_tick(ply->builder, bytes_read(ply));
 }
 
 /* Reads one item on a line of its own. */
@@ -243,6 +247,20 @@ static starg_status check_end(ply_reader *ply) {
                              (size_t)(ply->scan.end - ply->scan.at), hint);
 }
 
+/* Gives back what has been read, so that no more than the larger part of a file is in memory beside
+ * the mesh. */
+static void drop_read(ply_reader *ply) {
+    char **owned = ply->builder->owned;
+    const size_t left = (size_t)(ply->scan.end - ply->scan.at);
+    if (owned == NULL || ply->encoding == PLY_TEXT)
+        return;
+    ply->dropped = bytes_read(ply);
+    memmove(*owned, ply->scan.at, left);
+    *owned = starg_shrink(ply->source->context, *owned, left + 1);
+    ply->base = ply->scan.at = *owned;
+    ply->scan.end = *owned + left;
+}
+
 static starg_status read_data(ply_reader *ply) {
     const ply_element *faces = starg_ply_find(ply, PLY_FACES),
                       *vertices = starg_ply_find(ply, PLY_VERTICES);
@@ -252,11 +270,16 @@ static starg_status read_data(ply_reader *ply) {
         const ply_element *element = &ply->elements.data[i];
         if (element == faces)
             begin_of_faces = ply->scan;
+        if (element == faces && !late) {
+            drop_read(ply);
+            TRY(starg_builder_reserve(ply->builder, vertices->count, faces->count));
+        }
         TRY(read_items(ply, element, late && element == faces));
     }
     TRY(check_end(ply));
     if (late) {
         ply->scan = begin_of_faces;
+        TRY(starg_builder_reserve(ply->builder, vertices->count, faces->count));
         TRY(read_items(ply, faces, false));
     }
     return STARG_OK;
@@ -293,12 +316,13 @@ static starg_status read_either_way(ply_reader *ply) {
 
 starg_status starg_ply_read(starg_mesh_builder *builder) {
     starg_status status = STARG_OK;
-    ply_reader ply = {
-        .builder = builder, .source = builder->source, .scan = starg_scan_make(builder->source)};
+    ply_reader ply = {.builder = builder,
+                      .source = builder->source,
+                      .base = builder->source->bytes,
+                      .scan = starg_scan_make(builder->source)};
     ply.scan.comments = false;
     STARG_TRY(starg_ply_read_header(&ply));
-    STARG_TRY(starg_builder_reserve(builder, starg_ply_find(&ply, PLY_VERTICES)->count,
-                                    starg_ply_find(&ply, PLY_FACES)->count));
+    STARG_TRY(starg_builder_reserve(builder, starg_ply_find(&ply, PLY_VERTICES)->count, 0));
     STARG_TRY(read_either_way(&ply));
 done:
     RELEASE(ply.elements.data, ply.properties.data, ply.names.data);

@@ -24,6 +24,10 @@ double conform_distance(const union_surface *surface, double merge);
  */
 starg_status surface_conform(union_surface *surface, double distance, conform_report *report);
 
+/* Gives flat patches of faces that have one outline, up to the distance, the same triangles
+ * (flush.c). Adds to *moved how far the surface may move. Errors: MEMORY. */
+starg_status surface_match_flush(union_surface *surface, double distance, double *moved);
+
 /* Has the mesh no open edge then? `merge` as above. Errors: MEMORY, CANCELLED, TIME. */
 starg_status conform_closes(starg_context *context, const starg_mesh *mesh, double merge,
                             bool *closed);

@@ -2,8 +2,8 @@
 /* The boundary of the union: cut, choose, round, check, and again where rounding has made faces
  * meet that did not.
  *
- * 0. What touches within rounding becomes shared (conform.c), if that is done with few new
- * vertices.
+ * 0. Flush polygons of one outline get the same triangles (flush.c). What touches within rounding
+ * becomes shared (conform.c), if that is done with few new vertices.
  * 1. Pairs of faces that meet away from common corners (contacts.c); without any, done.
  * 2. The surface is cut along what they share (arrangement.c).
  * 3. Triangles with a winding number below 1 in front and at least 1 behind stay (windings.c): the
@@ -299,6 +299,7 @@ starg_status union_of_mesh(starg_context *context, const starg_mesh *mesh, doubl
     starg_progress_begin(context, UNION_STAGE);
     STARG_TRY(union_surface_make(context, mesh, out));
     double distance = conform_distance(out, merge);
+    STARG_TRY(surface_match_flush(out, distance, &report->moved));
     while (!finished && union_face_count(out) > 0)
         STARG_TRY(run_round(out, distance, report, &finished));
 done:
