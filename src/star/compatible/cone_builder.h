@@ -30,7 +30,8 @@ typedef struct cone_builder {
     STARG_ARRAY(double) heights; /* per vertex, of the piece that is cut */
     region_scratch scratch;
     starg_rng rng;
-    size_t work; /* faces of pieces for which cuts were sought */
+    double balance; /* what a cut in the middle counts, beside what is seen */
+    size_t work;    /* faces of pieces for which cuts were sought */
 } cone_builder;
 
 /* A directed edge of a piece's boundary, and the triangle to its left. */

@@ -187,6 +187,7 @@ starg_status compatible_fill(starg_context *context, const double *const places[
     for (uint64_t round = 0; round<ROUNDS && * left> 0; round++) {
         cones_free(&b);
         b = (cone_builder){.context = context,
+                           .balance = (double)(round % 2),
                            .scratch = {.context = context},
                            .rng = starg_rng_make(context->seed, 3, round)};
         STARG_TRY(begin(&b, places, vertices, faces, count));

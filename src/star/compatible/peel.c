@@ -14,7 +14,8 @@
  *   - else it is a web about g (web.c);
  *   - in a blind place it is a fan about a point that sees the rim, flat or not, or one side.
  * That cut is taken after which most of both sides is seen from a point of each in blind places,
- * and that cuts off most; webs come last, for leaves that are star-shaped in the plane's place.
+ * and, in every other round, that cuts off most; webs come last, for leaves that are star-shaped in
+ * the plane's place.
  *
  * Invariants: those of cones.c. What rounding makes of the pieces is checked by exact signs, as of
  * all others.
@@ -346,7 +347,7 @@ static starg_status see_sides(peeling *m, uint32_t part, double *share, double *
                 *room = view.room;
         }
         if (all.area > 0)
-            *share += (all.seen + fmin(view.area, all.area - view.area)) / all.area;
+            *share += (all.seen + m->b->balance * fmin(view.area, all.area - view.area)) / all.area;
     }
     return STARG_OK;
 }
