@@ -28,9 +28,9 @@
 
 static const char STAGE[] = "cones";
 
-enum { ROUNDS = 12 };
+enum { ROUNDS = 8 };
 /* Of cuts of a piece; of triangles and of faces of cut pieces in a round, in times of the faces. */
-enum { ATTEMPTS_MOST = 3, GROWTH_MOST = 24, WORK_MOST = 12 };
+enum { ATTEMPTS_MOST = 3, GROWTH_MOST = 24, WORK_MOST = 30 };
 
 static starg_status begin(cone_builder *b, const double *const places[2], size_t vertices,
                           const uint32_t *faces, size_t count) {
