@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures maps and morphs between the 90 ordered pairs of ten plain star-shaped solids.
 
-usage: star_maps.py STARGUARD [--turned SEED] [--detail N] [--only WORD] [--balls N]
+usage: star_maps.py STARGUARD [--turned SEED] [--detail N] [--only WORD] [--balls N] [--animals VERTICES]
 
 The solids are those of tests/cli/star_solids.py. Each pair is mapped by `map --solid` and morphed by
 `morph --method solid`, both by default, and both results are verified against B. Columns: tetrahedra; pieces;
 mean and worst ratio of singular values; keys of the morph; whether `verify` accepts map and morph; processor
 seconds of `map` and of `morph`. --balls takes N random pairs of other plain solids without holes instead, trees
-of cubes, spiked prisms, combs and piles of rings, and maps only. A pair that is refused has the reason instead. The last row counts.
+of cubes, spiked prisms, combs and piles of rings, and maps only. --animals takes the 56 ordered pairs of eight samples
+of about so many vertices, and the same to the ball and the cube; median is the ratio that half of A's volume is below,
+and above 10 a share of that volume. A pair that is refused has the reason instead. The last row counts.
 """
 import argparse
 import itertools
@@ -21,6 +23,7 @@ import tempfile
 import morph
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tests", "cli"))
+import plain_solids as plain  # noqa: E402  pylint: disable=wrong-import-position
 import star_solids  # noqa: E402  pylint: disable=wrong-import-position
 
 
@@ -72,6 +75,55 @@ def measure_balls(program, folder, count):
     print(f"| {count} pairs | | | | | {held} | |")
 
 
+def array(text, name):
+    """The numbers of an array of MAP.vtu."""
+    return text.split(f'Name="{name}"', 1)[1].split(">", 1)[1].split("<", 1)[0].split()
+
+
+def median(file):
+    """The ratio of singular values that half of A's volume is below."""
+    with open(file, encoding="utf-8") as stream:
+        text = stream.read()
+    places = list(map(float, array(text, "Points")))
+    cells = list(map(int, array(text, "connectivity")))
+    sizes = []
+    for i, ratio in enumerate(map(float, array(text, "ratio"))):
+        a, u, v, w = (places[3 * c:3 * c + 3] for c in cells[4 * i:4 * i + 4])
+        u, v, w = ([x - y for x, y in zip(q, a)] for q in (u, v, w))
+        sizes.append((ratio, abs(plain.dot(u, plain.cross(v, w)))))
+    half = sum(size for _, size in sizes) / 2
+    for ratio, size in sorted(sizes):
+        half -= size
+        if half <= 0:
+            return ratio
+    return sizes[-1][0]
+
+
+def measure_animals(program, folder, vertices, only):
+    """All ordered pairs, and all to the ball and the cube."""
+    print("| pair | tetrahedra | pieces | median | above 10 | map | s |\n|---" + "|--:" * 4 + "|---|--:|")
+    files = {name: os.path.join(folder, f"{name}.off") for name in morph.SAMPLES}
+    for name, file in files.items():
+        morph.run(program, "sample", name, "--vertices", str(vertices), "-o", file)
+    out, counts = os.path.join(folder, "map.vtu"), {}
+    for a, b in [*itertools.permutations(files, 2), *itertools.product(files, ("ball", "cube"))]:
+        name = f"{a} to {b}"
+        if only not in name:
+            continue
+        models = [files[a], files[b]] if b in files else [files[a]]
+        words = models if b in files else [*models, "--to", b]
+        mapped, reason, holds, seconds = attempt(program, models, out, "map", "--solid", *words, "-o", out)
+        row = ["", "", "", ""]
+        if mapped is not None:
+            row = [mapped["tetrahedra"], mapped["pieces"], f"{median(out):.3g}", f"{mapped['distortion']['above_10']:.2f}"]
+        kind = counts.setdefault(b if b not in files else "pairs", [0, 0])
+        kind[0] += 1
+        kind[1] += holds
+        print(f"| {name} | " + " | ".join(map(str, [*row, reason, f"{seconds:.1f}"])) + " |", flush=True)
+    for kind, (count, held) in counts.items():
+        print(f"| {count} {kind} | | | | | {held} | |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("starguard")
@@ -79,10 +131,14 @@ def main():
     parser.add_argument("--detail", type=int, default=1, help="finer round solids")
     parser.add_argument("--only", default="", help="pairs whose names hold this word")
     parser.add_argument("--balls", type=int, help="so many random pairs of other plain solids")
+    parser.add_argument("--animals", type=int, help="pairs of samples with about so many vertices instead")
     arguments = parser.parse_args()
-    if arguments.balls is not None:
+    if arguments.balls is not None or arguments.animals is not None:
         with tempfile.TemporaryDirectory() as folder:
-            measure_balls(arguments.starguard, folder, arguments.balls)
+            if arguments.balls is not None:
+                measure_balls(arguments.starguard, folder, arguments.balls)
+            else:
+                measure_animals(arguments.starguard, folder, arguments.animals, arguments.only)
         return
     rng = random.Random(arguments.turned) if arguments.turned is not None else None
     print("| pair | tetrahedra | pieces | mean | worst | keys | map | morph | s | s |")

@@ -279,7 +279,8 @@ static starg_status read_inputs(cli_session *session, inputs *given) {
                                 session->operands[i]);
         }
     }
-    if (paired && given->target == NULL)
+    bool shape = last == 1 && given->results[1] != NULL && given->results[1]->solid_map != NULL;
+    if (paired && given->target == NULL && !shape)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "maps and morphs are of two models: verify A B %.200s",
                         session->operands[last]);
@@ -479,7 +480,7 @@ static starg_status verify_solid_map(cli_session *session, const model *given, c
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)map->count));
     cli_put(session, entry, "pieces", json_integer((json_int_t)map->piece_count));
     tell_verdict(session, session->operands[operand], verdict,
-                 from->target == NULL ? "tetrahedra fill A"
+                 from->target == NULL ? "tetrahedra fill A and a ball or a cube, one to one"
                  : map->compared      ? "tetrahedra fill A, and end near B as told"
                                       : "tetrahedra fill A and B, one to one",
                  entry, to);
@@ -572,9 +573,9 @@ const cli_command cli_command_verify = {
         "its directions or its overlay, exactly, and meet its landmarks; and the folder of "
         "'starguard morph', whose first and last frames must be A and B. With 'morph --report' "
         "crossings, volumes and areas of all frames are checked as well.\n"
-        "MAP.vtu of 'starguard map --solid', behind A and B: tetrahedra are positive in both and "
-        "fill "
-        "both, pieces are star-shaped in both, and no tetrahedron of a morph is ever inverted.",
+        "MAP.vtu of 'starguard map --solid', behind A and B (behind A alone for a ball or a cube): "
+        "tetrahedra are positive in both and fill both, pieces are star-shaped in both, and no "
+        "tetrahedron of a morph is ever inverted.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
                 "# and that no fewer guards would do, wherever they stand\n"

@@ -265,10 +265,11 @@ STARG_API void starg_solid_map_free(starg_context *context, starg_solid_map *map
  * both, their boundary is the surface of A there and that of B here, each covered once, so that
  * they fill both without overlap and the map is a homeomorphism; the pieces are star-shaped about
  * their guards in both, and the distortion is as stated. Models are taken as read (inward shells
- * are reversed). B may be NULL: then nothing is claimed about the surface of the images but that it
- * does not cross itself. Where a map tells how far its end is from B, that is checked instead of
- * the same surface. Errors: ARGUMENT (an index out of range), RANGE, MESH (a model is not closed
- * and oriented), MEMORY, CANCELLED; a false claim is not an error. */
+ * are reversed). B may be NULL: then A's vertices go to the sphere of radius 1 or to the surface of
+ * the cube of edge 2, about the origin, and A's faces with these corners are B. Where a map tells
+ * how far its end is from B, that is checked instead of the same surface. Errors: ARGUMENT (an
+ * index out of range), RANGE, MESH (a model is not closed and oriented), MEMORY, CANCELLED; a false
+ * claim is not an error. */
 STARG_API starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
                                               const starg_mesh *b, const starg_solid_map *map,
                                               starg_verdict **out);

@@ -84,12 +84,12 @@ static starg_status unfold_at_end(const starg_morph *m, deform_mesh *c, size_t *
     return STARG_OK;
 }
 
-static starg_status fail_inverted(const deform_mesh *c, size_t inverted) {
-    return starg_fail(c->context, STARG_ERROR_MESH, STAGE,
+static starg_status fail_inverted(starg_context *context, size_t all, size_t inverted) {
+    return starg_fail(context, STARG_ERROR_MESH, STAGE,
                       "%zu of %zu tetrahedra stay inverted in B: A's surface folds too much in B; "
                       "a finer A (--density, or more vertices), another map of the surfaces or "
                       "landmarks may do",
-                      inverted, c->tetrahedra.count / 4);
+                      inverted, all);
 }
 
 /* Along a morph, or at once, to B itself. */
@@ -108,7 +108,9 @@ static starg_status spread(const starg_morph *m, deform_mesh *c, size_t *inverte
 static starg_status spread_exactly(const starg_morph *m, deform_mesh *c) {
     size_t inverted;
     starg_status status = spread(m, c, &inverted);
-    return status == STARG_OK && inverted > 0 ? fail_inverted(c, inverted) : status;
+    return status == STARG_OK && inverted > 0
+               ? fail_inverted(c->context, c->tetrahedra.count / 4, inverted)
+               : status;
 }
 
 static starg_status make_morph(starg_context *context, const starg_mesh *a, const double *images,
@@ -133,7 +135,7 @@ static starg_status image_meets_itself(const starg_mesh *a, const deform_mesh *c
 
 static starg_status fail_nearly(const deform_mesh *c, const approach_result *off) {
     if (off->inverted > 0)
-        return fail_inverted(c, off->inverted);
+        return fail_inverted(c->context, c->tetrahedra.count / 4, off->inverted);
     if (off->farthest > MOST_OFF)
         return starg_fail(
             c->context, STARG_ERROR_MESH, STAGE,
@@ -328,30 +330,89 @@ static starg_status check_options(starg_context *context, const starg_solid_map_
     return fields_check(context, STAGE, starg_solid_map_options_fields(), *options);
 }
 
-/* How near the images must be met: there, or near them if the surface folds. */
-typedef enum ending { ENDS_THERE, ENDS_NEAR } ending;
+/* Pieces of cones. The last vertices see one piece each. */
+typedef struct cone_labels {
+    uint32_t *labels; /* per tetrahedron; NULL: there are none */
+    size_t count;
+} cone_labels;
+
+/* Pieces that are star-shaped in both ends, if they are found. */
+static starg_status spread_pieces(const starg_mesh *divided, const double *images, deform_mesh *c,
+                                  cone_labels *out) {
+    starg_status status = STARG_OK;
+    const double *const places[2] = {divided->vertices, images};
+    compatible_cones cones = {0};
+    size_t left;
+    STARG_TRY(compatible_fill(c->context, places, divided->vertex_count, divided->faces,
+                              divided->face_count, &cones, &left));
+    if (left > 0)
+        goto done;
+    c->fixed = cones.surface_count;
+    for (size_t i = 0; i < 3 * cones.vertex_count; i++) {
+        STARG_PUSH(c->context, STAGE, &c->rest, cones.places[0][i]);
+        STARG_PUSH(c->context, STAGE, &c->now, cones.places[1][i]);
+    }
+    for (size_t i = 0; i < 4 * cones.count; i++)
+        STARG_PUSH(c->context, STAGE, &c->tetrahedra, cones.tetrahedra[i]);
+    *out = (cone_labels){cones.labels, cones.piece_count};
+    cones.labels = NULL;
+done:
+    compatible_cones_free(c->context, &cones);
+    return status;
+}
+
+/* Less distortion, and pieces; releases the labels. */
+static starg_status finish_spread(deform_mesh *c, cone_labels *cones, size_t steps,
+                                  starg_solid_map **out) {
+    SCOPED uint32_t *labels = cones->labels;
+    cones->labels = NULL;
+    TRY(relax(c, steps));
+    return labels != NULL ? solid_map_finish_cones(c->context, c, labels, cones->count, out)
+                          : solid_map_finish(c->context, c, true, out);
+}
+
+/* How near the images must be met: there, or near them if the surface folds. A shape is seen from
+ * the origin, so that cones in pieces do where descent fails. */
+typedef enum ending { ENDS_THERE, ENDS_NEAR, ENDS_IN_SHAPE } ending;
+
+/* To the images, by descent or by cones. */
+static starg_status spread_or_cut(const starg_morph *m, const starg_mesh *a, const double *images,
+                                  ending wanted, deform_mesh *c, cone_labels *cones) {
+    size_t inverted, count;
+    TRY(solids_check_last(m));
+    TRY(spread(m, c, &inverted));
+    count = c->tetrahedra.count / 4;
+    if (inverted > 0 && wanted == ENDS_IN_SHAPE) {
+        SCOPED_BY(deform_free) deform_mesh other = {.context = c->context};
+        TRY(spread_pieces(a, images, &other, cones));
+        const deform_mesh former = *c;
+        *c = other;
+        other = former;
+    }
+    return inverted == 0 || cones->labels != NULL ? STARG_OK
+                                                  : fail_inverted(c->context, count, inverted);
+}
 
 /* Both ends have A's faces. */
 static starg_status make_map(starg_context *context, const starg_mesh *a, const double *images,
-                             starg_morph_method method, ending wanted,
-                             const starg_solid_map_options *options, starg_solid_map **out) {
+                             ending wanted, const starg_solid_map_options *options,
+                             starg_solid_map **out) {
     starg_solid_map_options defaults;
     SCOPED_BY(starg_morph_drop) starg_morph *m = NULL;
     SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
     SCOPED uint32_t *surface = NULL;
     approach_result off = {0};
+    cone_labels cones = {0};
     SCOPED_BY(deform_free) deform_mesh c = {.context = context};
     TRY(check_options(context, &options, &defaults));
-    TRY(make_morph(context, a, images, method, &m));
+    TRY(make_morph(context, a, images,
+                   wanted == ENDS_IN_SHAPE ? STARG_MORPH_LINEAR : STARG_MORPH_ARAP, &m));
     TRY(solids_fill_first(m, options->density, &c, &solid, &surface));
-    if (wanted == ENDS_NEAR) {
+    if (wanted == ENDS_NEAR)
         TRY(spread_or_approach(m, &c, &off));
-    } else {
-        TRY(solids_check_last(m));
-        TRY(spread_exactly(m, &c));
-    }
-    TRY(relax(&c, options->steps));
-    TRY(solid_map_finish(context, &c, true, out));
+    else
+        TRY(spread_or_cut(m, a, images, wanted, &c, &cones));
+    TRY(finish_spread(&c, &cones, options->steps, out));
     (*out)->strayed = off.strayed;
     (*out)->farthest = off.farthest;
     return STARG_OK;
@@ -362,7 +423,7 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
                                     starg_solid_map **out) {
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = make_map(context, a, images, STARG_MORPH_ARAP, ENDS_NEAR, options, out);
+    starg_status status = make_map(context, a, images, ENDS_NEAR, options, out);
     starg_time_end(context, former);
     return status;
 }
@@ -397,7 +458,7 @@ static starg_status spread_overlay(starg_context *context, const starg_mesh *a, 
     STARG_TRY(solids_check_last(last));
     STARG_TRY(unfold_at_end(last, c, &inverted));
     if (inverted > 0)
-        status = fail_inverted(c, inverted);
+        status = fail_inverted(c->context, c->tetrahedra.count / 4, inverted);
 done:
     starg_morph_free(first);
     starg_morph_free(last);
@@ -405,37 +466,6 @@ done:
     starg_solid_free(solid);
     RELEASE(images, surface);
     c->surface = NULL;
-    return status;
-}
-
-/* Pieces of cones. The last vertices see one piece each. */
-typedef struct cone_labels {
-    uint32_t *labels; /* per tetrahedron; NULL: there are none */
-    size_t count;
-} cone_labels;
-
-/* Pieces that are star-shaped in both ends, if they are found. */
-static starg_status spread_pieces(const starg_mesh *divided, const double *images, deform_mesh *c,
-                                  cone_labels *out) {
-    starg_status status = STARG_OK;
-    const double *const places[2] = {divided->vertices, images};
-    compatible_cones cones = {0};
-    size_t left;
-    STARG_TRY(compatible_fill(c->context, places, divided->vertex_count, divided->faces,
-                              divided->face_count, &cones, &left));
-    if (left > 0)
-        goto done;
-    c->fixed = cones.surface_count;
-    for (size_t i = 0; i < 3 * cones.vertex_count; i++) {
-        STARG_PUSH(c->context, STAGE, &c->rest, cones.places[0][i]);
-        STARG_PUSH(c->context, STAGE, &c->now, cones.places[1][i]);
-    }
-    for (size_t i = 0; i < 4 * cones.count; i++)
-        STARG_PUSH(c->context, STAGE, &c->tetrahedra, cones.tetrahedra[i]);
-    *out = (cone_labels){cones.labels, cones.piece_count};
-    cones.labels = NULL;
-done:
-    compatible_cones_free(c->context, &cones);
     return status;
 }
 
@@ -491,17 +521,12 @@ static starg_status make_overlay(starg_context *context, const starg_mesh *a, co
         goto done;
     }
     if (divides_nothing(&map->overlay, a, b))
-        return make_map(context, a, b->vertices, STARG_MORPH_ARAP, ENDS_THERE, options, out);
+        return make_map(context, a, b->vertices, ENDS_THERE, options, out);
     STARG_TRY(spread_cones(context, a, b, map, &c, &cones));
     if (cones.labels == NULL)
         STARG_TRY(spread_overlay(context, a, b, map, options->density, &c));
-    STARG_TRY(relax(&c, options->steps));
-    if (cones.labels != NULL)
-        STARG_TRY(solid_map_finish_cones(context, &c, cones.labels, cones.count, out));
-    else
-        STARG_TRY(solid_map_finish(context, &c, true, out));
+    STARG_TRY(finish_spread(&c, &cones, options->steps, out));
 done:
-    starg_release(context, cones.labels);
     deform_free(&c);
     return status;
 }
@@ -524,5 +549,5 @@ starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,
     *out = NULL;
     TIME_RULE(context, STARG_TIME_FAILS);
     TRY(solid_map_shape(context, a, shape, &images));
-    return make_map(context, a, images, STARG_MORPH_LINEAR, ENDS_THERE, options, out);
+    return make_map(context, a, images, ENDS_IN_SHAPE, options, out);
 }

@@ -5,6 +5,8 @@
  * as a decomposition is (verify/pieces.c): tetrahedra are positive and conforming, and their
  * boundary is the model's surface, covered once. In addition that boundary does not cross itself
  * and winds once around its inside. A map that tells how far its end is from B is checked for that.
+ * Without B, A's vertices must go to the unit sphere or to the cube's surface, and the polyhedron
+ * with A's faces and these corners takes B's place.
  * So the tetrahedra fill either solid without overlap; the map is linear on each and the same on
  * common faces: a piecewise linear homeomorphism. Labels are shared, so that a piece corresponds to
  * itself, and its two guards prove it star-shaped in both.
@@ -12,11 +14,14 @@
  * Cost: twice that of a decomposition. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "verify/pieces.h"
 
 static const char STAGE[] = "verify";
-static const double VOLUME = 1e-9; /* relative: what volumes may differ by */
+static const double VOLUME = 1e-9;      /* relative: what volumes may differ by */
+static const double ROUNDING = 0x1p-48; /* of a squared radius */
 
 /* A map seen from one of its ends. */
 typedef struct end {
@@ -92,6 +97,81 @@ static starg_status claim_pieces(const end *e) {
     return STARG_OK;
 }
 
+/* ---- balls and cubes ---- */
+
+/* A's vertices and those of the map, by place. */
+typedef struct placed {
+    double at[3];
+    uint32_t vertex;
+} placed;
+
+static int by_place(const void *left, const void *right) {
+    const placed *p = left, *q = right;
+    for (int k = 0; k < 3; k++)
+        if (p->at[k] != q->at[k])
+            return p->at[k] < q->at[k] ? -1 : 1;
+    return 0;
+}
+
+/* The images of A's vertices; those that have none are counted. */
+static starg_status find_images(starg_context *context, const starg_mesh *a,
+                                const starg_solid_map *map, double *images, size_t *missing,
+                                size_t *first) {
+    SCOPED placed *all = NULL;
+    NEW(context, STAGE, all, map->vertex_count);
+    for (uint32_t v = 0; v < map->vertex_count; v++) {
+        memcpy(all[v].at, map->vertices + 3 * (size_t)v, sizeof all[v].at);
+        all[v].vertex = v;
+    }
+    qsort(all, map->vertex_count, sizeof *all, by_place);
+    for (size_t v = starg_mesh_vertex_count(a); v-- > 0;) {
+        placed key = {.vertex = 0};
+        memcpy(key.at, starg_mesh_vertices(a) + 3 * v, sizeof key.at);
+        const placed *found = bsearch(&key, all, map->vertex_count, sizeof key, by_place);
+        if (found == NULL) {
+            ++*missing;
+            *first = v;
+        } else {
+            memcpy(images + 3 * v, map->images + 3 * (size_t)found->vertex, sizeof key.at);
+        }
+    }
+    return STARG_OK;
+}
+
+/* Are the images on the sphere of radius 1, up to rounding, or on the cube of edge 2? */
+static void claim_inscribed(starg_verdict *verdict, const double *images, size_t count) {
+    size_t off[2] = {0, 0}, first[2] = {0, 0};
+    for (size_t v = count; v-- > 0;) {
+        const double *p = images + 3 * v;
+        bool on[2] = {fabs(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 1) <= ROUNDING,
+                      fmax(fmax(fabs(p[0]), fabs(p[1])), fabs(p[2])) == 1};
+        for (int shape = 0; shape < 2; shape++)
+            if (!on[shape]) {
+                off[shape]++;
+                first[shape] = v;
+            }
+    }
+    int shape = off[1] < off[0];
+    verify_claim_all(verdict, off[shape], first[shape],
+                     shape == 0 ? "in B A's vertices are on the sphere of radius 1 about the origin"
+                                : "in B A's vertices are on the cube of edge 2 about the origin");
+}
+
+/* The polyhedron that takes the place of B; NULL if it cannot be told. */
+static starg_status inscribe(starg_context *context, const starg_mesh *a,
+                             const starg_solid_map *map, starg_verdict *verdict, starg_mesh **out) {
+    SCOPED double *corners = NULL;
+    size_t missing = 0, first = 0, count = starg_mesh_vertex_count(a);
+    NEW(context, STAGE, corners, 3 * count);
+    TRY(find_images(context, a, map, corners, &missing, &first));
+    verify_claim_all(verdict, missing, first, "A's vertices are vertices of the map");
+    if (missing > 0)
+        return STARG_OK;
+    claim_inscribed(verdict, corners, count);
+    return starg_mesh_create(context, corners, count, starg_mesh_faces(a), starg_mesh_face_count(a),
+                             out);
+}
+
 /* By how much the solid B is larger than the tetrahedra. */
 static void claim_missing(end *e, const starg_solid_map *map) {
     verify_volume filled = {0}, solid = {0};
@@ -119,7 +199,7 @@ static starg_status claim_surface(end *e, const starg_solid_map *map) {
     if (!near)
         TRY(verify_claim_once(&e->own));
     if (e->model == NULL) {
-        verify_leave(e->own.verdict, "the surface: there is no model");
+        verify_leave(e->own.verdict, "the surface: A's vertices are not all there");
         return STARG_OK;
     }
     TRY(verify_surface_create(e->own.context, e->model, &surface));
@@ -202,6 +282,7 @@ starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
                                     starg_verdict **out) {
     starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
+    starg_mesh *polyhedron = NULL;
     end ends[2] = {{.model = a}, {.model = b}};
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
@@ -209,6 +290,10 @@ starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
         STARG_TRY(take_end(context, map, &ends[side], side));
     STARG_TRY(check_keys(context, map));
     STARG_TRY(verify_verdict_create(context, &verdict));
+    if (b == NULL)
+        STARG_TRY(inscribe(context, a, map, verdict, &polyhedron));
+    if (polyhedron != NULL)
+        ends[1].model = polyhedron;
     for (int side = 0; side < 2; side++)
         STARG_TRY(claim_end(&ends[side], map, verdict));
     claim_distortion(verdict, map, ends);
@@ -218,6 +303,7 @@ starg_status starg_verify_solid_map(starg_context *context, const starg_mesh *a,
     verdict = NULL;
 done:
     starg_time_end(context, former);
+    starg_mesh_free(polyhedron);
     for (int side = 0; side < 2; side++)
         free_end(context, &ends[side]);
     starg_verdict_free(context, verdict);

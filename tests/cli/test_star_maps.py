@@ -17,6 +17,11 @@ def array(text, name):
     return text.split(f'Name="{name}"', 1)[1].split(">", 1)[1].split("<", 1)[0].split()
 
 
+def lines(numbers):
+    """As MAP.vtu has points."""
+    return [" ".join(numbers[i:i + 3]) for i in range(0, len(numbers), 3)]
+
+
 def points(text, name):
     values = [Fraction(float(x)) for x in array(text, name)]
     return [values[i:i + 3] for i in range(0, len(values), 3)]
@@ -50,7 +55,8 @@ class StarMaps(Case):
             places = points(text.split("<Points>")[1] if name == "" else text, name or "Points")
             sizes = [six_volumes(places, cell) for cell in cells]
             self.assertGreater(min(sizes), 0)
-            self.assertAlmostEqual(float(sum(sizes) / 6 / volume(solid)), 1, 12)
+            if solid is not None:
+                self.assertAlmostEqual(float(sum(sizes) / 6 / volume(solid)), 1, 12)
 
     def test_maps(self):
         """All ordered pairs: one piece, B itself."""
@@ -103,6 +109,29 @@ class StarMaps(Case):
             self.run_text("verify", "a.off", "b.off", "m.vtu")
             if report["tetrahedra"] < 1000:
                 self.fills("m.vtu", solids["a"], solids["b"])
+
+    @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
+    def test_shapes(self):
+        """To a ball and a cube: A's vertices are on them, and verify sees where one is not."""
+        stairs = star_solids.blocks([(x, y, 0) for x in range(3) for y in range(x + 1)])
+        star_solids.write(self.path("stairs.off"), stairs)
+        for shape in "ball", "cube":
+            self.run_json("map", "--solid", "stairs.off", "--to", shape, "-o", "m.vtu")
+            out, _ = self.run_text("verify", "stairs.off", "m.vtu", "--verbose")
+            self.assertIn("on the sphere of radius 1" if shape == "ball" else "on the cube of edge 2", out)
+            text = self.read("m.vtu").decode()
+            self.fills("m.vtu", stairs, None)
+            images, places = array(text, "image"), array(text.split("<Points>")[1], "Points")
+            corner = [float(x) for x in stairs[0][0]]
+            first = next(v for v in range(len(places) // 3) if list(map(float, places[3 * v:3 * v + 3])) == corner)
+            inward = [repr(float(x) * 0.999) for x in images[3 * first:3 * first + 3]]
+            forged = [*images[:3 * first], *inward, *images[3 * first + 3:]]
+            self.write("forged.vtu", text.replace("\n".join(lines(images)), "\n".join(lines(forged))))
+            self.assertNotEqual(self.read("forged.vtu").decode(), text)
+            out, _ = self.run_text("verify", "stairs.off", "forged.vtu", status=4)
+            self.assertIn("A's vertices are on the", out)
+        self.run_json("map", "--solid", "stairs.off", "stairs.off", "-o", "m.vtu")
+        self.run_text("verify", "stairs.off", "m.vtu", status=4)
 
     @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
     def test_connectivity(self):

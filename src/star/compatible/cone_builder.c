@@ -253,17 +253,17 @@ static int by_start(const void *left, const void *right) {
 
 typedef STARG_ARRAY(cut_step) step_list;
 
-/* The way through a triangle that is crossed: in where it goes down, out where it goes up. */
+/* The way through a triangle that is crossed: in by the edge that goes down, out by the one that
+ * goes up, so that what is above is on the left. */
 static cut_step step_through(const uint32_t corners[3], const double *heights) {
     cut_step step = {{{NOWHERE, NOWHERE, 0}, {NOWHERE, NOWHERE, 0}}};
     for (int k = 0; k < 3; k++) {
         uint32_t u = corners[k], v = corners[(k + 1) % 3], w = corners[(k + 2) % 3];
         double p = heights[u], q = heights[v];
-        /* with what is above on the left, the cut leaves by the edge that goes down */
         if (p * q < 0)
-            step.nodes[p > 0] = (cut_node){u, v, p / (p - q)};
+            step.nodes[p < 0] = (cut_node){u, v, p / (p - q)};
         else if (q == 0 && p * heights[w] < 0)
-            step.nodes[p > 0] = (cut_node){v, NOWHERE, 0};
+            step.nodes[p < 0] = (cut_node){v, NOWHERE, 0};
     }
     return step;
 }

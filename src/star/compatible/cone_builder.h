@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pieces bounded by triangles that lie in two places at once (cones.c cuts them, peel.c peels
- * them). */
+/* Pieces bounded by triangles that lie in two places at once (cones.c divides them, peel.c makes
+ * the cuts). */
 #pragma once
 
 #include "core/context.h"
@@ -30,8 +30,8 @@ typedef struct cone_builder {
     STARG_ARRAY(double) heights; /* per vertex, of the piece that is cut */
     region_scratch scratch;
     starg_rng rng;
-    size_t work;   /* faces of pieces for which cuts were sought, in all rounds */
-    int first_end; /* the place in which pieces without a kernel in either are cut first */
+    double balance; /* what a cut in the middle counts, beside what is seen */
+    size_t work;    /* faces of pieces for which cuts were sought */
 } cone_builder;
 
 /* A directed edge of a piece's boundary, and the triangle to its left. */

@@ -28,8 +28,9 @@
 
 static const char STAGE[] = "cones";
 
-enum { ROUNDS = 6, WORK_MOST = 200000 };
-enum { ATTEMPTS_MOST = 16, GROWTH_MOST = 24 }; /* of cuts of a piece; of triangles, in times */
+enum { ROUNDS = 8 };
+/* Of cuts of a piece; of triangles and of faces of cut pieces in a round, in times of the faces. */
+enum { ATTEMPTS_MOST = 3, GROWTH_MOST = 24, WORK_MOST = 30 };
 
 static starg_status begin(cone_builder *b, const double *const places[2], size_t vertices,
                           const uint32_t *faces, size_t count) {
@@ -77,7 +78,8 @@ static starg_status prove(cone_builder *b, uint32_t which, number_list *faces) {
 /* Cuts until all are done (*left is 0) or one resists. */
 static starg_status cut_all(cone_builder *b, size_t *left) {
     SCOPED number_list faces = {0};
-    size_t most = GROWTH_MOST * (b->corners.count / 3);
+    size_t count = b->corners.count / 3, most = GROWTH_MOST * count;
+    size_t work_most = b->work + WORK_MOST * count;
     bool again = true;
     while (again) {
         again = false;
@@ -85,7 +87,8 @@ static starg_status cut_all(cone_builder *b, size_t *left) {
             while (!b->pieces.data[p].done) {
                 int blind;
                 *left = 1;
-                if (b->pieces.data[p].attempts == ATTEMPTS_MOST || b->corners.count / 3 > most)
+                if (b->pieces.data[p].attempts == ATTEMPTS_MOST || b->corners.count / 3 > most ||
+                    b->work > work_most)
                     return STARG_OK;
                 TRY(starg_check_cancel(b->context, STAGE));
                 TRY(cones_list_faces(b, p, &faces));
@@ -181,12 +184,10 @@ starg_status compatible_fill(starg_context *context, const double *const places[
     cone_builder b = {.context = context};
     *out = (compatible_cones){0};
     *left = 1;
-    for (uint64_t round = 0; round<ROUNDS && * left> 0 && b.work < WORK_MOST; round++) {
-        size_t work = b.work;
+    for (uint64_t round = 0; round<ROUNDS && * left> 0; round++) {
         cones_free(&b);
         b = (cone_builder){.context = context,
-                           .work = work,
-                           .first_end = (int)(round & 1),
+                           .balance = (double)(round % 2),
                            .scratch = {.context = context},
                            .rng = starg_rng_make(context->seed, 3, round)};
         STARG_TRY(begin(&b, places, vertices, faces, count));
