@@ -90,8 +90,11 @@ static double next_closing(const search *s, search_phase phase, int k, uint64_t 
 /* A phase closes several times, and proofs at their end. */
 static starg_status run_phase(search *s, search_phase phase, uint64_t work) {
     const uint64_t begun = s->effort.work;
+    const double extent = cell_length(&s->cells.data[0].box), guards = (double)s->best.guards.count;
     double share = 0;
     bool ended, better, more = phase == PHASE_IMPROVE || !is_met(s);
+    if (phase == PHASE_PROVE)
+        duals_set_finest(&s->duals, extent * FIRST_FINEST / guards);
     for (int k = 0; more; k++) {
         share = next_closing(s, phase, k, work);
         TRY(run_rounds(s, phase, begun, work, share, &ended));
@@ -103,44 +106,35 @@ static starg_status run_phase(search *s, search_phase phase, uint64_t work) {
     return STARG_OK;
 }
 
-/* Where local search gives up early and the effort is to be the best, cells show where else guards
- * may stand: a proof begins, with what is left of the budget. Tests of boxes take longer in larger
- * models, so that there are fewer; where guards are few, one fewer is worth more. */
+/* Tests of boxes take longer in larger models, so that there are fewer; where guards are few, one
+ * fewer is worth more. */
 static double most_cell_work(const search *s) {
     double most = MOST_CELL_WORK * pow(fmin(1, EASY_COLUMNS / (double)s->pool->columns), 5);
     return most * fmax(1, MANY_GUARDS / (double)s->best.guards.count);
 }
 
-static starg_status run_proof(search *s, uint64_t work) {
-    const double extent = cell_length(&s->cells.data[0].box);
-    duals_set_finest(&s->duals, extent * FIRST_FINEST / (double)s->best.guards.count);
-    return run_phase(s, PHASE_PROVE, work);
-}
-
-/* Better guards: by local search, then by cells, or at least by integer programs. */
-static starg_status improve(search *s) {
-    const starg_guard_options *o = s->problem->options;
-    const uint64_t begun = s->effort.work, work = search_improve_work(s);
-    const double most = most_cell_work(s);
-    bool better;
-    TRY(run_phase(s, PHASE_IMPROVE, work));
-    double left = (double)work - (double)(s->effort.work - begun);
-    return o->prove || guard_is_brief(o) || is_met(s) || !(left > 0)
-               ? search_close(s, &better)
-               : run_proof(s, (uint64_t)fmin(left, most));
-}
-
-/* All phases. *improving: the work for better guards. */
+/* All phases. Where local search gives up early and the effort is to be the best, cells show where
+ * else guards may stand: a proof begins, with what is left of the budget. *improving: the work for
+ * better guards. */
 static starg_status run(search *s, bool improves, uint64_t *improving) {
     const starg_guard_options *o = s->problem->options;
     s->effort.nodes = FEW_NODES;
-    if (improves)
-        TRY(improve(s));
+    if (improves) {
+        const double most = most_cell_work(s);
+        const uint64_t begun = s->effort.work, work = search_improve_work(s);
+        bool better;
+        TRY(run_phase(s, PHASE_IMPROVE, work));
+        const double left = (double)work - (double)(s->effort.work - begun);
+        if (o->prove || guard_is_brief(o) || is_met(s) || !(left > 0))
+            TRY(search_close(s, &better));
+        else
+            TRY(run_phase(s, PHASE_PROVE, (uint64_t)fmin(left, most)));
+    }
     *improving = s->effort.work;
     s->effort.nodes = MANY_NODES;
     if (o->prove) {
         double work = (double)o->prove_work / search_scene_unit(&s->witnesses.scene);
-        TRY(run_proof(s, (uint64_t)work));
+        TRY(run_phase(s, PHASE_PROVE, (uint64_t)work));
         TRY(search_prove_by_leaves(s));
     }
     return is_met(s) ? STARG_OK : search_prove_by_prices(s);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The parts of a search over every point (guard/search.c). Each is written by one file alone,
- * through the functions here that take it without const; work is counted where it is done. Steps
- * change several parts, and take the whole search. */
+/* The parts of a search over every point (guard/search.c). Each is written by one file, through the
+ * functions here that take it without const; work is counted where it is done. Steps change several
+ * parts, and take the whole search. What returns a status fails with MEMORY or CANCELLED. */
 #ifndef STARG_GUARD_SEARCH_PARTS_H
 #define STARG_GUARD_SEARCH_PARTS_H
 
 #include "core/rng.h"
-#include "guard/bound.h"
 #include "guard/cells.h"
+#include "guard/prices.h"
 #include "guard/stages.h"
 
 /* By how much points may exceed 1 all the same. */
@@ -31,26 +31,25 @@ typedef struct witness_set {
     uint64_t *viewers;  /* by column: an identifier of the set of them */
 } witness_set;
 
-/* Opens the scene, without witnesses; columns need what `chosen` see. Errors: MEMORY. */
+/* Opens the scene, without witnesses; columns need what `chosen` see. */
 starg_status witness_set_begin(const guard_problem *problem, const guard_pool *pool,
                                const guard_selection *selection, witness_set *out);
 void witness_set_end(witness_set *set);
 
-/* The faces that the fewest candidates see become witnesses. Errors: MEMORY, CANCELLED. */
+/* The faces that the fewest candidates see become witnesses. */
 starg_status search_first_witnesses(search *s);
 
 /* ---- point set: where guards may stand (guard/search_points.c, with guard/search_scene.h) ---- */
 
-/* Candidates, and the medial axis unless they stand there, views are cones, or time does not
- * suffice. Errors: MEMORY. */
+/* Candidates, and the medial axis unless they stand there, views are cones, or time is short. */
 starg_status points_begin(const guard_problem *problem, const guard_detail *detail,
                           const guard_pool *pool, search_points *points);
 
-/* Turns points into candidates, with full visibility rows. Errors: MEMORY, CANCELLED. */
+/* Turns points into candidates, with full visibility rows. */
 starg_status points_hold(const search_scene *scene, const uint32_t *chosen, size_t count,
                          search_points *points, guard_pool *pool, uint64_t *work);
 
-/* Tests all against the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
+/* Tests all against the witnesses from `first` on. */
 starg_status points_look(const search_scene *scene, const guard_pool *pool, size_t first,
                          search_points *points, uint64_t *work);
 
@@ -67,11 +66,6 @@ typedef struct row_list {
 
 #define ROW_LEAF UINT32_C(0x80000000)
 
-/* Does a row of the list hold what this one holds of these witnesses? */
-bool row_list_holds(const row_list *list, const witness_row *row, const witness_row *among);
-void row_list_add(row_list *list, const witness_row *row, size_t name);
-void row_list_free(row_list *list);
-
 typedef struct search_duals {
     const witness_set *witnesses; /* what has prices, */
     const search_points *points;  /* and what they are found from */
@@ -85,8 +79,12 @@ typedef struct search_duals {
     unsigned refinements; /* rounds in which such leaves held the prices down */
 } search_duals;
 
-/* A list with room for two rows of each point and one of each cell. Errors: MEMORY. */
+/* A list has room for two rows of each point and one of each cell. Does a row of it hold what this
+ * one holds of these witnesses? */
 starg_status row_list_make(const search_duals *d, row_list *out);
+void row_list_add(row_list *list, const witness_row *row, size_t name);
+bool row_list_holds(const row_list *list, const witness_row *row, const witness_row *among);
+void row_list_free(row_list *list);
 
 /* Lower bound on the points that see all witnesses often enough. */
 static inline double duals_value(const search_duals *d) {
@@ -107,27 +105,23 @@ static inline bool duals_leave_room(const search_duals *d, size_t guards) {
 double duals_of_best_point(const search_duals *d);
 
 /* Prices of maximal sum by which no point and no fine leaf exceeds 1; the list receives the rows of
- * their program, a subset of all. `prices.work` is that of all programs it took. Errors: MEMORY. */
+ * their program, a subset of all. `prices.work` is that of all programs it took. */
 starg_status duals_find(search_duals *d, row_list *list, uint64_t *work);
 
 /* Odd sets of which the fractional cover by the list holds too little get prices (at first 0), if
- * the prices have changed since the last time, and a few times in a row. *changed: there are some.
- * Errors: MEMORY. */
+ * prices have changed since the last time, and a few times in a row. *changed: there are some. */
 starg_status duals_find_odd(search_duals *d, const row_list *list, bool *changed, uint64_t *work);
 
-/* From now on, leaves no longer than this count as points. */
+/* From now on, leaves no longer than this count as points. Do such leaves hold the prices down?
+ * *others: is it the turn of other means than smaller ones? */
 void duals_set_finest(search_duals *d, double finest);
-
-/* Do such leaves hold the prices down? *others: is it the turn of other means than smaller ones? */
 bool duals_are_held(search_duals *d, const row_list *list, bool *others);
 
-/* Adds leaves from number `first` on that are not fine and worth more than `most`. Errors: MEMORY.
- */
+/* Adds leaves from number `first` on that are not fine and worth more than `most`. */
 starg_status duals_list_leaves(const search_duals *d, double most, size_t first, leaf_list *list,
                                uint64_t *work);
 
-/* Sets the bound on how many of the points are needed to what the prices prove; raises it. Errors:
- * MEMORY. */
+/* Sets the bound on how many of the points are needed to what the prices prove; raises it. */
 starg_status points_prove(const search_duals *d, search_points *points);
 void points_raise_bound(search_points *points, size_t bound);
 
@@ -138,18 +132,16 @@ typedef struct search_incumbent {
     STARG_ARRAY(search_step) steps; /* all numbers of guards, after so much work */
 } search_incumbent;
 
-/* Takes guards that are fewer than those before, or the first ones. Errors: MEMORY. */
+/* Takes guards that are fewer than those before, or the first ones; raises the bound, true: it is
+ * higher than before. */
 starg_status incumbent_take(starg_context *context, const uint32_t *guards, size_t count,
                             uint64_t work, search_incumbent *best);
-
-/* True: the bound is higher than before. */
 bool incumbent_raise(search_incumbent *best, size_t bound);
 
-/* Replaces the choice, from the `first_count` candidates, and its bound by the result. Errors:
- * MEMORY, CANCELLED. */
+/* Replaces the choice, from the `first_count` candidates, and its bound by the result. */
 starg_status incumbent_choose(const search *s, size_t first_count, guard_selection *selection);
 
-/* ---- programs asked (guard/search_programs.c) ---- */
+/* ---- integer programs, and when they were asked last (guard/search_programs.c) ---- */
 typedef struct search_asked {
     size_t cells, witnesses; /* their numbers at the last program over points */
     uint64_t after;          /* work at which the next one is due */
@@ -157,17 +149,15 @@ typedef struct search_asked {
     size_t bound;            /* and the bound that it gave for them */
 } search_asked;
 
-/* The integer program over the points: do fewer guards see all witnesses? *changed: there are
- * better guards, or more witnesses. Errors: MEMORY, CANCELLED. */
+/* Over the points: do fewer guards see all witnesses? *changed: better guards or more witnesses. */
 starg_status search_ask_points(search *s, bool *changed);
 
-/* The integer program over all columns and the candidates that may be among fewer guards, unless it
- * was asked for these candidates already: raises the points' bound. Errors: MEMORY, CANCELLED. */
+/* Over all columns and the candidates that may be among fewer guards, unless that was asked for
+ * these candidates already: raises the points' bound. */
 starg_status search_ask_candidates(search *s);
 
-/* The integer program over cells and points. If fewer of them than guards cover all witnesses,
- * splits these cells or tries these points; otherwise branching proves the bound. *changed: there
- * are more cells, more witnesses or better guards. Errors: MEMORY, CANCELLED. */
+/* Over cells and points: if fewer of them than guards cover all witnesses, splits these cells or
+ * tries these points; otherwise branching proves the bound. *changed: more of any. */
 starg_status search_ask_cells(search *s, bool *changed);
 
 /* ---- improvement (guard/search_improve.c) ---- */
@@ -190,37 +180,32 @@ struct search {
     search_effort effort;
 };
 
-/* A round of looking for better guards, the work for such rounds, and integer programs at their
- * end. *ended: another round would find nothing. Errors: MEMORY, CANCELLED. */
+/* A round of looking for better guards, *ended: another would find nothing; the work for all; and
+ * integer programs at their end. */
 starg_status search_improve(search *s, row_list *list, bool *ended);
 uint64_t search_improve_work(const search *s);
 starg_status search_close(search *s, bool *better);
 
-/* A round of a proof (guard/search_proof.c), and what raises the bound at its end: prices for which
- * all cells count as points, and those that there are. *ended: another round would prove nothing.
- * Errors: MEMORY, CANCELLED. */
+/* A round of a proof (guard/search_proof.c), *ended as before; and what raises the bound at its
+ * end: prices for which all cells count as points, and those that there are. */
 starg_status search_prove(search *s, row_list *list, bool *ended);
 starg_status search_prove_by_leaves(search *s);
 starg_status search_prove_by_prices(search *s);
 
 /* ---- steps ---- */
 
-/* Faces that the fractional cover by the points of the list does not see often enough become
- * witnesses. *changed: there are some. Errors: MEMORY, CANCELLED. */
+/* Faces that the fractional cover by the listed points lacks become witnesses. *changed: any. */
 starg_status search_add_short(search *s, const row_list *list, bool *changed);
 
 /* Tests points of the search that see all witnesses often enough against all faces: they are better
- * guards, or the faces that they miss become witnesses. *changed: either. Errors: MEMORY,
- * CANCELLED. */
+ * guards, or the faces that they miss become witnesses. *changed: either. */
 starg_status search_try_guards(search *s, const uint32_t *points, size_t count, bool *changed);
 
-/* Adds points that are more valuable than known ones (guard/search_moves.c). *most: the value of
- * the best, 0 if there is none. Errors: MEMORY, CANCELLED. */
+/* Adds more valuable points than are known (guard/search_moves.c). *most: the best value, or 0. */
 starg_status search_move(const search_scene *scene, const witness_prices *prices, uint64_t draw,
                          search_points *points, search_effort *effort, double *most);
 
-/* Local search for one guard fewer (guard/search_fewer.c). *changed: there are better guards, or
- * more witnesses. Errors: MEMORY, CANCELLED. */
+/* Local search for one guard fewer (guard/search_fewer.c). *changed: it, or more witnesses. */
 starg_status search_fewer(search *s, uint64_t draw, bool *changed);
 
 /* A random witness of the row; `none` if it holds none. */

@@ -207,9 +207,10 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     TRY(solve_list(s, &list, &cover));
     if (cover->count < guards)
         return follow_cover(s, &list, cover, changed, again);
+    const branch_question question = {list.rows, list.count, &all, guards - 1, BRANCHES};
     if (s->witnesses.redundancy == 1)
-        TRY(bound_by_branching(context, list.rows, list.count, &all, guards - 1, BRANCHES, &proven,
-                               why != NULL ? &branches : NULL, &s->effort.work));
+        TRY(bound_by_branching(context, &question, &proven, why != NULL ? &branches : NULL,
+                               &s->effort.work));
     if (proven && incumbent_raise(&s->best, guards))
         TRY(certificate_note_rows(context, why, guards, list.rows, list.count, &branches));
     return STARG_OK;
