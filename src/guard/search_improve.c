@@ -51,7 +51,7 @@ uint64_t search_improve_work(const search *s) {
                                                                : BEST);
 }
 
-/* Points worth more than 1, every other round until it fails. */
+/* Points worth more than 1, unless the round before found some: then it is the turn of guards. */
 static starg_status move_points(search *s, bool *changed) {
     double most = 0;
     if (!s->improving.moved)
