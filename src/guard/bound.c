@@ -252,17 +252,18 @@ static starg_status branch(branching *b, const witness_row *wanted, size_t most,
     return STARG_OK;
 }
 
-starg_status bound_by_branching(starg_context *context, const witness_row *const *rows,
-                                size_t count, const witness_row *wanted, size_t most, size_t nodes,
+starg_status bound_by_branching(starg_context *context, const branch_question *question,
                                 bool *proven, branch_record *record, uint64_t *work) {
-    starg_status status = STARG_OK;
-    branching b = {
-        .context = context, .rows = rows, .count = count, .nodes = nodes, .record = record};
+    SCOPED uint8_t *gone = NULL;
+    NEW_ZERO(context, STAGE, gone, question->count);
+    branching b = {.context = context,
+                   .rows = question->rows,
+                   .count = question->count,
+                   .nodes = question->nodes,
+                   .gone = gone,
+                   .record = record};
     *proven = false;
-    STARG_NEW_ZERO(context, STAGE, b.gone, count);
-    STARG_TRY(branch(&b, wanted, most, proven));
-done:
+    starg_status status = branch(&b, question->wanted, question->most, proven);
     *work += b.work;
-    starg_release(context, b.gone);
     return status;
 }

@@ -45,11 +45,19 @@ typedef struct branch_record {
 
 void branch_record_free(branch_record *record);
 
-/* Proves, by branching on the rows that hold a witness, with prices of its own in each branch, that
- * no `most` rows cover all witnesses in `wanted`. *proven is false if `nodes` nodes do not suffice.
- * record: receives the proof if there is one; may be NULL. Errors: MEMORY, CANCELLED. */
-starg_status bound_by_branching(starg_context *context, const witness_row *const *rows,
-                                size_t count, const witness_row *wanted, size_t most, size_t nodes,
+/* Do no `most` rows cover all the witnesses? */
+typedef struct branch_question {
+    const witness_row *const *rows;
+    size_t count;
+    const witness_row *wanted;
+    size_t most;
+    size_t nodes; /* that the proof may take */
+} branch_question;
+
+/* Proves it by branching on the rows that hold a witness, with prices of its own in each branch.
+ * *proven is false if the nodes do not suffice. record: receives the proof if there is one; may be
+ * NULL. Errors: MEMORY, CANCELLED. */
+starg_status bound_by_branching(starg_context *context, const branch_question *question,
                                 bool *proven, branch_record *record, uint64_t *work);
 
 #endif

@@ -12,7 +12,7 @@
  * the level keeps the candidates that see most besides it.
  *
  * Cost: a row of the level for each candidate, and a cover. */
-#include "guard/carry.h"
+#include "guard/stages.h"
 
 #include <stdlib.h>
 

@@ -12,13 +12,14 @@
 #include "guard/cells.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "geometry/vec3.h"
 #include "guard/cell_tests.h"
 
 static const char STAGE[] = "search";
 
-enum { ROOT_BITS = 20 };
+enum { ROOT_BITS = 20, LEAST_BATCH = 32, MOST_BATCH = 2048 };
 
 static double middle(const bvh_box *box, int k) {
     return 0.5 * box->lower[k] + 0.5 * box->upper[k];
@@ -116,48 +117,46 @@ static void keep_parts(const search_scene *scene, const search_cell *cell, witne
 }
 
 /* Tests cells of a generation against what their parents may see. */
-static starg_status look_from_cells(search_scene *scene, search_cells *cells, const numbers *list,
-                                    const numbers *parents, const witness_row *among) {
-    starg_status status = STARG_OK;
+static starg_status look_from_cells(const search_scene *scene, search_cells *cells,
+                                    const numbers *list, const numbers *parents,
+                                    const witness_row *among, uint64_t *work) {
     starg_context *context = scene->context;
-    cell_test *tests = NULL;
-    cell_tests all = {.scene = scene, .count = list->count};
-    STARG_NEW(context, STAGE, tests, list->count);
-    STARG_NEW(context, STAGE, all.answers, list->count);
+    SCOPED cell_test *tests = NULL;
+    SCOPED cell_answer *answers = NULL;
+    NEW(context, STAGE, tests, list->count);
+    NEW(context, STAGE, answers, list->count);
     for (size_t i = 0; i < list->count; i++) {
-        tests[i] = (cell_test){cells->data[list->data[i]].box, *among};
+        search_cell *cell = &cells->data[list->data[i]];
+        witness_row asked = *among;
         if (parents->data[i] != UINT32_MAX)
             for (int w = 0; w < WITNESS_WORDS; w++)
-                tests[i].among.bits[w] &= cells->data[parents->data[i]].open.bits[w];
-        keep_parts(scene, &cells->data[list->data[i]], &tests[i].among);
-        if (cells->data[list->data[i]].trimmed || cells->data[list->data[i]].parted) {
-            const witness_row inherited = tests[i].among;
-            tests[i].among = (witness_row){{0}};
-            for (int w = 0; w < WITNESS_WORDS; w++)
-                cells->data[list->data[i]].open.bits[w] |= inherited.bits[w];
-        }
+                asked.bits[w] &= cells->data[parents->data[i]].open.bits[w];
+        keep_parts(scene, cell, &asked);
+        const bool inherits = cell->trimmed || cell->parted;
+        for (int w = 0; w < WITNESS_WORDS && inherits; w++)
+            cell->open.bits[w] |= asked.bits[w];
+        tests[i] = (cell_test){cell->box, inherits ? (witness_row){{0}} : asked};
     }
-    all.tests = tests;
-    STARG_TRY(cell_tests_share(context, &all));
+    cell_tests all = {.scene = scene, .tests = tests, .count = list->count, .answers = answers};
+    TRY(cell_tests_share(context, &all));
     for (size_t i = 0; i < list->count; i++) {
         for (int w = 0; w < WITNESS_WORDS; w++)
-            cells->data[list->data[i]].open.bits[w] |= all.answers[i].open.bits[w];
-        scene->work += all.answers[i].work + 1;
+            cells->data[list->data[i]].open.bits[w] |= answers[i].open.bits[w];
+        *work += answers[i].work + 1;
     }
-done:
-    RELEASE(tests, all.answers);
-    return status;
+    return STARG_OK;
 }
 
 /* One generation after the other. */
-starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) {
+starg_status cells_look(const search_scene *scene, search_cells *cells, size_t first,
+                        uint64_t *work) {
     starg_context *context = scene->context;
     SCOPED numbers list = {0}, parents = {0}, next = {0}, next_parents = {0};
     const witness_row among = search_scene_witnesses(scene, first);
     PUSH(context, STAGE, &list, 0);
     PUSH(context, STAGE, &parents, UINT32_MAX);
     while (list.count > 0) {
-        TRY(look_from_cells(scene, cells, &list, &parents, &among));
+        TRY(look_from_cells(scene, cells, &list, &parents, &among, work));
         next.count = next_parents.count = 0;
         for (size_t i = 0; i < list.count; i++) {
             const search_cell *cell = &cells->data[list.data[i]];
@@ -196,38 +195,65 @@ static starg_status trim(starg_context *context, search_cells *cells, size_t num
     return STARG_OK;
 }
 
-starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
-                         size_t count, int tries, search_points *points) {
-    starg_status status = STARG_OK;
+starg_status cells_split(const search_scene *scene, search_cells *cells, const uint32_t *leaves,
+                         size_t count, int tries, search_points *points, uint64_t *work) {
     starg_context *context = scene->context;
-    cell_test *tests = NULL;
-    cell_tests all = {.scene = scene, .count = 2 * count, .first = cells->count, .tries = tries};
-    STARG_NEW(context, STAGE, tests, all.count);
-    STARG_NEW(context, STAGE, all.answers, all.count);
-    STARG_NEW(context, STAGE, all.points, all.count * (size_t)tries);
-    for (size_t i = 0; i < all.count; i++) {
+    SCOPED cell_test *tests = NULL;
+    SCOPED cell_answer *answers = NULL;
+    SCOPED search_point *found = NULL;
+    NEW(context, STAGE, tests, 2 * count);
+    NEW(context, STAGE, answers, 2 * count);
+    NEW(context, STAGE, found, 2 * count * (size_t)tries);
+    for (size_t i = 0; i < 2 * count; i++) {
         const search_cell *whole = &cells->data[leaves[i / 2]];
         tests[i] = (cell_test){cell_half(&whole->box, i % 2 != 0), whole->open};
     }
-    all.tests = tests;
-    STARG_TRY(cell_tests_share(context, &all));
+    cell_tests all = {.scene = scene,
+                      .tests = tests,
+                      .count = 2 * count,
+                      .first = cells->count,
+                      .tries = tries,
+                      .answers = answers,
+                      .points = found};
+    TRY(cell_tests_share(context, &all));
     for (size_t i = 0; i < all.count; i++) {
-        const bool trimmed = all.answers[i].cut_count > 0;
+        const bool trimmed = answers[i].cut_count > 0;
         const search_cell *whole = &cells->data[leaves[i / 2]];
         const search_cell half = {.box = tests[i].box,
                                   .first_part = whole->first_part,
                                   .end_part = whole->end_part,
-                                  .open = trimmed ? tests[i].among : all.answers[i].open};
-        STARG_PUSH(context, STAGE, cells, half);
+                                  .open = trimmed ? tests[i].among : answers[i].open};
+        PUSH(context, STAGE, cells, half);
         if (i % 2 != 0) /* only after the second child: a cell has both children or none */
             cells->data[leaves[i / 2]].children = (uint32_t)(cells->count - 2);
-        for (size_t k = 0; k < all.answers[i].point_count; k++)
-            STARG_PUSH(context, STAGE, points, all.points[i * (size_t)tries + k]);
-        scene->work += all.answers[i].work + 2;
+        for (size_t k = 0; k < answers[i].point_count; k++)
+            PUSH(context, STAGE, points, found[i * (size_t)tries + k]);
+        *work += answers[i].work + 2;
     }
     for (size_t i = 0; i < all.count; i++)
-        STARG_TRY(trim(scene->context, cells, all.first + i, &all.answers[i]));
-done:
-    RELEASE(tests, all.answers, all.points);
-    return status;
+        TRY(trim(scene->context, cells, all.first + i, &answers[i]));
+    return STARG_OK;
+}
+
+int cells_by_score(const void *a, const void *b) {
+    const scored_leaf *x = a, *y = b;
+    if (x->score != y->score)
+        return x->score > y->score ? -1 : 1;
+    return (x->cell > y->cell) - (x->cell < y->cell);
+}
+
+starg_status cells_split_best(const search_scene *scene, search_cells *cells, leaf_list *list,
+                              int tries, search_points *points, bool *any, uint64_t *work) {
+    SCOPED uint32_t *leaves = NULL;
+    size_t first = points->count, chosen = 0, batch = list->count / 4;
+    batch = batch < LEAST_BATCH ? LEAST_BATCH : batch > MOST_BATCH ? MOST_BATCH : batch;
+    NEW(scene->context, STAGE, leaves, batch);
+    qsort(list->data, list->count, sizeof *list->data, cells_by_score);
+    for (size_t i = 0; i < list->count && chosen < batch; i++)
+        if (cell_splits(&cells->data[list->data[i].cell].box))
+            leaves[chosen++] = list->data[i].cell;
+    *any = chosen > 0;
+    TRY(cells_split(scene, cells, leaves, chosen, tries, points, work));
+    points_prune(points, first, work);
+    return STARG_OK;
 }

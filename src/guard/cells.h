@@ -23,7 +23,8 @@ typedef STARG_ARRAY(search_cell) search_cells;
 starg_status cells_begin(const search_scene *scene, search_cells *cells);
 
 /* Tests the cells against the witnesses from `first` on. Errors: MEMORY, CANCELLED, RANK. */
-starg_status cells_look(search_scene *scene, search_cells *cells, size_t first);
+starg_status cells_look(const search_scene *scene, search_cells *cells, size_t first,
+                        uint64_t *work);
 
 /* The axis along which a cell is cut, in the middle. */
 int cell_cut_axis(const bvh_box *box);
@@ -38,7 +39,24 @@ enum { MOST_TRIES = 12 };
 /* Cuts leaves in the middle of their longest sides. Appends points of the children where a guard
  * may stand to `points`: the centre and random points, `tries` in all. Errors: MEMORY,
  * CANCELLED, RANK. */
-starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
-                         size_t count, int tries, search_points *points);
+starg_status cells_split(const search_scene *scene, search_cells *cells, const uint32_t *leaves,
+                         size_t count, int tries, search_points *points, uint64_t *work);
+
+/* A leaf, the highest score first. */
+typedef struct scored_leaf {
+    double score;
+    uint32_t cell;
+} scored_leaf;
+
+typedef STARG_ARRAY(scored_leaf) leaf_list;
+
+/* By decreasing score, then by number. */
+int cells_by_score(const void *a, const void *b);
+
+/* Sorts the leaves and splits those at the front that can be split, about a quarter of them, with
+ * `tries` points in each part, of which the useful ones stay. *any: there are some. Errors: those
+ * of cells_split. */
+starg_status cells_split_best(const search_scene *scene, search_cells *cells, leaf_list *list,
+                              int tries, search_points *points, bool *any, uint64_t *work);
 
 #endif

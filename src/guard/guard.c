@@ -16,14 +16,12 @@
 
 #include "core/fields.h"
 #include "guard/baseline.h"
-#include "guard/carry.h"
 #include "guard/certificate.h"
 #include "guard/corners.h"
 #include "guard/keep.h"
 #include "guard/patched.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
-#include "guard/unseen.h"
 #include "mesh/examine.h"
 #include "starguard/kernel.h"
 

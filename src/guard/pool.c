@@ -313,3 +313,12 @@ starg_status pool_join_rows(starg_context *context, const starg_bits *rows, uint
             (*joined)[w] |= starg_bits_row(rows, i)[w];
     return STARG_OK;
 }
+
+starg_status pool_copy_rows(const guard_pool *pool, const uint32_t *list, size_t count,
+                            starg_bits **rows) {
+    TRY(starg_bits_create(pool->context, count, pool->columns, rows));
+    for (size_t i = 0; i < count; i++)
+        memcpy(starg_bits_row_mutable(*rows, i), starg_bits_row(pool->rows, list[i]),
+               (*rows)->words * sizeof *(*rows)->data);
+    return STARG_OK;
+}

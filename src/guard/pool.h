@@ -66,6 +66,10 @@ starg_status pool_add_companions(guard_pool *pool);
 /* By column, how many candidates see it; release with starg_release. Errors: MEMORY. */
 starg_status pool_supply(const guard_pool *pool, uint32_t **supply);
 
+/* The rows of some candidates; release with starg_bits_free. Errors: MEMORY. */
+starg_status pool_copy_rows(const guard_pool *pool, const uint32_t *list, size_t count,
+                            starg_bits **rows);
+
 /* The weight of the columns that some candidate covers. */
 uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *weights);
 

@@ -32,12 +32,8 @@ typedef struct level_work {
 } level_work;
 
 static bool is_significant(const level_work *work, uint32_t candidate) {
-    const uint64_t *row = starg_bits_row(work->pool->rows, candidate);
-    uint64_t seen = 0;
-    for (size_t w = 0; w < work->pool->rows->words; w++) {
-        STARG_FOR_BITS (bit, row[w])
-            seen += work->weights.weights[64 * w + bit];
-    }
+    uint64_t seen = column_weights_of(&work->weights, starg_bits_row(work->pool->rows, candidate),
+                                      work->pool->rows->words);
     double least = work->problem->options->significance * (double)work->weights.total;
     return (double)seen >= least;
 }
@@ -77,10 +73,7 @@ static starg_status cover_by(const level_work *work, const uint32_t *all, size_t
     const guard_problem *problem = work->problem;
     SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
     starg_cover_problem cover;
-    TRY(starg_bits_create(problem->context, count, work->pool->columns, &rows));
-    for (size_t i = 0; i < count; i++)
-        memcpy(starg_bits_row_mutable(rows, i), starg_bits_row(work->pool->rows, all[i]),
-               rows->words * sizeof *rows->data);
+    TRY(pool_copy_rows(work->pool, all, count, &rows));
     starg_cover_problem_default(&cover);
     cover.rows = rows;
     cover.redundancy = problem->options->redundancy;

@@ -20,7 +20,8 @@
 #include "core/parallel.h"
 #include "guard/candidates.h"
 #include "guard/cell_tests.h"
-#include "guard/search_parts.h"
+#include "guard/cells.h"
+#include "guard/stages.h"
 
 static const char STAGE[] = "search";
 
@@ -45,7 +46,12 @@ typedef struct area_search {
     uint64_t work;
     scored_leaf *list; /* cells being split, each followed by its other half */
     area_cell *parts;
+    size_t part_count;
 } area_search;
+
+static uint64_t weight_of(const area_search *a, const uint64_t *row) {
+    return column_weights_of(&a->problem->weights, row, starg_bit_words(a->pool->columns));
+}
 
 static void look(const area_search *a, box_worker *worker, const uint64_t *among, area_cell *cell) {
     const box_question question = {.box = cell->box,
@@ -55,10 +61,7 @@ static void look(const area_search *a, box_worker *worker, const uint64_t *among
                                    .among = among};
     if (!search_scene_bars(a->scene, &cell->box))
         box_look(worker, &question, cell->open, NULL);
-    cell->weight = 0;
-    for (size_t w = 0; w < starg_bit_words(a->pool->columns); w++)
-        STARG_FOR_BITS (bit, cell->open[w])
-            cell->weight += a->problem->weights.weights[64 * w + bit];
+    cell->weight = weight_of(a, cell->open);
     cell->work = box_worker_take_work(worker) + a->pool->columns / 100 + 1;
 }
 
@@ -70,11 +73,12 @@ static starg_status look_from_part(starg_context *context, void *shared, void *s
     return STARG_OK;
 }
 
-static void free_parts(area_search *a, size_t count) {
-    for (size_t i = 0; a->parts != NULL && i < count; i++)
+static void free_parts(area_search *a) {
+    for (size_t i = 0; a->parts != NULL && i < a->part_count; i++)
         starg_release(a->scene->context, a->parts[i].open);
-    starg_release(a->scene->context, a->parts);
+    RELEASE(a->parts, a->list);
     a->parts = NULL;
+    a->list = NULL;
 }
 
 /* One half replaces the cell, the other is appended. */
@@ -95,12 +99,12 @@ static starg_status take_parts(area_search *a, size_t count) {
 
 /* Splits the cells at the front of the list. */
 static starg_status split(area_search *a, size_t count) {
-    starg_status status = STARG_OK;
     starg_context *context = a->scene->context;
-    STARG_NEW_ZERO(context, STAGE, a->parts, 2 * count);
+    NEW_ZERO(context, STAGE, a->parts, 2 * count);
+    a->part_count = 2 * count;
     for (size_t i = 0; i < 2 * count; i++) {
         a->parts[i].box = cell_half(&a->cells.data[a->list[i / 2].cell].box, i % 2 != 0);
-        STARG_NEW_ZERO(context, STAGE, a->parts[i].open, starg_bit_words(a->pool->columns));
+        NEW_ZERO(context, STAGE, a->parts[i].open, starg_bit_words(a->pool->columns));
     }
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = 2 * count,
@@ -109,36 +113,30 @@ static starg_status split(area_search *a, size_t count) {
                                       .make_scratch = cells_worker_make,
                                       .free_scratch = cells_worker_free,
                                       .silent = true};
-    STARG_TRY(starg_parallel_for(context, &loop));
-    STARG_TRY(take_parts(a, count));
-done:
-    free_parts(a, 2 * count);
-    return status;
+    TRY(starg_parallel_for(context, &loop));
+    TRY(take_parts(a, count));
+    free_parts(a);
+    return STARG_OK;
 }
 
 /* A cell for each part. */
 static starg_status begin(area_search *a) {
-    starg_status status = STARG_OK;
-    search_cells first = {0};
-    area_cell cell = {0};
-    STARG_TRY(cells_begin(a->scene, &first));
+    SCOPED search_cells first = {0};
+    TRY(cells_begin(a->scene, &first));
     for (size_t i = 0; i < first.count; i++) {
         const search_cell *leaf = &first.data[i];
         if (leaf->children != 0)
             continue;
-        cell = (area_cell){.box = leaf->box};
-        STARG_NEW_ZERO(a->scene->context, STAGE, cell.open, starg_bit_words(a->pool->columns));
+        area_cell cell = {.box = leaf->box};
+        PUSH(a->scene->context, STAGE, &a->cells, cell);
+        area_cell *last = &a->cells.data[a->cells.count - 1];
+        NEW_ZERO(a->scene->context, STAGE, last->open, starg_bit_words(a->pool->columns));
         for (size_t j = 0; j < a->pool->columns; j++)
-            if (search_scene_part(a->scene, (uint32_t)j) == leaf->first_part) {
-                starg_bit_set(cell.open, j);
-                cell.weight += a->problem->weights.weights[j];
-            }
-        STARG_PUSH(a->scene->context, STAGE, &a->cells, cell);
-        cell.open = NULL;
+            if (search_scene_part(a->scene, (uint32_t)j) == leaf->first_part)
+                starg_bit_set(last->open, j);
+        last->weight = weight_of(a, last->open);
     }
-done:
-    RELEASE(first.data, cell.open);
-    return status;
+    return STARG_OK;
 }
 
 /* The bound from the cover of the cells' rows: on their number, or on the weight they cover. */
@@ -175,36 +173,18 @@ static starg_status ask_cover(area_search *a) {
 }
 
 static starg_status split_best(area_search *a, bool *any) {
-    starg_status status = STARG_OK;
     size_t count = 0, batch = a->cells.count / 4;
     batch = batch < LEAST_BATCH ? LEAST_BATCH : batch;
-    STARG_NEW(a->scene->context, STAGE, a->list, a->cells.count);
+    NEW(a->scene->context, STAGE, a->list, a->cells.count);
     for (size_t i = 0; i < a->cells.count; i++) {
         const area_cell *cell = &a->cells.data[i];
         if (cell->weight > 0 && cell_splits(&cell->box))
             a->list[count++] =
                 (scored_leaf){cell->chosen ? INFINITY : (double)cell->weight, (uint32_t)i};
     }
-    qsort(a->list, count, sizeof *a->list, search_by_score);
+    qsort(a->list, count, sizeof *a->list, cells_by_score);
     *any = count > 0;
-    STARG_TRY(split(a, count < batch ? count : batch));
-done:
-    starg_release(a->scene->context, a->list);
-    a->list = NULL;
-    return status;
-}
-
-/* The weight that the chosen candidates see. */
-static uint64_t seen_weight(const area_search *a, const guard_selection *selection) {
-    uint64_t seen = 0;
-    for (size_t w = 0; w < a->pool->rows->words; w++) {
-        uint64_t joined = 0;
-        for (size_t i = 0; i < selection->chosen.count; i++)
-            joined |= starg_bits_row(a->pool->rows, selection->chosen.data[i])[w];
-        STARG_FOR_BITS (bit, joined)
-            seen += a->problem->weights.weights[64 * w + bit];
-    }
-    return seen;
+    return split(a, count < batch ? count : batch);
 }
 
 /* Is there nothing left to prove? */
@@ -230,35 +210,41 @@ static starg_status run(area_search *a, const guard_selection *selection) {
     return STARG_OK;
 }
 
+static void end(area_search *a) {
+    free_parts(a);
+    for (size_t i = 0; i < a->cells.count; i++)
+        starg_release(a->problem->context, a->cells.data[i].open);
+    RELEASE(a->cells.data);
+}
+
 starg_status search_area(const guard_problem *problem, const guard_pool *pool,
                          guard_selection *selection, search_record *out) {
-    starg_status status = STARG_OK;
-    search_scene scene = {0};
+    starg_context *context = problem->context;
+    const starg_guard_options *o = problem->options;
+    IN_STAGE(context, STAGE);
+    SCOPED_BY(search_scene_close) search_scene scene = {0};
+    SCOPED_BY(starg_bits_drop) starg_bits *chosen = NULL;
+    SCOPED uint64_t *joined = NULL;
+    SCOPED_BY(end)
     area_search a = {.scene = &scene,
                      .problem = problem,
                      .pool = pool,
                      .bound = selection->chosen.count > 0,
                      .weight_bound = problem->weights.total};
-    starg_progress_begin(problem->context, STAGE);
-    STARG_TRY(search_scene_open(problem->context, problem->solid, &problem->options->visibility,
-                                problem->options->clearance, &scene));
-    a.seen = seen_weight(&a, selection);
-    STARG_TRY(begin(&a));
-    STARG_TRY(run(&a, selection));
-    selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
-    problem->context->work += a.work;
+    TRY(search_scene_open(context, problem->solid, &o->visibility, o->clearance, &scene));
+    TRY(pool_copy_rows(pool, selection->chosen.data, selection->chosen.count, &chosen));
+    TRY(pool_join_rows(context, chosen, &joined));
+    a.seen = weight_of(&a, joined);
+    TRY(begin(&a));
+    TRY(run(&a, selection));
+    selection->time_limited = selection->time_limited || starg_time_is_over(context);
+    context->work += a.work;
     *out = (search_record){.cells = a.cells.count, .prove_work = a.work};
-    if (problem->options->max_guards > 0)
+    if (o->max_guards > 0)
         out->weight_bound = a.weight_bound;
     else
         out->bound = a.bound;
-    selection->lower_bound =
-        out->bound > selection->lower_bound ? out->bound : selection->lower_bound;
-done:
-    for (size_t i = 0; i < a.cells.count; i++)
-        starg_release(problem->context, a.cells.data[i].open);
-    STARG_ARRAY_FREE(problem->context, &a.cells);
-    search_scene_close(&scene);
-    starg_progress_end(problem->context);
-    return status;
+    if (out->bound > selection->lower_bound)
+        selection->lower_bound = out->bound;
+    return STARG_OK;
 }

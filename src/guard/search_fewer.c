@@ -49,7 +49,7 @@ typedef struct local_search {
 
 static void count_in(local_search *l, size_t j, size_t held) {
     l->held[j] = (uint32_t)held;
-    if (held < l->s->redundancy)
+    if (held < l->s->witnesses.redundancy)
         starg_bit_set(l->open.bits, j);
     else
         starg_bit_clear(l->open.bits, j);
@@ -82,7 +82,7 @@ static uint32_t remove_point(local_search *l, size_t at) {
 
 /* Counts new witnesses. */
 static void take_witnesses(local_search *l) {
-    for (; l->known < l->s->scene.witnesses.count; l->known++) {
+    for (; l->known < l->s->witnesses.scene.witnesses.count; l->known++) {
         size_t held = 0;
         for (size_t i = 0; i < l->count; i++)
             held += starg_bit_test(row_of(l, l->chosen[i])->bits, l->known);
@@ -97,7 +97,7 @@ static double loss_of(const local_search *l, size_t at) {
     double loss = 0;
     for (size_t w = 0; w < WITNESS_WORDS; w++)
         STARG_FOR_BITS (bit, row->bits[w])
-            if (l->held[64 * w + bit] == l->s->redundancy)
+            if (l->held[64 * w + bit] == l->s->witnesses.redundancy)
                 loss += l->weight[64 * w + bit];
     return loss;
 }
@@ -124,15 +124,6 @@ static double gain_of(const local_search *l, const witness_row *row) {
         STARG_FOR_BITS (bit, row->bits[w] & l->open.bits[w])
             gain += l->weight[64 * w + bit];
     return gain;
-}
-
-static size_t draw_open(local_search *l) {
-    uint64_t left = starg_rng_below(&l->rng, starg_bit_count(l->open.bits, WITNESS_WORDS));
-    for (size_t w = 0; w < WITNESS_WORDS; w++)
-        STARG_FOR_BITS (bit, l->open.bits[w])
-            if (left-- == 0)
-                return 64 * w + bit;
-    return 0;
 }
 
 /* How many witnesses lack guards once the point is added? */
@@ -165,13 +156,13 @@ static uint32_t choose_to_add(local_search *l, size_t witness, uint32_t gone, do
             best = (uint32_t)i;
         }
     }
-    l->s->scene.work += 1 + l->s->points.count / 100;
+    l->s->effort.work += 1 + l->s->points.count / 100;
     return best;
 }
 
 /* The gain of a point; 0 as soon as it falls below `least`. */
 static double look_from(local_search *l, search_point *point, size_t witness, double least) {
-    search_scene *scene = &l->s->scene;
+    const search_scene *scene = &l->s->witnesses.scene;
     double left = gain_of(l, &l->open);
     uint64_t work = 1;
     bool sees = candidates_allowed(scene->solid, point->place, scene->clearance) &&
@@ -189,13 +180,14 @@ static double look_from(local_search *l, search_point *point, size_t witness, do
             else
                 left -= l->weight[j];
         }
-    scene->work += 2 * work;
+    l->s->effort.work += 2 * work;
     return sees && left >= least ? left : 0;
 }
 
 /* Looks for a point of larger gain than `point`, which then joins the known points. */
 static starg_status climb(local_search *l, uint32_t *point, size_t witness, double gain) {
     search *s = l->s;
+    const search_scene *scene = &s->witnesses.scene;
     search_point best = s->points.data[*point];
     double most = gain, step = FIRST_STEP;
     for (int k = 0; k < CLIMB; k++, step *= STEP_FACTOR) {
@@ -204,7 +196,7 @@ static starg_status climb(local_search *l, uint32_t *point, size_t witness, doub
         search_stand stand = (search_stand)(k % STANDS);
         if (stand == STAND_BETWEEN && l->count > 0)
             other = s->points.data[l->chosen[starg_rng_below(&l->rng, l->count)]].place;
-        search_propose(&s->scene, &best, witness, other, stand, step, &l->rng, &next);
+        search_propose(scene, &best, witness, other, stand, step, &l->rng, &next);
         double found = look_from(l, &next, witness, most);
         if (found >= most) {
             most = found;
@@ -212,12 +204,12 @@ static starg_status climb(local_search *l, uint32_t *point, size_t witness, doub
         }
     }
     if (most > gain) {
-        witness_row rest = all_witnesses(s);
+        witness_row rest = search_scene_witnesses(scene, 0);
         for (int w = 0; w < WITNESS_WORDS; w++)
             rest.bits[w] &= ~l->open.bits[w];
-        TRY(points_look_at(&s->scene, &best, 1, &rest));
+        TRY(points_look_at(scene, &best, 1, &rest, &s->effort.work));
         *point = (uint32_t)s->points.count;
-        PUSH(context_of(s), STAGE, &s->points, best);
+        TRY(points_add(scene->context, &best, &s->points));
     }
     return STARG_OK;
 }
@@ -227,7 +219,7 @@ static starg_status take_step(local_search *l) {
     l->step++;
     size_t out = choose_to_remove(l);
     uint32_t gone = out != SIZE_MAX ? remove_point(l, out) : UINT32_MAX;
-    size_t witness = draw_open(l);
+    size_t witness = search_draw(&l->open, 0, &l->rng);
     uint32_t in = choose_to_add(l, witness, gone, &gain);
     if (in != UINT32_MAX) {
         size_t left = count_left(l, in);
@@ -242,66 +234,68 @@ static starg_status take_step(local_search *l) {
     return STARG_OK;
 }
 
-static bool is_open(const local_search *l) {
-    return starg_bit_count(l->open.bits, WITNESS_WORDS) > 0;
-}
-
-/* Starts from the guards without one of them. */
+/* Starts from the guards. */
 static starg_status begin(local_search *l) {
     const search *s = l->s;
-    NEW(context_of(s), STAGE, l->chosen, s->count);
-    NEW_ZERO(context_of(s), STAGE, l->moved, s->count);
+    const size_t guards = s->best.guards.count;
+    NEW(s->problem->context, STAGE, l->chosen, guards);
+    NEW_ZERO(s->problem->context, STAGE, l->moved, guards);
     for (size_t j = 0; j < MOST_WITNESSES; j++)
         l->weight[j] = 1;
     for (size_t i = 0; i < s->points.count; i++)
-        for (size_t k = 0; k < s->count; k++)
-            if (s->points.data[i].candidate == s->guards.data[k])
+        for (size_t k = 0; k < guards; k++)
+            if (s->points.data[i].candidate == s->best.guards.data[k])
                 add_point(l, (uint32_t)i);
     take_witnesses(l);
     return STARG_OK;
 }
 
-/* The points see all witnesses: tests them against all faces. */
-static starg_status try_guards(local_search *l, bool *changed) {
-    size_t before = l->s->count;
-    bool found = false;
+/* The points see all witnesses: tests them against all faces. *more: there are fewer guards or more
+ * witnesses. */
+static starg_status try_guards(local_search *l, bool *changed, bool *more) {
+    const search *s = l->s;
+    size_t guards = s->best.guards.count, witnesses = s->witnesses.scene.witnesses.count;
+    bool found;
     TRY(search_try_guards(l->s, l->chosen, l->count, &found));
     *changed = *changed || found;
-    if (l->s->count < before)
+    if (s->best.guards.count < guards)
         l->last = l->step;
     l->fewest = SIZE_MAX;
     take_witnesses(l);
+    *more = s->witnesses.scene.witnesses.count > witnesses || s->best.guards.count < guards;
     return STARG_OK;
 }
 
 static bool may_go_on(const local_search *l) {
     const search *s = l->s;
-    return l->step < l->last + PATIENCE + PATIENCE_PER_GUARD * s->count &&
-           s->scene.work < s->budget && !starg_time_is_over(context_of(s)) && s->count > 1;
+    const size_t guards = s->best.guards.count;
+    return l->step < l->last + PATIENCE + PATIENCE_PER_GUARD * guards &&
+           s->effort.work < s->effort.budget && !starg_time_is_over(s->problem->context) &&
+           guards > 1;
 }
 
-starg_status search_fewer(search *s, bool *changed) {
-    starg_status status = STARG_OK;
-    local_search l = {.s = s, .fewest = SIZE_MAX};
+static void local_search_free(local_search *l) {
+    RELEASE(l->chosen, l->moved);
+}
+
+starg_status search_fewer(search *s, uint64_t draw, bool *changed) {
+    starg_context *context = s->problem->context;
+    SCOPED_BY(local_search_free) local_search l = {.s = s, .fewest = SIZE_MAX};
     size_t first = s->points.count;
+    bool more = true;
     *changed = false;
-    l.rng = starg_rng_make(context_of(s)->seed, RANDOM_STAGE, s->moves++);
-    STARG_TRY(begin(&l));
-    while (may_go_on(&l)) {
-        STARG_TRY(starg_check_cancel(context_of(s), STAGE));
-        while (l.count >= s->count)
+    l.rng = starg_rng_make(context->seed, RANDOM_STAGE, draw);
+    TRY(begin(&l));
+    while (more && may_go_on(&l)) {
+        TRY(starg_check_cancel(context, STAGE));
+        while (l.count >= s->best.guards.count)
             remove_point(&l, choose_to_remove(&l));
-        if (is_open(&l)) {
-            STARG_TRY(take_step(&l));
+        if (starg_bit_count(l.open.bits, WITNESS_WORDS) > 0) {
+            TRY(take_step(&l));
             continue;
         }
-        size_t witnesses = s->scene.witnesses.count, guards = s->count;
-        STARG_TRY(try_guards(&l, changed));
-        if (s->scene.witnesses.count == witnesses && s->count == guards)
-            break;
+        TRY(try_guards(&l, changed, &more));
     }
-    search_prune_points(s, first);
-done:
-    RELEASE(l.chosen, l.moved);
-    return status;
+    points_prune(&s->points, first, &s->effort.work);
+    return STARG_OK;
 }

@@ -20,7 +20,7 @@
  * A proposal is first tested against the planes of the witnesses, then against the witnesses by
  * decreasing price, until it is clearly worth less than the source's point.
  *
- * Results depend only on the seed, the call and the source. Cost: O(log n) per sight line; at most
+ * Results depend only on the seed, the draw and the source. Cost: O(log n) per sight line; at most
  * PROPOSALS x GENERATIONS x sources x witnesses sight lines per call. */
 #include <math.h>
 #include <stdlib.h>
@@ -67,7 +67,8 @@ typedef struct proposal {
 } proposal;
 
 typedef struct moving {
-    search *s;
+    const search_scene *scene;
+    const double *price; /* by witness */
     source *sources;
     size_t count;
     proposal *proposals; /* of a generation: `each` a source */
@@ -85,11 +86,10 @@ static int by_price(const void *a, const void *b) {
 
 /* Lists the sources by decreasing price, and the remaining witnesses. */
 static starg_status list_sources(moving *m) {
-    const search_scene *scene = &m->s->scene;
-    size_t all = scene->witnesses.count;
-    NEW_ZERO(scene->context, STAGE, m->sources, all);
+    size_t all = m->scene->witnesses.count;
+    NEW_ZERO(m->scene->context, STAGE, m->sources, all);
     for (size_t j = 0; j < all; j++)
-        m->sources[j] = (source){.witness = (uint32_t)j, .price = m->s->prices.price[j]};
+        m->sources[j] = (source){.witness = (uint32_t)j, .price = m->price[j]};
     qsort(m->sources, all, sizeof *m->sources, by_price);
     while (m->count < all && m->count < MOST_SOURCES && m->sources[m->count].price > LEAST_PRICE)
         m->count++;
@@ -111,11 +111,9 @@ static void offer(moving *m, const search_point *point, double value, bool is_ne
     }
 }
 
-static void offer_known(moving *m) {
-    for (size_t i = 0; i < m->s->points.count; i++) {
-        const search_point *point = &m->s->points.data[i];
-        offer(m, point, row_value(&point->seen, m->s->prices.price), false);
-    }
+static void offer_known(moving *m, const search_points *points) {
+    for (size_t i = 0; i < points->count; i++)
+        offer(m, &points->data[i], row_value(&points->data[i].seen, m->price), false);
 }
 
 /* The sources whose best points stand closest, nearest first. */
@@ -161,15 +159,14 @@ static void turn(double step, starg_rng *rng, double direction[3]) {
         direction[k] /= length;
 }
 
-/* One of the witnesses that the point sees; j if it sees none. */
-static size_t draw_seen(const search_point *point, size_t j, starg_rng *rng) {
-    size_t count = starg_bit_count(point->seen.bits, WITNESS_WORDS);
+size_t search_draw(const witness_row *row, size_t none, starg_rng *rng) {
+    size_t count = starg_bit_count(row->bits, WITNESS_WORDS);
     uint64_t left = count > 0 ? starg_rng_below(rng, count) : 0;
     for (size_t w = 0; w < WITNESS_WORDS && count > 0; w++)
-        STARG_FOR_BITS (bit, point->seen.bits[w])
+        STARG_FOR_BITS (bit, row->bits[w])
             if (left-- == 0)
                 return 64 * w + bit;
-    return j;
+    return none;
 }
 
 /* A number between 1 and `most`, all orders of magnitude alike. */
@@ -215,7 +212,8 @@ void search_propose(const search_scene *scene, const search_point *best, size_t 
     *out = (search_point){.candidate = UINT32_MAX};
     random_ball(rng, shift);
     if (stand == STAND_AT_WALL) {
-        stand_at_wall(scene, draw_face(scene, draw_seen(best, j, rng), rng), rng, out->place);
+        stand_at_wall(scene, draw_face(scene, search_draw(&best->seen, j, rng), rng), rng,
+                      out->place);
     } else if (stand == STAND_BETWEEN && other != NULL) {
         double t = starg_rng_unit(rng);
         for (int k = 0; k < 3; k++)
@@ -250,8 +248,7 @@ static bool look_at(const search_scene *scene, proposal *q, uint32_t witness) {
  * required one. */
 static starg_status look_from(starg_context *context, void *shared, void *scratch, size_t item) {
     const moving *m = shared;
-    const search_scene *scene = &m->s->scene;
-    const double *price = m->s->prices.price;
+    const search_scene *scene = m->scene;
     proposal *q = &m->proposals[item];
     uint32_t left[MOST_WITNESSES];
     size_t count = 0;
@@ -266,14 +263,14 @@ static starg_status look_from(starg_context *context, void *shared, void *scratc
         if (!search_scene_may_see(scene, q->point.place, j))
             continue;
         left[count++] = j;
-        open += price[j];
+        open += m->price[j];
     }
     q->work += m->count / 50 + 1;
     for (size_t i = 0; i < count && open >= q->least; i++) {
         if (left[i] != q->by && !look_at(scene, q, left[i]))
-            open -= price[left[i]];
+            open -= m->price[left[i]];
     }
-    q->value = open >= q->least ? row_value(&q->point.seen, price) : 0;
+    q->value = open >= q->least ? row_value(&q->point.seen, m->price) : 0;
     return STARG_OK;
 }
 
@@ -282,13 +279,12 @@ static const int STANDS_IN_TURN[] = {STAND_AROUND,  STAND_AT_WALL, STAND_BETWEEN
                                      STAND_AT_WALL, STAND_BEFORE,  STAND_AT_WALL};
 
 /* Every source makes proposals, and takes better ones. */
-static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, double step) {
-    search_scene *scene = &m->s->scene;
+static starg_status move_sources(moving *m, uint64_t stream, double step, uint64_t *work) {
+    const search_scene *scene = m->scene;
     for (size_t i = 0; i < m->count; i++) {
         const source *n = &m->sources[i];
-        starg_rng rng =
-            starg_rng_make(scene->context->seed, RANDOM_STAGE + call * GENERATIONS + generation,
-                           scene->witnesses.data[n->witness]);
+        starg_rng rng = starg_rng_make(scene->context->seed, RANDOM_STAGE + stream,
+                                       scene->witnesses.data[n->witness]);
         for (size_t kind = 0; kind < m->each; kind++) {
             proposal *q = &m->proposals[m->each * i + kind];
             search_stand stand = STANDS_IN_TURN[kind % (sizeof STANDS_IN_TURN / sizeof(int))];
@@ -312,7 +308,7 @@ static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, 
             offer(m, &q->point, q->value, true);
         if (q->value > 1 + SEARCH_GAP)
             PUSH(scene->context, STAGE, &m->worthy, q->point);
-        scene->work += q->work;
+        *work += q->work;
     }
     return STARG_OK;
 }
@@ -326,42 +322,41 @@ static bool stands_before(const moving *m, size_t index) {
     return false;
 }
 
-/* Adds the points of the sources that are valuable enough to the points of the search. */
-static starg_status take_best(moving *m, double *most) {
-    search *s = m->s;
-    size_t first = s->points.count;
-    *most = 0;
+/* Adds the points of the sources that are valuable enough. */
+static starg_status take_best(moving *m, search_points *points, uint64_t *work, double *most) {
+    starg_context *context = m->scene->context;
+    size_t first = points->count;
     for (size_t i = 0; i < m->worthy.count; i++)
-        PUSH(context_of(s), STAGE, &s->points, m->worthy.data[i]);
+        TRY(points_add(context, &m->worthy.data[i], points));
     for (size_t i = 0; i < m->count; i++)
         if (m->sources[i].is_new && m->sources[i].value > WORTH && !stands_before(m, i)) {
-            PUSH(context_of(s), STAGE, &s->points, m->sources[i].best);
+            TRY(points_add(context, &m->sources[i].best, points));
             *most = fmax(*most, m->sources[i].value);
         }
-    TRY(points_look_at(&s->scene, s->points.data + first, s->points.count - first, &m->rest));
-    search_prune_points(s, first);
+    TRY(points_look_at(m->scene, points->data + first, points->count - first, &m->rest, work));
+    points_prune(points, first, work);
     return STARG_OK;
 }
 
-starg_status search_move(search *s, double *most) {
-    starg_status status = STARG_OK;
-    starg_context *context = context_of(s);
-    moving m = {.s = s};
+static void moving_free(moving *m) {
+    RELEASE(m->sources, m->worthy.data, m->proposals);
+}
+
+starg_status search_move(const search_scene *scene, const witness_prices *prices, uint64_t draw,
+                         search_points *points, search_effort *effort, double *most) {
+    SCOPED_BY(moving_free) moving m = {.scene = scene, .price = prices->price};
     double step = FIRST_STEP;
     *most = 0;
-    STARG_TRY(list_sources(&m));
+    TRY(list_sources(&m));
     m.each = 2 + LEAST_PROPOSALS / (m.count + 1);
-    STARG_NEW(context, STAGE, m.proposals, m.each * m.count);
-    offer_known(&m);
-    for (uint64_t g = 0; g < GENERATIONS && s->scene.work < s->budget; g++, step *= STEP_FACTOR) {
+    NEW(scene->context, STAGE, m.proposals, m.each * m.count);
+    offer_known(&m, points);
+    for (uint64_t g = 0; g < GENERATIONS && effort->work < effort->budget; g++) {
         find_neighbours(&m);
-        STARG_TRY(move_sources(&m, s->moves, g, step));
-        if (starg_time_is_over(context))
+        TRY(move_sources(&m, draw * GENERATIONS + g, step, &effort->work));
+        if (starg_time_is_over(scene->context))
             break;
+        step *= STEP_FACTOR;
     }
-    s->moves++;
-    STARG_TRY(take_best(&m, most));
-done:
-    RELEASE(m.sources, m.worthy.data, m.proposals);
-    return status;
+    return take_best(&m, points, &effort->work, most);
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The parts of a search over every point (guard/search.c). */
+/* The parts of a search over every point (guard/search.c). Each is written by one file, through the
+ * functions here that take it without const; work is counted where it is done. Steps change several
+ * parts, and take the whole search. What returns a status fails with MEMORY or CANCELLED. */
 #ifndef STARG_GUARD_SEARCH_PARTS_H
 #define STARG_GUARD_SEARCH_PARTS_H
 
@@ -11,167 +13,203 @@
 /* By how much points may exceed 1 all the same. */
 #define SEARCH_GAP 2e-3
 
-typedef STARG_ARRAY(search_step) search_steps;
+typedef struct search search;
 
-typedef struct search {
-    const guard_problem *problem;
-    guard_pool *pool; /* receives the points that were tested against all columns */
-    search_scene scene;
-    search_cells cells;
-    search_points points;
-    witness_prices prices;
-    odd_sets odd;                 /* that have prices beside the witnesses */
-    double odd_value;             /* of the prices when such sets were looked for last */
-    int odd_rounds;               /* that looked for such sets, one after the other */
-    witness_row unpriced;         /* witnesses without a price, left out of the program */
-    size_t redundancy;            /* how many guards must see a witness */
-    uint16_t *need;               /* by column: how often it must be seen */
-    uint32_t *views;              /* by column: how many of the first candidates see it */
-    uint64_t *viewers;            /* by column: an identifier of the set of them */
-    size_t count, bound;          /* number of guards, and its lower bound */
-    size_t asked_at, asked_of;    /* numbers of cells and witnesses at the last integer program */
-    size_t asked_pool;            /* number of candidates at the last one over all faces, */
-    size_t asked_bound;           /* and the bound that it gave for them */
-    uint64_t ask_after;           /* work at which the next one is due */
-    uint64_t budget;              /* of the work that the scene counts */
-    double finest;                /* leaves no longer than this count as points in the prices */
-    unsigned refinements;         /* rounds in which such leaves held the prices down */
-    size_t nodes;                 /* that an integer program may take */
-    uint64_t improve_work;        /* work spent on looking for better guards */
-    uint64_t moves;               /* calls of search_move */
-    STARG_ARRAY(uint32_t) guards; /* the best ones: candidates of the pool */
-    size_t first_count;           /* number of candidates in the pool at the start */
-    size_t known;                 /* lower bound for the known points */
-    int idle;                     /* rounds that looked for guards and found none */
-    bool better;                  /* the guards differ from those at the start */
-    bool ended;
-    search_steps steps; /* all numbers of guards, in units of the scene's work */
-} search;
+/* ---- effort: what is done and what is allowed (guard/search.c) ---- */
+typedef struct search_effort {
+    uint64_t work;   /* tests of a vertex against a box or a point, and what takes as long */
+    uint64_t budget; /* of the rounds that run */
+    size_t nodes;    /* that an integer program may take */
+} search_effort;
 
-/* Notes that there are `count` guards now. Errors: MEMORY. */
-starg_status search_note_guards(search *s);
+/* ---- witness set: what must be seen, and how often (guard/search_witnesses.c) ---- */
+typedef struct witness_set {
+    search_scene scene; /* with the witnesses */
+    size_t redundancy;  /* how many guards must see a witness */
+    uint16_t *need;     /* by column: how often it must be seen */
+    uint32_t *views;    /* by column: how many of the first candidates see it */
+    uint64_t *viewers;  /* by column: an identifier of the set of them */
+} witness_set;
 
-/* Lower bound on the points that see all witnesses often enough, by the prices. */
-static inline double search_value(const search *s) {
-    return (double)s->redundancy * s->prices.sum;
-}
+/* Opens the scene, without witnesses; columns need what `chosen` see. */
+starg_status witness_set_begin(const guard_problem *problem, const guard_pool *pool,
+                               const guard_selection *selection, witness_set *out);
+void witness_set_end(witness_set *set);
 
-/* What the row holds is worth at these prices. */
-static inline double search_worth(const search *s, const witness_row *row) {
-    return prices_of_row(&s->prices, &s->odd, row);
-}
+/* The faces that the fewest candidates see become witnesses. */
+starg_status search_first_witnesses(search *s);
 
-static inline starg_context *context_of(const search *s) {
-    return s->problem->context;
-}
+/* ---- point set: where guards may stand (guard/search_points.c, with guard/search_scene.h) ---- */
 
-/* Rows of points and fine leaves that no other row contains. */
+/* Candidates, and the medial axis unless they stand there, views are cones, or time is short. */
+starg_status points_begin(const guard_problem *problem, const guard_detail *detail,
+                          const guard_pool *pool, search_points *points);
+
+/* Turns points into candidates, with full visibility rows. */
+starg_status points_hold(const search_scene *scene, const uint32_t *chosen, size_t count,
+                         search_points *points, guard_pool *pool, uint64_t *work);
+
+/* Tests all against the witnesses from `first` on. */
+starg_status points_look(const search_scene *scene, const guard_pool *pool, size_t first,
+                         search_points *points, uint64_t *work);
+
+starg_status points_add(starg_context *context, const search_point *point, search_points *points);
+
+/* ---- duals: prices of witnesses and odd sets (guard/search_prices.c) ---- */
+
+/* Rows of points and of leaves that no other row contains. */
 typedef struct row_list {
     const witness_row **rows;
-    uint32_t *points; /* by row: the point, or UINT32_MAX for a leaf */
+    uint32_t *names; /* by row: the point, or ROW_LEAF plus the leaf */
     size_t count;
 } row_list;
 
-static inline void row_list_free(starg_context *context, row_list *list) {
-    starg_release(context, list->rows);
-    starg_release(context, list->points);
+#define ROW_LEAF UINT32_C(0x80000000)
+
+typedef struct search_duals {
+    const witness_set *witnesses; /* what has prices, */
+    const search_points *points;  /* and what they are found from */
+    const search_cells *cells;
+    witness_prices prices;
+    odd_sets odd;         /* that have prices beside the witnesses */
+    double odd_value;     /* of the prices when such sets were looked for last */
+    int odd_rounds;       /* that looked for such sets, one after the other */
+    witness_row unpriced; /* witnesses without a price, left out of the program */
+    double finest;        /* leaves no longer than this count as points */
+    unsigned refinements; /* rounds in which such leaves held the prices down */
+} search_duals;
+
+/* A list has room for two rows of each point and one of each cell. Does a row of it hold what this
+ * one holds of these witnesses? */
+starg_status row_list_make(const search_duals *d, row_list *out);
+void row_list_add(row_list *list, const witness_row *row, size_t name);
+bool row_list_holds(const row_list *list, const witness_row *row, const witness_row *among);
+void row_list_free(row_list *list);
+
+/* Lower bound on the points that see all witnesses often enough. */
+static inline double duals_value(const search_duals *d) {
+    return (double)d->witnesses->redundancy * d->prices.sum;
 }
 
-/* Does a row of the list hold what this one holds of these witnesses? */
-static inline bool is_needless(const row_list *list, const witness_row *row,
-                               const witness_row *among) {
-    for (size_t k = 0; k < list->count; k++)
-        if (row_is_within_among(row, list->rows[k], among))
-            return true;
-    return false;
+/* Sum of the prices of what the row holds. */
+static inline double duals_of_row(const search_duals *d, const witness_row *row) {
+    return prices_of_row(&d->prices, &d->odd, row);
 }
 
-static inline starg_status row_list_make(starg_context *context, size_t most, row_list *out) {
-    starg_status status = STARG_OK;
-    STARG_NEW(context, "search", out->rows, most);
-    STARG_NEW(context, "search", out->points, most);
-done:
-    return status;
+/* May there be fewer guards than so many? */
+static inline bool duals_leave_room(const search_duals *d, size_t guards) {
+    return duals_value(d) <= (double)guards - 1 + SEARCH_GAP;
 }
-
-static inline void row_list_add(const search *s, row_list *list, size_t point) {
-    list->rows[list->count] = &s->points.data[point].seen;
-    list->points[list->count++] = (uint32_t)point;
-}
-
-static inline witness_row all_witnesses(const search *s) {
-    witness_row row = {{0}};
-    for (size_t j = 0; j < s->scene.witnesses.count; j++)
-        starg_bit_set(row.bits, j);
-    return row;
-}
-
-/* A round of a proof (guard/search_proof.c). Errors: MEMORY, CANCELLED. */
-starg_status search_prove_round(search *s, row_list *list);
-
-/* Raises the bound to what the prices prove for the current cells. Errors: MEMORY. */
-starg_status search_prove(search *s);
-
-/* Raises it to the best that the current cells have: all of them count as points in the prices.
- * Errors: MEMORY. */
-starg_status search_prove_by_leaves(search *s);
-
-/* Do the prices leave room for fewer guards than there are? */
-bool search_has_room(const search *s);
-
-/* Sets `known`, the lower bound for the known points, by the prices: what it was before, with fewer
- * points, is forgotten. Errors: MEMORY. */
-starg_status search_bound_points(search *s);
-
-/* A round of looking for better guards, the budget of these rounds, and their end
- * (guard/search_improve.c). Errors: MEMORY, CANCELLED. */
-starg_status search_improve(search *s, row_list *list);
-uint64_t search_improve_work(const search *s);
-starg_status search_close(search *s);
-
-/* Removes points of the search, from `first` on, that see no more than another does. */
-void search_prune_points(search *s, size_t first);
 
 /* The value of the most valuable point, or 1. */
-double search_largest_value(const search *s);
+double duals_of_best_point(const search_duals *d);
 
-/* Prices of maximal sum by which no point and no small leaf exceeds 1; the list receives the rows
- * of their program, a subset of all. `prices.work` is that of all programs it took. Errors:
- * MEMORY. */
-starg_status search_find_prices(search *s, row_list *list);
+/* Prices of maximal sum by which no point and no fine leaf exceeds 1; the list receives the rows of
+ * their program, a subset of all. `prices.work` is that of all programs it took. */
+starg_status duals_find(search_duals *d, row_list *list, uint64_t *work);
 
 /* Odd sets of which the fractional cover by the list holds too little get prices (at first 0), if
- * the prices have changed since. A few times in a row, then other means have their turn. *changed:
- * there are some. Errors: MEMORY. */
-starg_status search_find_odd(search *s, const row_list *list, bool *changed);
+ * prices have changed since the last time, and a few times in a row. *changed: there are some. */
+starg_status duals_find_odd(search_duals *d, const row_list *list, bool *changed, uint64_t *work);
 
-/* Is a leaf small enough to count as a point? Do such leaves hold the prices down? */
-bool search_is_fine(const search *s, const search_cell *leaf);
-bool search_fine_bind(const search *s, const row_list *list);
+/* From now on, leaves no longer than this count as points. Do such leaves hold the prices down?
+ * *others: is it the turn of other means than smaller ones? */
+void duals_set_finest(search_duals *d, double finest);
+bool duals_are_held(search_duals *d, const row_list *list, bool *others);
 
-/* The faces that the fewest candidates see become witnesses. Errors: MEMORY, CANCELLED. */
-starg_status search_first_witnesses(search *s);
+/* Adds leaves from number `first` on that are not fine and worth more than `most`. */
+starg_status duals_list_leaves(const search_duals *d, double most, size_t first, leaf_list *list,
+                               uint64_t *work);
 
-/* How many of the first candidates see each column, and which: `views` and `viewers`. Errors:
- * MEMORY. */
-starg_status search_count_views(search *s);
+/* Sets the bound on how many of the points are needed to what the prices prove; raises it. */
+starg_status points_prove(const search_duals *d, search_points *points);
+void points_raise_bound(search_points *points, size_t bound);
 
-/* Turns faces into witnesses that the fractional cover by the points of the list does not see often
- * enough. *changed: there are some. Errors: MEMORY, CANCELLED. */
+/* ---- incumbent: the best guards, and the bound for all places (guard/search_incumbent.c) ---- */
+typedef struct search_incumbent {
+    STARG_ARRAY(uint32_t) guards; /* candidates of the pool */
+    size_t bound;
+    STARG_ARRAY(search_step) steps; /* all numbers of guards, after so much work */
+} search_incumbent;
+
+/* Takes guards that are fewer than those before, or the first ones; raises the bound, true: it is
+ * higher than before. */
+starg_status incumbent_take(starg_context *context, const uint32_t *guards, size_t count,
+                            uint64_t work, search_incumbent *best);
+bool incumbent_raise(search_incumbent *best, size_t bound);
+
+/* Replaces the choice, from the `first_count` candidates, and its bound by the result. */
+starg_status incumbent_choose(const search *s, size_t first_count, guard_selection *selection);
+
+/* ---- integer programs, and when they were asked last (guard/search_programs.c) ---- */
+typedef struct search_asked {
+    size_t cells, witnesses; /* their numbers at the last program over points */
+    uint64_t after;          /* work at which the next one is due */
+    size_t candidates;       /* their number at the last program over all faces, */
+    size_t bound;            /* and the bound that it gave for them */
+} search_asked;
+
+/* Over the points: do fewer guards see all witnesses? *changed: better guards or more witnesses. */
+starg_status search_ask_points(search *s, bool *changed);
+
+/* Over all columns and the candidates that may be among fewer guards, unless that was asked for
+ * these candidates already: raises the points' bound. */
+starg_status search_ask_candidates(search *s);
+
+/* Over cells and points: if fewer of them than guards cover all witnesses, splits these cells or
+ * tries these points; otherwise branching proves the bound. *changed: more of any. */
+starg_status search_ask_cells(search *s, bool *changed);
+
+/* ---- improvement (guard/search_improve.c) ---- */
+typedef struct improvement {
+    bool moved;     /* the last round moved points: the next one looks for guards */
+    uint64_t draws; /* steps that drew random numbers: each has streams of its own */
+    int idle;       /* rounds that looked for guards and found none */
+} improvement;
+
+struct search {
+    const guard_problem *problem;
+    guard_pool *pool; /* receives the points that were tested against all columns */
+    witness_set witnesses;
+    search_cells cells; /* the box tree (guard/cells.c) */
+    search_points points;
+    search_duals duals;
+    search_incumbent best;
+    search_asked asked;
+    improvement improving;
+    search_effort effort;
+};
+
+/* A round of looking for better guards, *ended: another would find nothing; the work for all; and
+ * integer programs at their end. */
+starg_status search_improve(search *s, row_list *list, bool *ended);
+uint64_t search_improve_work(const search *s);
+starg_status search_close(search *s, bool *better);
+
+/* A round of a proof (guard/search_proof.c), *ended as before; and what raises the bound at its
+ * end: prices for which all cells count as points, and those that there are. */
+starg_status search_prove(search *s, row_list *list, bool *ended);
+starg_status search_prove_by_leaves(search *s);
+starg_status search_prove_by_prices(search *s);
+
+/* ---- steps ---- */
+
+/* Faces that the fractional cover by the listed points lacks become witnesses. *changed: any. */
 starg_status search_add_short(search *s, const row_list *list, bool *changed);
 
 /* Tests points of the search that see all witnesses often enough against all faces: they are better
- * guards, or the faces that they miss become witnesses. *changed: either. Errors: MEMORY,
- * CANCELLED. */
+ * guards, or the faces that they miss become witnesses. *changed: either. */
 starg_status search_try_guards(search *s, const uint32_t *points, size_t count, bool *changed);
 
-/* Turns points of the search into candidates, with full visibility rows. Errors: MEMORY,
- * CANCELLED. */
-starg_status search_hold(search *s, const uint32_t *points, size_t count);
+/* Adds more valuable points than are known (guard/search_moves.c). *most: the best value, or 0. */
+starg_status search_move(const search_scene *scene, const witness_prices *prices, uint64_t draw,
+                         search_points *points, search_effort *effort, double *most);
 
-/* Adds points that are more valuable than known ones (guard/search_moves.c). *most: the value of
- * the best, 0 if there is none. Errors: MEMORY, CANCELLED. */
-starg_status search_move(search *s, double *most);
+/* Local search for one guard fewer (guard/search_fewer.c). *changed: it, or more witnesses. */
+starg_status search_fewer(search *s, uint64_t draw, bool *changed);
+
+/* A random witness of the row; `none` if it holds none. */
+size_t search_draw(const witness_row *row, size_t none, starg_rng *rng);
 
 /* Where a proposed point stands: around the point that it is to replace, between that and another
  * one, in front of the witness, or just inside the wall that the point looks at. */
@@ -188,40 +226,5 @@ typedef enum search_stand {
 void search_propose(const search_scene *scene, const search_point *best, size_t j,
                     const double *other, search_stand stand, double step, starg_rng *rng,
                     search_point *out);
-
-/* Local search for one guard fewer (guard/search_fewer.c). *changed: there are better guards, or
- * more witnesses. Errors: MEMORY, CANCELLED. */
-starg_status search_fewer(search *s, bool *changed);
-
-/* A leaf to split, the highest score first. */
-typedef struct scored_leaf {
-    double score;
-    uint32_t cell;
-} scored_leaf;
-
-typedef STARG_ARRAY(scored_leaf) leaf_list;
-
-/* Sorts the leaves and splits those at the front that can be split, about a quarter of them, with
- * `tries` points in each part. Errors: MEMORY, CANCELLED. */
-starg_status search_split(search *s, scored_leaf *list, size_t count, int tries);
-
-/* By decreasing score, then by number. */
-int search_by_score(const void *a, const void *b);
-
-/* Appends leaves from number `first` on that are worth more than `most`. Errors: MEMORY. */
-starg_status search_list_leaves(search *s, double most, size_t first, leaf_list *list);
-
-/* The integer program over the points: do fewer guards see all witnesses? *changed: there are
- * better guards, or more witnesses. Errors: MEMORY, CANCELLED. */
-starg_status search_ask_points(search *s, bool *changed);
-
-/* The integer program over all columns and the candidates that may be among fewer guards, by the
- * prices: raises `known` to its bound. Errors: MEMORY, CANCELLED. */
-starg_status search_ask_candidates(search *s);
-
-/* The integer program over cells and points. If fewer of them than guards cover all witnesses,
- * splits these cells or tries these points; otherwise branching proves the bound. *changed: there
- * are more cells, more witnesses or better guards. Errors: MEMORY, CANCELLED. */
-starg_status search_ask_cells(search *s, bool *changed);
 
 #endif

@@ -6,21 +6,22 @@
  * meet, as at a reflex edge, may see what is seen on either side, however small they are, and
  * prices that rest on this are never proven. So leaves no longer than `finest` are rows of the
  * program like points: the prices do without what only a smaller cell would show. They prove less
- * than those of the points at first, and the loop of the search (guard/search.c) halves `finest`
- * while that matters.
+ * than those of the points at first, and the proof (guard/search_proof.c) halves `finest` while
+ * that matters.
  *
  * The program starts with rows of high value at the previous prices, and without witnesses that had
  * no price; a row left out is added once it exceeds 1, a witness once the cover holds too little of
  * it. Odd sets of witnesses (guard/odd_sets.h) have prices like witnesses. */
 #include <math.h>
 
+#include "geometry/vec3.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";
 
 /* PROGRAMS is a safeguard: prices that are not found to the end are scaled down, and of little use.
  * COMPARISONS and VALUES of rows take as long as a test of a witness. */
-enum { PROGRAMS = 30, COMPARISONS = 150, VALUES = 5, ODD_ROUNDS = 5 };
+enum { PROGRAMS = 30, COMPARISONS = 150, VALUES = 5, ODD_ROUNDS = 5, OTHERS_TURN = 3 };
 
 /* The least share of a fractional cover that counts. */
 static const double LEAST_SHARE = 1e-6;
@@ -34,149 +35,199 @@ static const double LEAST_PRICE = 1e-4;
 /* Of the sum of prices, between two searches for odd sets. */
 static const double LEAST_CHANGE = 5e-3;
 
-bool search_is_fine(const search *s, const search_cell *leaf) {
-    return cell_length(&leaf->box) <= s->finest;
+static bool is_fine(const search_duals *d, const search_cell *leaf) {
+    return cell_length(&leaf->box) <= d->finest;
 }
 
-static void list_fine(search *s, double least, const witness_row *among, row_list *list) {
-    uint64_t compared = 0;
-    for (size_t i = 0; i < s->cells.count && s->finest > 0; i++) {
-        const search_cell *cell = &s->cells.data[i];
-        if (cell->children != 0 || !search_is_fine(s, cell) || search_worth(s, &cell->open) < least)
-            continue;
-        compared += list->count;
-        if (!is_needless(list, &cell->open, among)) {
-            list->points[list->count] = UINT32_MAX;
-            list->rows[list->count++] = &cell->open;
-        }
-    }
-    s->scene.work += compared / COMPARISONS + s->cells.count / VALUES;
-}
+/* ---- lists of rows ---- */
 
-static double largest_fine(search *s) {
-    double most = 0;
-    s->scene.work += s->cells.count / VALUES;
-    for (size_t i = 0; i < s->cells.count && s->finest > 0; i++)
-        if (s->cells.data[i].children == 0 && search_is_fine(s, &s->cells.data[i]))
-            most = fmax(most, search_worth(s, &s->cells.data[i].open));
-    return most;
-}
-
-bool search_fine_bind(const search *s, const row_list *list) {
-    for (size_t i = 0; i < list->count; i++)
-        if (list->points[i] == UINT32_MAX && s->prices.share[i] > LEAST_SHARE)
+bool row_list_holds(const row_list *list, const witness_row *row, const witness_row *among) {
+    for (size_t k = 0; k < list->count; k++)
+        if (row_is_within_among(row, list->rows[k], among))
             return true;
     return false;
 }
 
+starg_status row_list_make(const search_duals *d, row_list *out) {
+    size_t most = 2 * d->points->count + d->cells->count;
+    starg_context *context = d->witnesses->scene.context;
+    NEW(context, STAGE, out->rows, most);
+    NEW(context, STAGE, out->names, most);
+    return STARG_OK;
+}
+
+void row_list_add(row_list *list, const witness_row *row, size_t name) {
+    list->rows[list->count] = row;
+    list->names[list->count++] = (uint32_t)name;
+}
+
+void row_list_free(row_list *list) {
+    RELEASE(list->rows, list->names);
+}
+
+static void list_fine(const search_duals *d, double least, const witness_row *among, row_list *list,
+                      uint64_t *work) {
+    uint64_t compared = 0;
+    for (size_t i = 0; i < d->cells->count && d->finest > 0; i++) {
+        const search_cell *cell = &d->cells->data[i];
+        if (cell->children != 0 || !is_fine(d, cell) || duals_of_row(d, &cell->open) < least)
+            continue;
+        compared += list->count;
+        if (!row_list_holds(list, &cell->open, among))
+            row_list_add(list, &cell->open, ROW_LEAF + i);
+    }
+    *work += compared / COMPARISONS + d->cells->count / VALUES;
+}
+
 /* Adds points worth at least `least` to the list, with those that see a witness none of it sees. */
-static void list_worthy(const search *s, double least, const uint8_t *listed,
+static void list_worthy(const search_duals *d, double least, const uint8_t *listed,
                         const witness_row *among, row_list *list) {
     witness_row held = {{0}};
-    for (size_t i = 0; i < s->points.count; i++)
-        if (!listed[i] && search_worth(s, &s->points.data[i].seen) >= least &&
-            !is_needless(list, &s->points.data[i].seen, among))
-            row_list_add(s, list, i);
+    for (size_t i = 0; i < d->points->count; i++)
+        if (!listed[i] && duals_of_row(d, &d->points->data[i].seen) >= least &&
+            !row_list_holds(list, &d->points->data[i].seen, among))
+            row_list_add(list, &d->points->data[i].seen, i);
     for (size_t k = 0; k < list->count; k++)
         for (int w = 0; w < WITNESS_WORDS; w++)
             held.bits[w] |= list->rows[k]->bits[w];
-    for (size_t i = 0; i < s->points.count; i++)
-        if (!row_is_within(&s->points.data[i].seen, &held))
-            row_list_add(s, list, i);
+    for (size_t i = 0; i < d->points->count; i++)
+        if (!row_is_within(&d->points->data[i].seen, &held))
+            row_list_add(list, &d->points->data[i].seen, i);
 }
 
-double search_largest_value(const search *s) {
-    double most = 1;
-    for (size_t i = 0; i < s->points.count; i++)
-        most = fmax(most, search_worth(s, &s->points.data[i].seen));
+/* ---- leaves ---- */
+
+starg_status duals_list_leaves(const search_duals *d, double most, size_t first, leaf_list *list,
+                               uint64_t *work) {
+    for (size_t i = first; i < d->cells->count; i++) {
+        const search_cell *cell = &d->cells->data[i];
+        if (cell->children != 0 || is_fine(d, cell))
+            continue;
+        double value = duals_of_row(d, &cell->open);
+        if (value <= most)
+            continue;
+        double size = vec3_distance(cell->box.lower, cell->box.upper);
+        scored_leaf leaf = {(value - most) * sqrt(size), (uint32_t)i};
+        PUSH(d->witnesses->scene.context, STAGE, list, leaf);
+    }
+    *work += (d->cells->count - first) / VALUES;
+    return STARG_OK;
+}
+
+static double largest_fine(const search_duals *d, uint64_t *work) {
+    double most = 0;
+    *work += d->cells->count / VALUES;
+    for (size_t i = 0; i < d->cells->count && d->finest > 0; i++)
+        if (d->cells->data[i].children == 0 && is_fine(d, &d->cells->data[i]))
+            most = fmax(most, duals_of_row(d, &d->cells->data[i].open));
     return most;
+}
+
+double duals_of_best_point(const search_duals *d) {
+    double most = 1;
+    for (size_t i = 0; i < d->points->count; i++)
+        most = fmax(most, duals_of_row(d, &d->points->data[i].seen));
+    return most;
+}
+
+void duals_set_finest(search_duals *d, double finest) {
+    if (finest > d->finest)
+        d->odd_rounds = 0;
+    d->finest = finest;
+}
+
+bool duals_are_held(search_duals *d, const row_list *list, bool *others) {
+    bool held = false;
+    for (size_t i = 0; i < list->count && !held; i++)
+        held = list->names[i] >= ROW_LEAF && d->prices.share[i] > LEAST_SHARE;
+    if (held)
+        d->refinements++;
+    *others = !held || d->refinements % OTHERS_TURN == 0;
+    return held;
 }
 
 /* ---- witnesses without a price ---- */
 
-static witness_row priced_witnesses(const search *s) {
-    witness_row wanted = all_witnesses(s);
+static witness_row priced_witnesses(const search_duals *d) {
+    witness_row wanted = search_scene_witnesses(&d->witnesses->scene, 0);
     for (int w = 0; w < WITNESS_WORDS; w++)
-        wanted.bits[w] &= ~s->unpriced.bits[w];
+        wanted.bits[w] &= ~d->unpriced.bits[w];
     return wanted;
 }
 
 /* With those of the odd sets. */
-static witness_row among_and_odd(const search *s, const witness_row *wanted) {
+static witness_row among_and_odd(const search_duals *d, const witness_row *wanted) {
     witness_row among = *wanted;
-    for (size_t k = 0; k < s->odd.count; k++)
-        for (size_t i = 0; i < s->odd.set[k].count; i++)
-            starg_bit_set(among.bits, s->odd.set[k].witness[i]);
+    for (size_t k = 0; k < d->odd.count; k++)
+        for (size_t i = 0; i < d->odd.set[k].count; i++)
+            starg_bit_set(among.bits, d->odd.set[k].witness[i]);
     return among;
 }
 
 /* Idle witnesses of which the fractional cover holds too little get prices again. False: none. */
-static bool wake_witnesses(search *s, const row_list *list) {
+static bool wake_witnesses(search_duals *d, const row_list *list) {
     double held[MOST_WITNESSES] = {0};
     bool any = false;
     for (size_t i = 0; i < list->count; i++)
         for (size_t w = 0; w < WITNESS_WORDS; w++)
-            STARG_FOR_BITS (bit, list->rows[i]->bits[w] & s->unpriced.bits[w])
-                held[64 * w + bit] += s->prices.share[i];
-    for (size_t j = 0; j < s->scene.witnesses.count; j++)
-        if (starg_bit_test(s->unpriced.bits, j) && held[j] < 1 - SEARCH_GAP) {
-            starg_bit_clear(s->unpriced.bits, j);
+            STARG_FOR_BITS (bit, list->rows[i]->bits[w] & d->unpriced.bits[w])
+                held[64 * w + bit] += d->prices.share[i];
+    for (size_t j = 0; j < d->witnesses->scene.witnesses.count; j++)
+        if (starg_bit_test(d->unpriced.bits, j) && held[j] < 1 - SEARCH_GAP) {
+            starg_bit_clear(d->unpriced.bits, j);
             any = true;
         }
     return any;
 }
 
-static void rest_witnesses(search *s) {
-    for (size_t j = 0; j < s->scene.witnesses.count; j++)
-        if (s->prices.price[j] < LEAST_PRICE)
-            starg_bit_set(s->unpriced.bits, j);
-}
-
-starg_status search_find_odd(search *s, const row_list *list, bool *changed) {
+starg_status duals_find_odd(search_duals *d, const row_list *list, bool *changed, uint64_t *work) {
     size_t added = 0;
-    const odd_sets_question question = {list->rows, s->prices.share, list->count, s->prices.price};
+    const odd_sets_question question = {list->rows, d->prices.share, list->count, d->prices.price};
     *changed = false;
-    if (s->redundancy > 1 || s->odd_rounds == ODD_ROUNDS ||
-        fabs(search_value(s) - s->odd_value) < LEAST_CHANGE) {
-        s->odd_rounds = 0;
+    if (d->witnesses->redundancy > 1 || d->odd_rounds == ODD_ROUNDS ||
+        fabs(duals_value(d) - d->odd_value) < LEAST_CHANGE) {
+        d->odd_rounds = 0;
         return STARG_OK;
     }
-    s->odd_value = search_value(s);
-    s->odd_rounds++;
-    TRY(odd_sets_renew(context_of(s), &question, &s->odd, s->prices.odd, &added, &s->scene.work));
+    d->odd_value = duals_value(d);
+    d->odd_rounds++;
+    TRY(odd_sets_renew(d->witnesses->scene.context, &question, &d->odd, d->prices.odd, &added,
+                       work));
     *changed = added > 0;
     return STARG_OK;
 }
 
-starg_status search_find_prices(search *s, row_list *list) {
-    starg_context *context = context_of(s);
+starg_status duals_find(search_duals *d, row_list *list, uint64_t *work) {
+    starg_context *context = d->witnesses->scene.context;
     SCOPED uint8_t *listed = NULL;
     double most = 1;
-    uint64_t before = s->scene.work;
-    NEW_ZERO(context, STAGE, listed, s->points.count);
-    double least = s->prices.sum > 0 ? 0.8 : 0;
+    uint64_t before = *work;
+    NEW_ZERO(context, STAGE, listed, d->points->count);
+    double least = d->prices.sum > 0 ? 0.8 : 0;
     list->count = 0;
     for (int k = 0; k < PROGRAMS; k++) {
-        const witness_row wanted = priced_witnesses(s), among = among_and_odd(s, &wanted);
-        list_fine(s, k == 0 ? fmax(least, BINDING) : least, &among, list);
-        list_worthy(s, least, listed, &among, list);
+        const witness_row wanted = priced_witnesses(d), among = among_and_odd(d, &wanted);
+        list_fine(d, k == 0 ? fmax(least, BINDING) : least, &among, list, work);
+        list_worthy(d, least, listed, &among, list);
         for (size_t i = 0; i < list->count; i++)
-            if (list->points[i] != UINT32_MAX)
-                listed[list->points[i]] = 1;
-        prices_free(&s->prices);
-        TRY(prices_find(context, list->rows, list->count, &wanted, &s->odd, &s->prices));
-        s->scene.work += s->prices.work;
-        most = search_largest_value(s);
+            if (list->names[i] < ROW_LEAF)
+                listed[list->names[i]] = 1;
+        prices_free(&d->prices);
+        TRY(prices_find(context, list->rows, list->count, &wanted, &d->odd, &d->prices));
+        *work += d->prices.work;
+        most = duals_of_best_point(d);
         least = 1 + 1e-9;
-        if (!wake_witnesses(s, list) && fmax(most, largest_fine(s)) < 1 + SEARCH_GAP)
+        if (!wake_witnesses(d, list) && fmax(most, largest_fine(d, work)) < 1 + SEARCH_GAP)
             break;
     }
-    rest_witnesses(s);
+    for (size_t j = 0; j < d->witnesses->scene.witnesses.count; j++)
+        if (d->prices.price[j] < LEAST_PRICE)
+            starg_bit_set(d->unpriced.bits, j);
     for (size_t j = 0; j < MOST_WITNESSES; j++)
-        s->prices.price[j] /= most;
-    for (size_t k = 0; k < s->odd.count; k++)
-        s->prices.odd[k] /= most;
-    s->prices.sum /= most;
-    s->prices.work = s->scene.work - before;
+        d->prices.price[j] /= most;
+    for (size_t k = 0; k < d->odd.count; k++)
+        d->prices.odd[k] /= most;
+    d->prices.sum /= most;
+    d->prices.work = *work - before;
     return STARG_OK;
 }

@@ -24,250 +24,196 @@ enum { ROWS_SHARE = 8, ROOT_ROWS = 2000, NODE_ROWS = 32 };
 
 static const double ROUNDING = 1e-6;
 
-static starg_status make_program(const search *s, const row_list *list, starg_bits **out) {
-    starg_status status =
-        starg_bits_create(context_of(s), list->count, s->scene.witnesses.count, out);
-    for (size_t i = 0; status == STARG_OK && i < list->count; i++)
-        memcpy(starg_bits_row_mutable(*out, i), list->rows[i]->bits,
-               (*out)->words * sizeof(uint64_t));
-    return status;
-}
-
 /* Points worth at least `least` that see what no other of them does. */
-static void list_needed(const search *s, double least, row_list *list) {
-    const witness_row all = all_witnesses(s);
+static void list_needed(const search_duals *d, double least, row_list *list) {
+    const witness_row all = search_scene_witnesses(&d->witnesses->scene, 0);
     list->count = 0;
-    for (size_t i = 0; i < s->points.count; i++) {
-        const witness_row *seen = &s->points.data[i].seen;
-        if (search_worth(s, seen) >= least && !is_needless(list, seen, &all))
-            row_list_add(s, list, i);
+    for (size_t i = 0; i < d->points->count; i++) {
+        const witness_row *seen = &d->points->data[i].seen;
+        if (duals_of_row(d, seen) >= least && !row_list_holds(list, seen, &all))
+            row_list_add(list, seen, i);
     }
 }
 
-/* Points that may be among fewer guards: together they are worth as much as all witnesses, and none
- * of the others exceeds the most valuable point. */
-static void list_useful(const search *s, row_list *list) {
-    double most = search_largest_value(s);
-    list_needed(s, search_value(s) - ((double)s->count - 2) * most - ROUNDING, list);
+/* The least value of points that may be among fewer guards: together they are worth as much as all
+ * witnesses, and none of the others exceeds the most valuable point. */
+static double least_useful(const search *s) {
+    double others = (double)s->best.guards.count - 2;
+    return duals_value(&s->duals) - others * duals_of_best_point(&s->duals) - ROUNDING;
 }
 
-/* What an integer program costs, as far as rows, witnesses and nodes tell. */
-static uint64_t cost_of(const starg_bits *rows, const starg_cover *cover) {
-    size_t branching = cover->nodes > 0 ? ROOT_ROWS + NODE_ROWS * cover->nodes : 0;
-    return (rows->rows / ROWS_SHARE + branching) * rows->columns;
-}
-
-/* Solves the cover problem of the rows: how few see all witnesses often enough? */
-static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) {
+/* Solves the cover problem of the rows: how few see all columns often enough? */
+static starg_status solve(const search *s, const starg_bits *rows, size_t nodes,
+                          starg_cover **out) {
     starg_cover_problem problem;
     starg_cover_options options;
     starg_cover_problem_default(&problem);
     starg_cover_options_default(&options);
     problem.rows = rows;
-    problem.redundancy = (uint32_t)s->redundancy;
-    options.max_nodes = s->nodes;
+    problem.redundancy = s->problem->options->redundancy;
+    options.max_nodes = nodes;
     if (guard_is_brief(s->problem->options))
         options.method = STARG_COVER_LOCAL;
-    starg_status status = starg_cover_solve(context_of(s), &problem, &options, out);
-    if (status == STARG_OK)
-        s->scene.work += cost_of(rows, *out);
-    return status;
+    return starg_cover_solve(s->problem->context, &problem, &options, out);
 }
 
-/* The integer program over the points: do fewer guards see all witnesses? *changed: there are
- * better guards, or more witnesses. */
+/* The same for the witnesses. What it costs is counted as far as rows, witnesses and nodes tell. */
+static starg_status solve_list(search *s, const row_list *list, starg_cover **out) {
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
+    TRY(starg_bits_create(s->problem->context, list->count, s->witnesses.scene.witnesses.count,
+                          &rows));
+    for (size_t i = 0; i < list->count; i++)
+        memcpy(starg_bits_row_mutable(rows, i), list->rows[i]->bits,
+               rows->words * sizeof *rows->data);
+    TRY(solve(s, rows, s->effort.nodes, out));
+    size_t branching = (*out)->nodes > 0 ? ROOT_ROWS + NODE_ROWS * (*out)->nodes : 0;
+    s->effort.work += (rows->rows / ROWS_SHARE + branching) * rows->columns;
+    return STARG_OK;
+}
+
+/* Tries the rows of a cover, of which `points` says what they are, if they are fewer than guards.
+ */
+static starg_status try_cover(search *s, starg_cover *cover, const uint32_t *points,
+                              bool *changed) {
+    if (cover->count >= s->best.guards.count)
+        return STARG_OK;
+    for (size_t k = 0; k < cover->count; k++)
+        cover->rows[k] = points[cover->rows[k]];
+    return search_try_guards(s, cover->rows, cover->count, changed);
+}
+
 starg_status search_ask_points(search *s, bool *changed) {
-    starg_status status = STARG_OK;
-    starg_context *context = context_of(s);
-    starg_bits *rows = NULL;
-    starg_cover *cover = NULL;
-    row_list list = {0};
-    uint64_t before = s->scene.work;
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
+    SCOPED_BY(row_list_free) row_list list = {0};
+    uint64_t before = s->effort.work;
     *changed = false;
-    STARG_TRY(row_list_make(context, s->points.count, &list));
-    list_useful(s, &list);
-    STARG_TRY(make_program(s, &list, &rows));
-    STARG_TRY(solve(s, rows, &cover));
-    s->asked_at = s->cells.count;
-    s->ask_after = s->scene.work + ASKING_SHARE * (s->scene.work - before);
-    s->asked_of = s->scene.witnesses.count;
-    size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;
-    s->known = bound > s->known ? bound : s->known;
-    if (cover->count < s->count) {
-        for (size_t k = 0; k < cover->count; k++)
-            cover->rows[k] = list.points[cover->rows[k]];
-        STARG_TRY(search_try_guards(s, cover->rows, cover->count, changed));
-    }
-done:
-    row_list_free(context, &list);
-    starg_cover_free(cover);
-    starg_bits_free(rows);
-    return status;
+    TRY(row_list_make(&s->duals, &list));
+    list_needed(&s->duals, least_useful(s), &list);
+    TRY(solve_list(s, &list, &cover));
+    s->asked.cells = s->cells.count;
+    s->asked.after = s->effort.work + ASKING_SHARE * (s->effort.work - before);
+    s->asked.witnesses = s->witnesses.scene.witnesses.count;
+    size_t guards = s->best.guards.count;
+    points_raise_bound(&s->points, cover->lower_bound < guards ? cover->lower_bound : guards);
+    return try_cover(s, cover, list.names, changed);
 }
 
-/* The candidates that may be among fewer guards, as in `list_useful`, but dominated ones stay: a
- * dominating candidate may see less outside the witnesses. */
-static void list_useful_candidates(const search *s, uint32_t *list, size_t *count) {
-    double most = search_largest_value(s);
-    double least = search_value(s) - ((double)s->count - 2) * most - ROUNDING;
-    *count = 0;
-    for (size_t i = 0; i < s->points.count; i++)
-        if (s->points.data[i].candidate != UINT32_MAX &&
-            search_worth(s, &s->points.data[i].seen) >= least)
-            list[(*count)++] = (uint32_t)i;
+/* Unlike those of `list_needed`, candidates stay that others dominate: a dominating one may see
+ * less outside the witnesses. */
+static starg_status ask_candidates(search *s) {
+    const search_points *points = &s->points;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
+    SCOPED uint32_t *list = NULL, *of_pool = NULL;
+    size_t count = 0;
+    bool changed;
+    double least = least_useful(s);
+    NEW(s->problem->context, STAGE, list, points->count);
+    NEW(s->problem->context, STAGE, of_pool, points->count);
+    for (size_t i = 0; i < points->count; i++)
+        if (points->data[i].candidate != UINT32_MAX &&
+            duals_of_row(&s->duals, &points->data[i].seen) >= least) {
+            of_pool[count] = points->data[i].candidate;
+            list[count++] = (uint32_t)i;
+        }
+    TRY(pool_copy_rows(s->pool, of_pool, count, &rows));
+    TRY(solve(s, rows, s->problem->options->max_nodes, &cover));
+    size_t guards = s->best.guards.count;
+    s->asked.bound = cover->lower_bound < guards ? cover->lower_bound : guards;
+    TRY(try_cover(s, cover, list, &changed));
+    s->asked.candidates = pool_count(s->pool);
+    return STARG_OK;
 }
 
 starg_status search_ask_candidates(search *s) {
-    starg_context *context = context_of(s);
-    const starg_bits *all = s->pool->rows;
-    starg_cover_problem problem;
-    starg_cover_options options;
-    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
-    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
-    SCOPED uint32_t *list = NULL;
-    size_t count;
-    bool changed;
-    starg_cover_problem_default(&problem);
-    starg_cover_options_default(&options);
-    NEW(context, STAGE, list, s->points.count);
-    list_useful_candidates(s, list, &count);
-    TRY(starg_bits_create(context, count, all->columns, &rows));
-    for (size_t k = 0; k < count; k++)
-        memcpy(starg_bits_row_mutable(rows, k),
-               starg_bits_row(all, s->points.data[list[k]].candidate),
-               all->words * sizeof *all->data);
-    problem.rows = rows;
-    problem.redundancy = (uint32_t)s->redundancy;
-    options.max_nodes = s->problem->options->max_nodes;
-    if (guard_is_brief(s->problem->options))
-        options.method = STARG_COVER_LOCAL;
-    TRY(starg_cover_solve(context, &problem, &options, &cover));
-    size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;
-    for (size_t k = 0; k < cover->count; k++)
-        cover->rows[k] = list[cover->rows[k]];
-    if (cover->count < s->count)
-        TRY(search_try_guards(s, cover->rows, cover->count, &changed));
-    s->asked_pool = pool_count(s->pool);
-    s->asked_bound = bound;
+    if (pool_count(s->pool) > s->asked.candidates)
+        TRY(ask_candidates(s));
+    points_raise_bound(&s->points, s->asked.bound);
     return STARG_OK;
 }
 
 /* ---- cells and points ---- */
 
-/* Columns of the program that no other one contains. Leaves that see no more than a point does are
- * settled, and the point represents them. */
-typedef struct column_list {
-    row_list rows;
-    uint32_t *cells; /* by column: the leaf, or UINT32_MAX for a point */
-} column_list;
-
-static starg_status list_columns(const search *s, column_list *out) {
-    size_t most = s->points.count + s->cells.count, hint = 0;
-    TRY(row_list_make(context_of(s), most, &out->rows));
-    NEW(context_of(s), STAGE, out->cells, most);
-    list_needed(s, 0, &out->rows);
-    for (size_t k = 0; k < out->rows.count; k++)
-        out->cells[k] = UINT32_MAX;
+/* Rows that no other one contains. Leaves that see no more than a point does are settled, and the
+ * point represents them. */
+static void list_all(const search *s, row_list *list) {
+    size_t hint = 0;
+    list_needed(&s->duals, 0, list);
     for (size_t i = 0; i < s->cells.count; i++) {
         const witness_row *open = &s->cells.data[i].open;
         bool needless = s->cells.data[i].children != 0 ||
-                        (hint < out->rows.count && row_is_within(open, out->rows.rows[hint]));
-        for (size_t k = 0; k < out->rows.count && !needless; k++)
-            if (row_is_within(open, out->rows.rows[k])) {
+                        (hint < list->count && row_is_within(open, list->rows[hint]));
+        for (size_t k = 0; k < list->count && !needless; k++)
+            if (row_is_within(open, list->rows[k])) {
                 needless = true;
                 hint = k;
             }
-        if (needless)
-            continue;
-        out->cells[out->rows.count] = (uint32_t)i;
-        out->rows.points[out->rows.count] = UINT32_MAX;
-        out->rows.rows[out->rows.count++] = open;
+        if (!needless)
+            row_list_add(list, open, ROW_LEAF + i);
+    }
+}
+
+/* Unsettled leaves that could replace a chosen row: they may see everything that only it sees. */
+static starg_status list_stand_ins(const search *s, const row_list *list, const starg_cover *cover,
+                                   leaf_list *out) {
+    SCOPED uint8_t *listed = NULL;
+    NEW_ZERO(s->problem->context, STAGE, listed, list->count);
+    for (size_t c = 0; c < cover->count; c++) {
+        witness_row alone = *list->rows[cover->rows[c]];
+        for (size_t o = 0; o < cover->count; o++)
+            for (int w = 0; o != c && w < WITNESS_WORDS; w++)
+                alone.bits[w] &= ~list->rows[cover->rows[o]]->bits[w];
+        for (size_t k = 0; k < list->count; k++) {
+            if (list->names[k] < ROW_LEAF || listed[k] || !row_is_within(&alone, list->rows[k]))
+                continue;
+            uint32_t cell = list->names[k] - ROW_LEAF;
+            const bvh_box *box = &s->cells.data[cell].box;
+            double size = vec3_distance(box->lower, box->upper);
+            const scored_leaf leaf = {k == cover->rows[c] ? INFINITY : size, cell};
+            PUSH(s->problem->context, STAGE, out, leaf);
+            listed[k] = 1;
+        }
     }
     return STARG_OK;
 }
 
-/* Unsettled leaves that could replace a chosen column: they may see everything that only it
- * sees. */
-static starg_status list_stand_ins(const search *s, const column_list *columns,
-                                   const starg_cover *cover, scored_leaf **out, size_t *count) {
-    starg_status status = STARG_OK;
-    uint8_t *listed = NULL;
-    *count = 0;
-    STARG_NEW_ZERO(context_of(s), STAGE, listed, columns->rows.count);
-    STARG_NEW(context_of(s), STAGE, *out, columns->rows.count);
-    for (size_t c = 0; c < cover->count; c++) {
-        witness_row alone = *columns->rows.rows[cover->rows[c]];
-        for (size_t o = 0; o < cover->count; o++)
-            for (int w = 0; o != c && w < WITNESS_WORDS; w++)
-                alone.bits[w] &= ~columns->rows.rows[cover->rows[o]]->bits[w];
-        for (size_t k = 0; k < columns->rows.count; k++) {
-            uint32_t cell = columns->cells[k];
-            if (cell == UINT32_MAX || listed[k] || !row_is_within(&alone, columns->rows.rows[k]))
-                continue;
-            const bvh_box *box = &s->cells.data[cell].box;
-            double size = vec3_distance(box->lower, box->upper);
-            (*out)[(*count)++] = (scored_leaf){k == cover->rows[c] ? INFINITY : size, cell};
-            listed[k] = 1;
-        }
-    }
-done:
-    starg_release(context_of(s), listed);
-    return status;
-}
-
-/* Fewer columns than guards cover all witnesses: splits their leaves, or tries them if all are
+/* Fewer rows than guards cover all witnesses: splits their leaves, or tries them if all are
  * points. */
-static starg_status follow_cover(search *s, const column_list *columns, starg_cover *cover,
-                                 bool *changed, bool *again) {
-    starg_status status = STARG_OK;
-    scored_leaf *leaves = NULL;
-    size_t count;
-    STARG_TRY(list_stand_ins(s, columns, cover, &leaves, &count));
-    *changed = *again = count > 0;
-    for (size_t c = 0; c < cover->count && count == 0; c++)
-        cover->rows[c] = columns->rows.points[cover->rows[c]];
-    if (count > 0)
-        STARG_TRY(search_split(s, leaves, count, MOST_TRIES));
-    else
-        STARG_TRY(search_try_guards(s, cover->rows, cover->count, changed));
-done:
-    starg_release(context_of(s), leaves);
-    return status;
+static starg_status follow_cover(search *s, const row_list *list, starg_cover *cover, bool *changed,
+                                 bool *again) {
+    SCOPED leaf_list leaves = {0};
+    bool any;
+    TRY(list_stand_ins(s, list, cover, &leaves));
+    *changed = *again = leaves.count > 0;
+    return leaves.count > 0 ? cells_split_best(&s->witnesses.scene, &s->cells, &leaves, MOST_TRIES,
+                                               &s->points, &any, &s->effort.work)
+                            : try_cover(s, cover, list->names, changed);
 }
 
-/* The integer program over cells and points. If fewer columns than guards cover all witnesses,
- * follows this solution; otherwise branching proves the bound. */
+/* If fewer rows than guards cover all witnesses, follows this solution; otherwise branching proves
+ * the bound. */
 static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
-    starg_status status = STARG_OK;
-    starg_context *context = context_of(s);
-    column_list columns = {0};
-    starg_bits *rows = NULL;
-    starg_cover *cover = NULL;
+    starg_context *context = s->problem->context;
+    guard_certificate *why = s->problem->certificate;
+    SCOPED_BY(row_list_free) row_list list = {0};
+    SCOPED_BY(branch_record_free) branch_record branches = {0};
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = NULL;
+    const size_t guards = s->best.guards.count;
+    const witness_row all = search_scene_witnesses(&s->witnesses.scene, 0);
     bool proven = false;
-    branch_record branches = {0};
-    const witness_row all = all_witnesses(s);
     *again = false;
-    STARG_TRY(list_columns(s, &columns));
-    STARG_TRY(make_program(s, &columns.rows, &rows));
-    STARG_TRY(solve(s, rows, &cover));
-    if (cover->count < s->count)
-        STARG_TRY(follow_cover(s, &columns, cover, changed, again));
-    else if (s->redundancy == 1)
-        STARG_TRY(bound_by_branching(
-            context, columns.rows.rows, columns.rows.count, &all, s->count - 1, BRANCHES, &proven,
-            s->problem->certificate != NULL ? &branches : NULL, &s->scene.work));
-    if (proven) {
-        s->bound = s->count;
-        STARG_TRY(certificate_note_rows(context, s->problem->certificate, s->bound,
-                                        columns.rows.rows, columns.rows.count, &branches));
-    }
-done:
-    branch_record_free(&branches);
-    row_list_free(context, &columns.rows);
-    starg_release(context, columns.cells);
-    starg_cover_free(cover);
-    starg_bits_free(rows);
-    return status;
+    TRY(row_list_make(&s->duals, &list));
+    list_all(s, &list);
+    TRY(solve_list(s, &list, &cover));
+    if (cover->count < guards)
+        return follow_cover(s, &list, cover, changed, again);
+    const branch_question question = {list.rows, list.count, &all, guards - 1, BRANCHES};
+    if (s->witnesses.redundancy == 1)
+        TRY(bound_by_branching(context, &question, &proven, why != NULL ? &branches : NULL,
+                               &s->effort.work));
+    if (proven && incumbent_raise(&s->best, guards))
+        TRY(certificate_note_rows(context, why, guards, list.rows, list.count, &branches));
+    return STARG_OK;
 }
 
 starg_status search_ask_cells(search *s, bool *changed) {

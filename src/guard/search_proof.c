@@ -30,78 +30,59 @@ enum { TRIES = 1 };
 
 static const double ROUNDING = 1e-6;
 
-starg_status search_prove(search *s) {
-    starg_status status = STARG_OK;
-    const witness_row **rows = NULL;
-    whole_prices whole;
-    size_t count = 0;
-    STARG_NEW(context_of(s), STAGE, rows, s->cells.count);
-    for (size_t i = 0; i < s->cells.count; i++)
-        if (s->cells.data[i].children == 0)
-            rows[count++] = &s->cells.data[i].open;
-    bound_round(&s->prices, &s->odd, &whole);
-    size_t bound = bound_of_prices(rows, count, &whole, s->redundancy);
-    if (bound > s->bound)
-        certificate_note_prices(s->problem->certificate, bound, &whole);
-    s->bound = bound > s->bound ? bound : s->bound;
-done:
-    starg_release(context_of(s), rows);
-    return status;
-}
+/* ---- steps of a round ---- */
 
-bool search_has_room(const search *s) {
-    return search_value(s) <= (double)s->count - 1 + SEARCH_GAP;
-}
-
-static void drop_split(const search *s, leaf_list *list) {
-    size_t kept = 0;
-    for (size_t i = 0; i < list->count; i++)
-        if (s->cells.data[list->data[i].cell].children == 0)
-            list->data[kept++] = list->data[i];
-    list->count = kept;
-}
-
-/* If the prices leave room for fewer guards: finds better guards or more witnesses. */
+/* If the prices leave room for fewer guards, and enough is new since the last time: finds better
+ * guards or more witnesses. */
 static starg_status look_for_guards(search *s, bool last, bool *changed) {
+    const search_asked *asked = &s->asked;
+    const size_t cells = s->cells.count, witnesses = s->witnesses.scene.witnesses.count;
+    bool grown = last ? cells > asked->cells + asked->cells / 10 || witnesses > asked->witnesses
+                      : cells > asked->cells + asked->cells / 3 && s->effort.work >= asked->after;
     *changed = false;
-    bool grown =
-        last ? s->cells.count > s->asked_at + s->asked_at / 10 ||
-                   s->scene.witnesses.count > s->asked_of
-             : s->cells.count > s->asked_at + s->asked_at / 3 && s->scene.work >= s->ask_after;
-    if (!search_has_room(s) || !grown)
-        return STARG_OK;
-    return search_ask_points(s, changed);
+    return grown && duals_leave_room(&s->duals, s->best.guards.count)
+               ? search_ask_points(s, changed)
+               : STARG_OK;
 }
 
 /* The next bound to prove: a third of the way to what the prices allow. Cells that block a lower
  * bound also block a higher one, so no work is lost; and if the budget ends before the highest
  * bound is proven, a lower one is. */
-static size_t next_aim(const search *s) {
-    double allowed = fmin((double)s->count, ceil(search_value(s) - ROUNDING));
+static size_t next_aim(const search_incumbent *best, double value) {
+    double allowed = fmin((double)best->guards.count, ceil(value - ROUNDING));
     size_t most = allowed > 1 ? (size_t)allowed : 1;
-    return s->bound < most ? s->bound + (most - s->bound + 2) / 3 : most;
+    return best->bound < most ? best->bound + (most - best->bound + 2) / 3 : most;
+}
+
+static void drop_split(const search_cells *cells, leaf_list *list) {
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++)
+        if (cells->data[list->data[i].cell].children == 0)
+            list->data[kept++] = list->data[i];
+    list->count = kept;
 }
 
 /* Splits leaves that block the next bound, until none does or as much work went into this as into
- * the prices. *changed: there are some. */
-static starg_status split_costly(search *s, bool *changed) {
-    starg_status status = STARG_OK;
-    leaf_list leaves = {0};
-    size_t aim = next_aim(s);
-    double most = aim > 1 ? search_value(s) / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
-    uint64_t enough = s->scene.work + s->prices.work;
-    STARG_TRY(search_list_leaves(s, most, 0, &leaves));
+ * the prices. *changed: there are some; *ended: none of these can be split. */
+static starg_status split_costly(search *s, bool *changed, bool *ended) {
+    SCOPED leaf_list leaves = {0};
+    uint64_t *work = &s->effort.work;
+    const double value = duals_value(&s->duals);
+    const size_t aim = next_aim(&s->best, value);
+    const double most = aim > 1 ? value / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
+    const uint64_t enough = *work + s->duals.prices.work;
+    bool any = true;
+    TRY(duals_list_leaves(&s->duals, most, 0, &leaves, work));
     *changed = leaves.count > 0;
-    for (bool more = *changed; more;
-         more = leaves.count > 0 && !s->ended && s->scene.work < enough) {
+    for (bool more = *changed; more; more = leaves.count > 0 && any && *work < enough) {
         size_t first = s->cells.count;
-        STARG_TRY(search_split(s, leaves.data, leaves.count, TRIES));
-        drop_split(s, &leaves);
-        STARG_TRY(search_list_leaves(s, most, first, &leaves));
+        TRY(cells_split_best(&s->witnesses.scene, &s->cells, &leaves, TRIES, &s->points, &any,
+                             work));
+        drop_split(&s->cells, &leaves);
+        TRY(duals_list_leaves(&s->duals, most, first, &leaves, work));
     }
-done:
-    STARG_ARRAY_FREE(context_of(s), &leaves);
-    return status;
+    *ended = !any;
+    return STARG_OK;
 }
 
 /* No leaf blocks the bound of the prices: looks for better guards, more witnesses, or cells chosen
@@ -118,47 +99,60 @@ static starg_status ask_further(search *s, const row_list *list, bool *changed) 
 /* No leaf that is not small blocks the bound of the prices. If small ones hold them down, half as
  * small ones do from now on; every third time, or if nothing else helps, looks further. */
 static starg_status go_on(search *s, const row_list *list, bool *changed) {
-    bool bind = search_fine_bind(s, list), turn = bind && ++s->refinements % 3 != 0;
-    TRY(search_find_odd(s, list, changed));
-    if (!*changed && !turn)
+    bool others, held = duals_are_held(&s->duals, list, &others);
+    TRY(duals_find_odd(&s->duals, list, changed, &s->effort.work));
+    if (!*changed && others)
         TRY(ask_further(s, list, changed));
-    if (!*changed && bind) {
-        s->finest /= 2;
+    if (!*changed && held) {
+        duals_set_finest(&s->duals, s->duals.finest / 2);
         *changed = true;
     }
-    s->ended = !*changed;
     return STARG_OK;
 }
 
-starg_status search_prove_round(search *s, row_list *list) {
-    size_t before = s->bound;
+/* ---- rounds ---- */
+
+starg_status search_prove_by_prices(search *s) {
+    SCOPED const witness_row **rows = NULL;
+    whole_prices whole;
+    size_t count = 0;
+    NEW(s->problem->context, STAGE, rows, s->cells.count);
+    for (size_t i = 0; i < s->cells.count; i++)
+        if (s->cells.data[i].children == 0)
+            rows[count++] = &s->cells.data[i].open;
+    bound_round(&s->duals.prices, &s->duals.odd, &whole);
+    size_t bound = bound_of_prices(rows, count, &whole, s->witnesses.redundancy);
+    if (incumbent_raise(&s->best, bound))
+        certificate_note_prices(s->problem->certificate, bound, &whole);
+    return STARG_OK;
+}
+
+starg_status search_prove(search *s, row_list *list, bool *ended) {
+    size_t before = s->best.bound;
     bool changed;
-    TRY(search_find_prices(s, list));
+    *ended = false;
+    TRY(duals_find(&s->duals, list, &s->effort.work));
     TRY(look_for_guards(s, false, &changed));
     if (!changed)
-        TRY(split_costly(s, &changed));
-    TRY(search_prove(s));
-    if (!changed && s->bound < s->count && s->bound == before) {
-        TRY(go_on(s, list, &changed));
-        TRY(search_prove(s));
-    }
-    return STARG_OK;
+        TRY(split_costly(s, &changed, ended));
+    TRY(search_prove_by_prices(s));
+    if (changed || s->best.bound >= s->best.guards.count || s->best.bound > before)
+        return STARG_OK;
+    TRY(go_on(s, list, &changed));
+    *ended = !changed;
+    return search_prove_by_prices(s);
 }
 
 starg_status search_prove_by_leaves(search *s) {
-    starg_status status = STARG_OK;
-    row_list list = {0};
-    if (s->bound == s->count || starg_time_is_over(context_of(s)))
+    SCOPED_BY(row_list_free) row_list list = {0};
+    if (s->best.bound == s->best.guards.count || starg_time_is_over(s->problem->context))
         return STARG_OK;
-    s->finest = INFINITY;
-    STARG_TRY(row_list_make(context_of(s), 2 * s->points.count + s->cells.count, &list));
-    s->odd_rounds = 0;
+    duals_set_finest(&s->duals, INFINITY);
+    TRY(row_list_make(&s->duals, &list));
     for (bool changed = true; changed;) {
-        STARG_TRY(search_find_prices(s, &list));
-        STARG_TRY(search_prove(s));
-        STARG_TRY(search_find_odd(s, &list, &changed));
+        TRY(duals_find(&s->duals, &list, &s->effort.work));
+        TRY(search_prove_by_prices(s));
+        TRY(duals_find_odd(&s->duals, &list, &changed, &s->effort.work));
     }
-done:
-    row_list_free(context_of(s), &list);
-    return status;
+    return STARG_OK;
 }

@@ -4,7 +4,6 @@
 
 #include <math.h>
 
-#include "core/parallel.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "visibility/rows.h"
@@ -32,23 +31,18 @@ static void fill_places(search_scene *scene) {
 starg_status search_scene_open(starg_context *context, const starg_solid *solid,
                                const starg_visibility_options *view, double clearance,
                                search_scene *out) {
-    starg_status status = STARG_OK;
     *out = (search_scene){.context = context,
                           .solid = solid,
                           .view = view,
                           .clearance = clearance,
                           .number = ++context->search_scenes};
-    STARG_TRY(scene_create(context, solid, &out->points));
-    STARG_TRY(scene_add_sights(out->points));
-    STARG_TRY(box_scene_create(context, solid, &out->boxes));
-    STARG_NEW(context, STAGE, out->places, target_columns(solid, view->target));
-    STARG_NEW(context, STAGE, out->ranks, solid->mesh->vertex_count);
+    TRY(scene_create(context, solid, &out->points));
+    TRY(scene_add_sights(out->points));
+    TRY(box_scene_create(context, solid, &out->boxes));
+    NEW(context, STAGE, out->places, target_columns(solid, view->target));
+    NEW(context, STAGE, out->ranks, solid->mesh->vertex_count);
     fill_places(out);
-    STARG_TRY(solid_parts_find(context, solid, &out->parts));
-done:
-    if (status != STARG_OK)
-        search_scene_close(out);
-    return status;
+    return solid_parts_find(context, solid, &out->parts);
 }
 
 /* Sight lines go down a tree; by docs/BENCHMARKS.md, "Units of work". */
@@ -155,42 +149,4 @@ witness_row search_scene_witnesses(const search_scene *scene, size_t first) {
     for (size_t j = first; j < scene->witnesses.count; j++)
         starg_bit_set(row.bits, j);
     return row;
-}
-
-typedef struct looking {
-    const search_scene *scene;
-    search_point *points;
-    uint64_t *work; /* by item */
-    witness_row among;
-} looking;
-
-static starg_status look_from_item(starg_context *context, void *shared, void *scratch,
-                                   size_t item) {
-    looking *l = shared;
-    (void)context;
-    (void)scratch;
-    if (l->points[item].candidate == UINT32_MAX)
-        l->work[item] = search_scene_look(l->scene, &l->points[item], &l->among);
-    return STARG_OK;
-}
-
-starg_status points_look_at(search_scene *scene, search_point *points, size_t count,
-                            const witness_row *among) {
-    starg_status status = STARG_OK;
-    starg_context *context = scene->context;
-    looking l = {scene, points, NULL, *among};
-    STARG_NEW_ZERO(context, STAGE, l.work, count);
-    const starg_parallel_loop loop = {
-        .stage = STAGE, .count = count, .shared = &l, .item = look_from_item, .silent = true};
-    STARG_TRY(starg_parallel_for(context, &loop));
-    for (size_t i = 0; i < count; i++)
-        scene->work += l.work[i];
-done:
-    starg_release(context, l.work);
-    return status;
-}
-
-starg_status points_look(search_scene *scene, search_points *points, size_t first) {
-    const witness_row among = search_scene_witnesses(scene, first);
-    return points_look_at(scene, points->data, points->count, &among);
 }

@@ -24,10 +24,9 @@ typedef struct search_scene {
     solid_parts parts; /* no point sees witnesses of two of them */
     STARG_ARRAY(uint32_t) witnesses; /* columns: the faces or vertices that stand for all */
     uint64_t number;                 /* of the context's scenes */
-    uint64_t work; /* tests of a vertex against a box or a point, and what takes as long */
 } search_scene;
 
-/* Errors: MEMORY. */
+/* The caller closes it even if this fails. Errors: MEMORY. */
 starg_status search_scene_open(starg_context *context, const starg_solid *solid,
                                const starg_visibility_options *view, double clearance,
                                search_scene *out);
@@ -69,13 +68,18 @@ uint64_t search_scene_look(const search_scene *scene, search_point *point,
 /* The witnesses from `first` on. */
 witness_row search_scene_witnesses(const search_scene *scene, size_t first);
 
-typedef STARG_ARRAY(search_point) search_points;
+/* A STARG_ARRAY of points, and a lower bound on how many of them are needed. */
+typedef struct search_points {
+    search_point *data;
+    size_t count, capacity, bound;
+} search_points;
 
 /* Tests points that are not candidates against some witnesses. Errors: MEMORY, CANCELLED. */
-starg_status points_look_at(search_scene *scene, search_point *points, size_t count,
-                            const witness_row *among);
+starg_status points_look_at(const search_scene *scene, search_point *points, size_t count,
+                            const witness_row *among, uint64_t *work);
 
-/* Tests every point against the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
-starg_status points_look(search_scene *scene, search_points *points, size_t first);
+/* Removes points from `first` on that see no more than another does, and are no candidates: these
+ * stay, as new witnesses may raise their value. */
+void points_prune(search_points *points, size_t first, uint64_t *work);
 
 #endif

@@ -37,39 +37,51 @@ static int by_score(const void *a, const void *b) {
     return (x->column > y->column) - (x->column < y->column);
 }
 
-starg_status search_count_views(search *s) {
-    const starg_bits *rows = s->pool->rows;
-    NEW_ZERO(context_of(s), STAGE, s->views, 64 * rows->words);
-    NEW_ZERO(context_of(s), STAGE, s->viewers, 64 * rows->words);
+starg_status witness_set_begin(const guard_problem *problem, const guard_pool *pool,
+                               const guard_selection *selection, witness_set *out) {
+    const starg_bits *rows = pool->rows;
+    const starg_guard_options *o = problem->options;
+    out->redundancy = o->redundancy;
+    TRY(search_scene_open(problem->context, problem->solid, &o->visibility, o->clearance,
+                          &out->scene));
+    NEW_ZERO(pool->context, STAGE, out->need, 64 * rows->words);
+    for (size_t i = 0; i < selection->chosen.count; i++)
+        for (size_t w = 0; w < rows->words; w++)
+            STARG_FOR_BITS (bit, starg_bits_row(rows, selection->chosen.data[i])[w])
+                out->need[64 * w + bit] += out->need[64 * w + bit] < out->redundancy;
+    TRY(pool_supply(pool, &out->views));
+    NEW_ZERO(problem->context, STAGE, out->viewers, 64 * rows->words);
     for (size_t i = 0; i < rows->rows; i++) {
         uint64_t number = starg_hash64(i + 1);
         for (size_t w = 0; w < rows->words; w++)
-            STARG_FOR_BITS (bit, starg_bits_row(rows, i)[w]) {
-                s->views[64 * w + bit]++;
-                s->viewers[64 * w + bit] += number;
-            }
+            STARG_FOR_BITS (bit, starg_bits_row(rows, i)[w])
+                out->viewers[64 * w + bit] += number;
     }
     return STARG_OK;
 }
 
-static bool is_alike(const search *s, const scored_column *list, size_t count,
+void witness_set_end(witness_set *set) {
+    RELEASE(set->need, set->views, set->viewers);
+    search_scene_close(&set->scene);
+}
+
+static bool is_alike(const witness_set *set, const scored_column *list, size_t count,
                      const scored_column *one) {
     for (size_t i = 0; i < count; i++)
-        if (s->viewers[list[i].column] == s->viewers[one->column])
+        if (set->viewers[list[i].column] == set->viewers[one->column])
             return true;
     return false;
 }
 
-static bool is_witness(const search *s, uint32_t column) {
-    for (size_t j = 0; j < s->scene.witnesses.count; j++)
-        if (s->scene.witnesses.data[j] == column)
+static bool is_witness(const search_scene *scene, uint32_t column) {
+    for (size_t j = 0; j < scene->witnesses.count; j++)
+        if (scene->witnesses.data[j] == column)
             return true;
     return false;
 }
 
 /* Marks the candidates that see a column; false: one of them was already marked. */
-static bool mark_viewers(const search *s, uint32_t column, uint8_t *marked) {
-    const starg_bits *rows = s->pool->rows;
+static bool mark_viewers(const starg_bits *rows, uint32_t column, uint8_t *marked) {
     for (size_t i = 0; i < rows->rows; i++)
         if (marked[i] && starg_bits_test(rows, i, column))
             return false;
@@ -82,109 +94,76 @@ static bool mark_viewers(const search *s, uint32_t column, uint8_t *marked) {
 /* Moves at most `most` columns to the front, by increasing score, no two of which the same
  * candidates see. Within a pass no candidate sees two of the chosen columns, so they spread over
  * the whole solid, and each needs its own guard. */
-static starg_status choose_columns(const search *s, scored_column *list, size_t count, size_t most,
-                                   size_t *kept) {
-    starg_status status = STARG_OK;
-    uint8_t *marked = NULL;
-    size_t rows = s->pool->rows->rows, before = SIZE_MAX, open = 0;
-    STARG_NEW(context_of(s), STAGE, marked, rows);
+static starg_status choose_columns(const witness_set *set, const starg_bits *rows,
+                                   scored_column *list, size_t count, size_t most, size_t *kept) {
+    SCOPED uint8_t *marked = NULL;
+    size_t before = SIZE_MAX, open = 0;
+    NEW(set->scene.context, STAGE, marked, rows->rows);
     qsort(list, count, sizeof *list, by_score);
     for (size_t i = 0; i < count && open < MOST_CONSIDERED; i++)
-        if (!is_alike(s, list, open, &list[i]) && !is_witness(s, list[i].column))
+        if (!is_alike(set, list, open, &list[i]) && !is_witness(&set->scene, list[i].column))
             list[open++] = list[i];
     *kept = 0;
     while (*kept < most && *kept != before) {
         before = *kept;
-        memset(marked, 0, rows);
+        memset(marked, 0, rows->rows);
         for (size_t i = before; i < open && *kept < most; i++)
-            if (mark_viewers(s, list[i].column, marked)) {
+            if (mark_viewers(rows, list[i].column, marked)) {
                 scored_column chosen = list[i];
                 memmove(&list[*kept + 1], &list[*kept], (i - *kept) * sizeof *list);
                 list[(*kept)++] = chosen;
             }
     }
-done:
-    starg_release(context_of(s), marked);
-    return status;
+    return STARG_OK;
 }
 
-static starg_status look_at_new(search *s, size_t first) {
-    for (size_t i = 0; i < s->points.count; i++) {
-        search_point *point = &s->points.data[i];
-        for (size_t j = first; point->candidate != UINT32_MAX && j < s->scene.witnesses.count; j++)
-            if (starg_bits_test(s->pool->rows, point->candidate, s->scene.witnesses.data[j]))
-                starg_bit_set(point->seen.bits, j);
-    }
-    TRY(points_look(&s->scene, &s->points, first));
-    return cells_look(&s->scene, &s->cells, first);
-}
-
-/* Turns at most `most` columns with a score below `limit` into witnesses. *added: how many. */
+/* Turns at most `most` columns with a score below `limit` into witnesses, and tests points and
+ * cells against them. *any: there are some. */
 static starg_status add_witnesses(search *s, const double *scores, double limit, size_t most,
-                                  size_t *added) {
-    starg_context *context = context_of(s);
-    size_t columns = s->pool->columns, count = 0, first = s->scene.witnesses.count;
+                                  bool *any) {
+    witness_set *set = &s->witnesses;
+    size_t columns = s->pool->columns, count = 0, first = set->scene.witnesses.count;
     SCOPED scored_column *list = NULL;
-    *added = 0;
-    NEW(context, STAGE, list, columns);
+    *any = false;
+    NEW(set->scene.context, STAGE, list, columns);
     for (size_t j = 0; j < columns; j++)
-        if (s->need[j] == s->redundancy && scores[j] < limit)
-            list[count++] = (scored_column){scores[j], s->views[j], (uint32_t)j};
+        if (set->need[j] == set->redundancy && scores[j] < limit)
+            list[count++] = (scored_column){scores[j], set->views[j], (uint32_t)j};
     if (most > MOST_WITNESSES - first)
         most = MOST_WITNESSES - first;
-    TRY(choose_columns(s, list, count, most, &count));
+    TRY(choose_columns(set, s->pool->rows, list, count, most, &count));
     for (size_t i = 0; i < count; i++)
-        PUSH(context, STAGE, &s->scene.witnesses, list[i].column);
-    *added = count;
-    if (count > 0)
-        TRY(look_at_new(s, first));
-    return STARG_OK;
+        PUSH(set->scene.context, STAGE, &set->scene.witnesses, list[i].column);
+    *any = count > 0;
+    if (count == 0)
+        return STARG_OK;
+    TRY(points_look(&set->scene, s->pool, first, &s->points, &s->effort.work));
+    return cells_look(&set->scene, &s->cells, first, &s->effort.work);
 }
 
 /* The rarest faces, then those that the fractional cover by candidates does not see enough. */
 starg_status search_first_witnesses(search *s) {
-    starg_status status = STARG_OK;
-    double *scores = NULL;
-    row_list list = {0};
-    size_t added;
+    starg_context *context = s->problem->context;
+    SCOPED_BY(row_list_free) row_list list = {0};
+    SCOPED double *scores = NULL;
     bool changed = true;
-    STARG_NEW(context_of(s), STAGE, scores, s->pool->columns);
+    NEW(context, STAGE, scores, s->pool->columns);
     for (size_t j = 0; j < s->pool->columns; j++)
-        scores[j] = s->views[j];
-    STARG_TRY(add_witnesses(s, scores, INFINITY, FIRST_WITNESSES + s->count, &added));
+        scores[j] = s->witnesses.views[j];
+    TRY(add_witnesses(s, scores, INFINITY, FIRST_WITNESSES + s->best.guards.count, &changed));
+    TRY(row_list_make(&s->duals, &list));
+    changed = true;
     for (int k = 0; k < FIRST_ROUNDS && changed; k++) {
-        row_list_free(context_of(s), &list);
-        list = (row_list){0};
-        STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
-        STARG_TRY(search_find_prices(s, &list));
-        STARG_TRY(search_add_short(s, &list, &changed));
+        TRY(duals_find(&s->duals, &list, &s->effort.work));
+        TRY(search_add_short(s, &list, &changed));
     }
-done:
-    row_list_free(context_of(s), &list);
-    starg_release(context_of(s), scores);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- all columns ---- */
 
-starg_status search_hold(search *s, const uint32_t *points, size_t count) {
-    starg_context *context = context_of(s);
-    SCOPED_BY(candidates_free) candidate_points found = {0};
-    TIME_RULE(context, STARG_TIME_IGNORED);
-    uint32_t next = (uint32_t)pool_count(s->pool);
-    for (size_t i = 0; i < count; i++) {
-        search_point *point = &s->points.data[points[i]];
-        if (point->candidate != UINT32_MAX)
-            continue;
-        bool looks = sensor_is_directed(s->scene.view);
-        TRY(candidates_push_pose(context, &found, point->place, looks ? point->direction : NULL,
-                                 point->up));
-        point->candidate = next++;
-    }
-    s->scene.work += candidates_count(&found) * s->pool->columns / 20;
-    if (found.data.count > 0)
-        TRY(pool_add(s->pool, &found));
-    return STARG_OK;
+static starg_status hold(search *s, const uint32_t *points, size_t count) {
+    return points_hold(&s->witnesses.scene, points, count, &s->points, s->pool, &s->effort.work);
 }
 
 /* Adds a share for each column that the point sees. */
@@ -197,8 +176,7 @@ static void add_share(const search *s, uint32_t point, double share, double *sum
 }
 
 /* Removes from `missing` what the candidate that sees most of it sees; false: none sees any. */
-static bool see_most(const search *s, uint64_t *missing, uint32_t *candidate) {
-    const starg_bits *rows = s->pool->rows;
+static bool see_most(const starg_bits *rows, uint64_t *missing, uint32_t *candidate) {
     size_t most = 0;
     for (size_t i = 0; i < rows->rows; i++) {
         size_t seen = 0;
@@ -218,68 +196,61 @@ static bool see_most(const search *s, uint64_t *missing, uint32_t *candidate) {
  * `seen`: by column, how many of the points see it. */
 static starg_status take_guards(search *s, const uint32_t *points, size_t count, const double *seen,
                                 bool *complete) {
+    starg_context *context = s->problem->context;
+    const witness_set *set = &s->witnesses;
     SCOPED STARG_ARRAY(uint32_t) guards = {0};
     SCOPED uint64_t *missing = NULL;
-    size_t lacking = 0;
-    NEW_ZERO(context_of(s), STAGE, missing, s->pool->rows->words);
+    size_t lacking = 0, before = s->best.guards.count;
+    NEW_ZERO(context, STAGE, missing, s->pool->rows->words);
     for (size_t i = 0; i < count; i++)
-        PUSH(context_of(s), STAGE, &guards, s->points.data[points[i]].candidate);
+        PUSH(context, STAGE, &guards, s->points.data[points[i]].candidate);
     for (size_t j = 0; j < s->pool->columns; j++)
-        if (seen[j] < s->need[j]) {
+        if (seen[j] < set->need[j]) {
             starg_bit_set(missing, j);
             lacking++;
         }
     *complete = lacking == 0;
     uint32_t next = 0;
-    while (lacking > 0 && s->redundancy == 1 && guards.count + 1 < s->count &&
-           see_most(s, missing, &next)) {
-        PUSH(context_of(s), STAGE, &guards, next);
+    while (lacking > 0 && set->redundancy == 1 && guards.count + 1 < before &&
+           see_most(s->pool->rows, missing, &next)) {
+        PUSH(context, STAGE, &guards, next);
         lacking = starg_bit_count(missing, s->pool->rows->words);
     }
-    if (lacking > 0 || guards.count >= s->count)
+    if (lacking > 0 || guards.count >= before)
         return STARG_OK;
-    s->guards.count = 0;
-    for (size_t i = 0; i < guards.count; i++)
-        PUSH(context_of(s), STAGE, &s->guards, guards.data[i]);
-    s->count = guards.count;
-    s->better = true;
-    return search_note_guards(s);
+    return incumbent_take(context, guards.data, guards.count, s->effort.work, &s->best);
+}
+
+/* So many columns become witnesses at a time. */
+static size_t batch_of(const search *s) {
+    return MORE_WITNESSES + s->best.guards.count / 2;
 }
 
 starg_status search_try_guards(search *s, const uint32_t *points, size_t count, bool *changed) {
-    starg_status status = STARG_OK;
-    double *seen = NULL;
-    bool complete = false;
-    size_t added = 0;
-    STARG_TRY(search_hold(s, points, count));
-    STARG_NEW_ZERO(context_of(s), STAGE, seen, 64 * s->pool->rows->words);
+    SCOPED double *seen = NULL;
+    TRY(hold(s, points, count));
+    NEW_ZERO(s->problem->context, STAGE, seen, 64 * s->pool->rows->words);
     for (size_t i = 0; i < count; i++)
         add_share(s, points[i], 1, seen);
-    STARG_TRY(take_guards(s, points, count, seen, &complete));
-    if (!complete)
-        STARG_TRY(
-            add_witnesses(s, seen, (double)s->redundancy, MORE_WITNESSES + s->count / 2, &added));
-    *changed = complete || added > 0;
-done:
-    starg_release(context_of(s), seen);
-    return status;
+    TRY(take_guards(s, points, count, seen, changed));
+    return *changed ? STARG_OK
+                    : add_witnesses(s, seen, (double)s->witnesses.redundancy, batch_of(s), changed);
 }
 
 starg_status search_add_short(search *s, const row_list *list, bool *changed) {
-    starg_context *context = context_of(s);
+    starg_context *context = s->problem->context;
+    const double *share = s->duals.prices.share;
     SCOPED uint32_t *held = NULL;
     SCOPED double *sums = NULL;
-    size_t added, count = 0;
+    size_t count = 0;
     NEW(context, STAGE, held, list->count);
     for (size_t i = 0; i < list->count; i++)
-        if (s->prices.share[i] >= LEAST_SHARE && list->points[i] != UINT32_MAX)
-            held[count++] = list->points[i];
-    TRY(search_hold(s, held, count));
+        if (share[i] >= LEAST_SHARE && list->names[i] < ROW_LEAF)
+            held[count++] = list->names[i];
+    TRY(hold(s, held, count));
     NEW_ZERO(context, STAGE, sums, 64 * s->pool->rows->words);
     for (size_t i = 0; i < list->count; i++)
-        if (s->prices.share[i] >= LEAST_SHARE && list->points[i] != UINT32_MAX)
-            add_share(s, list->points[i], s->prices.share[i], sums);
-    TRY(add_witnesses(s, sums, ENOUGH, MORE_WITNESSES + s->count / 2, &added));
-    *changed = added > 0;
-    return STARG_OK;
+        if (share[i] >= LEAST_SHARE && list->names[i] < ROW_LEAF)
+            add_share(s, list->names[i], share[i], sums);
+    return add_witnesses(s, sums, ENOUGH, batch_of(s), changed);
 }

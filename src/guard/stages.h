@@ -140,6 +140,19 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
 starg_status search_area(const guard_problem *problem, const guard_pool *pool,
                          guard_selection *selection, search_record *out);
 
+/* Of the candidates of a large model, removes points without directions that cannot matter, by what
+ * they see of a level of detail (guard/carry.c). Errors: MEMORY, CANCELLED. */
+starg_status carry_candidates(const guard_problem *problem, const starg_solid *level,
+                              candidate_points *points);
+
+/* Which of these patches, ascending, does no place of the whole free space see where guards may
+ * stand, whatever they look at (guard/unseen.c)? *faces counts the faces of which that is certain
+ * for all that are listed; `places` receives points that see others. `work` is a budget as that of
+ * starg_unseen. Errors: MEMORY, CANCELLED. */
+starg_status unseen_prove(starg_context *context, const starg_solid *solid,
+                          const starg_guard_options *options, const uint32_t *patches, size_t count,
+                          uint64_t work, size_t *faces, candidate_points *places);
+
 /* Everything from the solid to the choice (guard/guard.c). Errors: MEMORY, CANCELLED, those of a
  * solid without candidates. */
 starg_status find_guards(const guard_problem *problem, guard_outcome *out);

@@ -22,7 +22,7 @@
 #include "core/parallel.h"
 #include "guard/pool.h"
 #include "guard/proxy.h"
-#include "guard/unseen.h"
+#include "guard/stages.h"
 #include "mesh/solid.h"
 #include "visibility/box.h"
 #include "visibility/scene.h"

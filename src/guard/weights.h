@@ -23,4 +23,14 @@ starg_status column_weights_create(starg_context *context, const starg_solid *so
                                    starg_target target, column_weights *out);
 void column_weights_free(column_weights *weights);
 
+/* The weight of the columns in a row of so many words. */
+static inline uint64_t column_weights_of(const column_weights *weights, const uint64_t *row,
+                                         size_t words) {
+    uint64_t sum = 0;
+    for (size_t w = 0; w < words; w++)
+        STARG_FOR_BITS (bit, row[w])
+            sum += weights->weights[64 * w + bit];
+    return sum;
+}
+
 #endif

@@ -647,9 +647,9 @@ static void test_rows(void **state) {
         uint64_t work = 0;
         bool proven = false;
         draw_rows(&rng, &r);
+        const branch_question question = {r.list, r.count, &r.wanted, r.bound - 1, 100000};
         if (r.bound > 1)
-            test_ok(context, bound_by_branching(context, r.list, r.count, &r.wanted, r.bound - 1,
-                                                100000, &proven, &record, &work));
+            test_ok(context, bound_by_branching(context, &question, &proven, &record, &work));
         if (proven) {
             char *text = certificate_of_rows(r.list, r.count, r.witnesses, r.bound, &record);
             accepted += check_copies(context, text, &rng, COPIES);

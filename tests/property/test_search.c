@@ -252,9 +252,10 @@ static void add_faces(starg_context *context, search_scene *scene, search_cells 
                       size_t to) {
     size_t faces = starg_mesh_face_count(starg_solid_mesh(scene->solid));
     starg_status status = STARG_OK;
+    uint64_t work = 0;
     for (size_t j = from; j < to; j++)
         STARG_PUSH(context, "test", &scene->witnesses, (uint32_t)(j * 7 % faces));
-    test_ok(context, cells_look(scene, cells, from));
+    test_ok(context, cells_look(scene, cells, from, &work));
 done:
     test_ok(context, status);
 }
@@ -285,6 +286,7 @@ static void test_cells_hold_their_points(void **state) {
     search_cells cells = {0};
     search_points points = {0};
     starg_bits *rows = NULL;
+    uint64_t work = 0;
     starg_visibility_options_default(&view);
     view.engine = STARG_VISIBILITY_BVH;
     test_ok(context, search_scene_open(context, solid, &view, 0, &scene));
@@ -296,7 +298,7 @@ static void test_cells_hold_their_points(void **state) {
         for (size_t i = 0; i < cells.count && count < 600; i++)
             if (cells.data[i].children == 0)
                 leaves[count++] = (uint32_t)i;
-        test_ok(context, cells_split(&scene, &cells, leaves, count, 2, &points));
+        test_ok(context, cells_split(&scene, &cells, leaves, count, 2, &points, &work));
         if (round == 5)
             add_faces(context, &scene, &cells, 60, 120);
     }

@@ -105,8 +105,8 @@ static void test_bounds_against_enumeration(void **state) {
         assert_true(bound <= least && (double)bound > prices.sum - 1e-2);
         for (size_t most = 0; most <= least; most++) {
             bool proven;
-            test_ok(context, bound_by_branching(context, p.list, p.count, &p.wanted, most, 100000,
-                                                &proven, NULL, &work));
+            const branch_question question = {p.list, p.count, &p.wanted, most, 100000};
+            test_ok(context, bound_by_branching(context, &question, &proven, NULL, &work));
             assert_true(proven == (most < least));
             branched += proven && most >= bound;
         }
@@ -262,8 +262,8 @@ static void test_corrupted_row_is_noticed(void **state) {
             bool proven = true;
             p.rows[starg_hash64(item) % p.count] = p.wanted;
             assert_int_equal(bound_of_prices(p.list, p.count, &whole, 1), 1);
-            test_ok(context, bound_by_branching(context, p.list, p.count, &p.wanted, bound - 1,
-                                                1000, &proven, NULL, &work));
+            const branch_question question = {p.list, p.count, &p.wanted, bound - 1, 1000};
+            test_ok(context, bound_by_branching(context, &question, &proven, NULL, &work));
             assert_false(proven);
             tried++;
         }

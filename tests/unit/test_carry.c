@@ -2,7 +2,7 @@
 /* Candidates that are carried from a level of detail to the model, by their definition: with rows
  * of another engine. */
 #include "core/rng.h"
-#include "guard/carry.h"
+#include "guard/stages.h"
 #include "models.h"
 #include "starguard/visibility.h"
 
