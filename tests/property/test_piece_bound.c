@@ -176,7 +176,7 @@ static void test_guards_see_corners(void **state) {
     starg_context *context = test_context(2);
     const starg_decompose_options options = options_of(false);
     size_t tried = 0, several = 0;
-    for (uint64_t item = 0; item < test_rounds(15, 600); item++) {
+    for (uint64_t item = 0; item < test_rounds(8, 600); item++) {
         starg_solid *solid = random_solid(context, item);
         starg_decomposition *d = NULL;
         if (solid == NULL)
@@ -386,7 +386,7 @@ static void test_damaged(void **state) {
     shape made = make_comb(2);
     starg_solid *solid = test_solid_of(context, &made);
     proof p = prove(context, solid);
-    size_t unread = 0, refused = 0, rounds = test_rounds(200, 10000);
+    size_t unread = 0, refused = 0, rounds = test_rounds(100, 10000);
     for (size_t i = 0; i < rounds; i++) {
         starg_rng rng = starg_rng_make(21, 4, i);
         starg_certificate *why = NULL;

@@ -22,7 +22,7 @@
 
 enum {
     SOLIDS = 2000, /* in check-long */
-    SAMPLE = 200,
+    SAMPLE = 100,
     KINDS = 8,
     DEFAULT_EVERY = 35, /* solids: one of them is searched by the default budget */
     ASKED = 20000,      /* work, where a command takes a budget */
