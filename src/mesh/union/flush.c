@@ -175,7 +175,8 @@ static starg_status add_patch(flush *u, size_t begin, uint32_t number) {
             own.hash += starg_hash64((uint64_t)side.low << 32 | side.high);
         }
     own.rim_end = u->rims.count;
-    qsort(u->rims.data + own.rim, own.rim_end - own.rim, sizeof(rim_edge), compare_rims);
+    if (own.rim_end > own.rim)
+        qsort(u->rims.data + own.rim, own.rim_end - own.rim, sizeof(rim_edge), compare_rims);
     PUSH(u->context, UNION_STAGE, &u->patches, own);
     return STARG_OK;
 }
@@ -279,7 +280,8 @@ starg_status surface_match_flush(union_surface *surface, double distance, double
     u.distance = ldexp(distance, -u.exponent);
     TRY(prepare(&u));
     TRY(find_patches(&u));
-    qsort(u.patches.data, u.patches.count, sizeof(patch), compare_patches);
+    if (u.patches.count > 0)
+        qsort(u.patches.data, u.patches.count, sizeof(patch), compare_patches);
     for (size_t i = 1, first = 0; i < u.patches.count; i++) {
         const patch *a = &u.patches.data[first], *b = &u.patches.data[i];
         if (!fits(&u, a, b, &turned))
