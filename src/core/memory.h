@@ -119,6 +119,21 @@ static inline void starg_time_leave(starg_time_scope *scope) {
         size_t count, capacity;                                                                    \
     }
 
+/* Gives an array so much room, at least for what it holds; returns STARG_ERROR_MEMORY on failure.
+ */
+#define RESERVE(CONTEXT, STAGE, ARRAY, CAPACITY)                                                   \
+    do {                                                                                           \
+        size_t starg_room_ = (CAPACITY);                                                           \
+        if ((ARRAY)->capacity != starg_room_) {                                                    \
+            void *starg_data_ = starg_reallocate((CONTEXT), (ARRAY)->data, (ARRAY)->count,         \
+                                                 starg_room_, sizeof *(ARRAY)->data);              \
+            if (starg_data_ == NULL)                                                               \
+                return starg_fail_memory((CONTEXT), (STAGE));                                      \
+            (ARRAY)->data = starg_data_;                                                           \
+            (ARRAY)->capacity = starg_room_;                                                       \
+        }                                                                                          \
+    } while (0)
+
 /* Appends VALUE; returns STARG_ERROR_MEMORY on failure. */
 #define PUSH(CONTEXT, STAGE, ARRAY, VALUE)                                                         \
     do {                                                                                           \

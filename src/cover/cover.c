@@ -103,7 +103,8 @@ static starg_status solve_limit(cover_run *run, cover_instance *instance, size_t
         if (limited.weight >= goal && limited.lower_bound < answer->lower_bound)
             limited.lower_bound = answer->lower_bound;
     }
-    STARG_ARRAY_FREE(run->context, &answer->rows);
+    RELEASE(answer->rows.data, run->prices); /* prices are of full covers */
+    run->prices = NULL;
     *answer = limited;
     limited = (cover_answer){0};
 done:

@@ -37,20 +37,8 @@ starg_status starg_source_fail(const starg_source *source, starg_place place, co
 
 starg_status starg_builder_reserve(starg_mesh_builder *builder, size_t vertices, size_t faces) {
     starg_context *context = builder->source->context;
-    if (builder->vertices.capacity != 3 * vertices) {
-        void *points = starg_reallocate(context, builder->vertices.data, builder->vertices.count,
-                                        3 * vertices, sizeof *builder->vertices.data);
-        if (points == NULL)
-            return starg_fail_memory(context, STARG_MESH_FILE);
-        builder->vertices.data = points;
-        builder->vertices.capacity = 3 * vertices;
-    }
-    void *triangles = starg_reallocate(context, builder->faces.data, builder->faces.count,
-                                       3 * faces, sizeof *builder->faces.data);
-    if (triangles == NULL)
-        return starg_fail_memory(context, STARG_MESH_FILE);
-    builder->faces.data = triangles;
-    builder->faces.capacity = 3 * faces;
+    RESERVE(context, STARG_MESH_FILE, &builder->vertices, 3 * vertices);
+    RESERVE(context, STARG_MESH_FILE, &builder->faces, 3 * faces);
     return STARG_OK;
 }
 
@@ -102,12 +90,7 @@ static starg_status make_room(starg_mesh_builder *builder, size_t count) {
     if (needed <= builder->faces.capacity)
         return STARG_OK;
     size_t capacity = needed > 2 * builder->faces.capacity ? needed : 2 * builder->faces.capacity;
-    uint32_t *grown = starg_reallocate(builder->source->context, builder->faces.data,
-                                       builder->faces.count, capacity, sizeof *grown);
-    if (grown == NULL)
-        return starg_fail_memory(builder->source->context, STARG_MESH_FILE);
-    builder->faces.data = grown;
-    builder->faces.capacity = capacity;
+    RESERVE(builder->source->context, STARG_MESH_FILE, &builder->faces, capacity);
     return STARG_OK;
 }
 
