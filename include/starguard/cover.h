@@ -77,7 +77,7 @@ typedef struct starg_cover {
     size_t nodes;        /* branch-and-bound nodes used */
     /* One price per column, 0 or more: its dual value in the bound of the LP relaxation. A new row
      * can lower that bound only if the prices of its columns sum to more than 1. Only if requested,
-     * with ILP or LP and full coverage; else NULL. */
+     * with ILP or LP, where `rows` cover everything; else NULL. */
     double *prices;
 } starg_cover;
 
