@@ -48,7 +48,7 @@ enum {
 
 /* For overestimates, as a fraction of the total weight; the second for bounds that a relaxed run
  * gives of the weight of a number of rows, which is no worse by more. */
-static const double TOLERANCE = 1e-7, ROUGH_TOLERANCE = 1e-3;
+static const double TOLERANCE = 1e-7, ROUGH_TOLERANCE = 5e-3;
 
 /* Half width of the bend h = demand while choosing sides, as a fraction of the demand. */
 static const double BEND = 0.1;

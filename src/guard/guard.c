@@ -35,9 +35,18 @@ static bool chooses_exactly(const starg_guard_options *o) {
     return o->prove && o->candidates == STARG_CANDIDATES_GIVEN;
 }
 
+/* Places: fewer where a search moves them, or where each looks in several directions. */
+static size_t usual_count(const starg_guard_options *o) {
+    if (guard_is_brief(o))
+        return 200;
+    if (guard_wants_part(o) && sensor_is_directed(&o->visibility) && o->effort != STARG_EFFORT_BEST)
+        return 300;
+    return 1000;
+}
+
 static void set_defaults(starg_guard_options *o, size_t vertices) {
     if (o->candidate_count == STARG_DEFAULT_COUNT)
-        o->candidate_count = guard_is_brief(o) ? 200 : 1000;
+        o->candidate_count = usual_count(o);
     if (o->max_nodes == STARG_DEFAULT_NODES)
         o->max_nodes = o->method == STARG_GUARD_PILP && !chooses_exactly(o) ? 30 : 100000;
     if (o->step == STARG_DEFAULT_STEP)

@@ -57,7 +57,9 @@ static const starg_field OPTIONS[] = {
      .initial = STARG_DEFAULT_COUNT,
      .value = "N",
      .help = "Approximate number of candidates; more are added for faces that none of them sees.",
-     .default_text = "1,000; 200 where a search moves them (pilp with quick or normal effort)"},
+     .default_text =
+         "1,000; 200 where a search moves them (pilp with quick or normal effort); 300 that look "
+         "in directions and are to see a part"},
     VISIBILITY_ENGINE_FIELD(starg_guard_options, visibility.engine, NULL, "visibility"),
     VISIBILITY_TARGET_FIELD(starg_guard_options, visibility.target),
     VISIBILITY_FACE_RULE_FIELD(starg_guard_options, visibility.face_rule),

@@ -20,7 +20,7 @@ BEFORE = {
     "view": ["cp model.off horse.off", "starguard skeleton horse.off -o skeleton.vtk",
              "starguard decompose horse.off -o pieces.vtk --report pieces.json --effort 100",
              "starguard morph horse_0.off horse_1.off --frames 3 -o frames --method linear",
-             "starguard map --solid horse_0.off --to ball -o map.vtu",
+             "starguard map --solid room.off --to ball -o map.vtu",
              "starguard db create shapes.db", "starguard db add shapes.db model.off"],
     "export": ["cp model.off horse.off"],
     "db add": ["starguard db create shapes.db"],

@@ -32,16 +32,16 @@ export async function openBrowser() {
     });
 }
 
-/** Opens a page, waits until it is ready, and keeps all its errors and requests. */
-export async function openPage(browser, file, options = {}) {
+/** A page to open files in, one after the other, that keeps all errors and requests since the last was opened. */
+export async function newPage(browser, options = {}) {
     const context = await browser.newContext({
         viewport: { width: 800, height: 560 },
         ...options,
     });
     const page = await context.newPage();
     page.setDefaultTimeout(0); // a busy machine takes as long as it takes
-    const watched = { errors: [], requests: [], dialogs: 0 };
-    const address = pathToFileURL(file).href;
+    const watched = {};
+    let address;
     page.on("console", (message) =>
         watched.errors.push(`${message.type()}: ${message.text()}`),
     );
@@ -54,7 +54,18 @@ export async function openPage(browser, file, options = {}) {
         watched.dialogs++;
         dialog.dismiss();
     });
-    await page.goto(address);
-    await page.waitForSelector("html[data-ready=true]");
-    return { page, watched, close: () => context.close() };
+    /** Opens a file, and waits until it is ready. */
+    const open = async (file) => {
+        Object.assign(watched, { errors: [], requests: [], dialogs: 0 });
+        address = pathToFileURL(file).href;
+        await page.goto(address);
+        await page.waitForSelector("html[data-ready=true]");
+    };
+    return { page, watched, open, close: () => context.close() };
+}
+
+export async function openPage(browser, file, options = {}) {
+    const opened = await newPage(browser, options);
+    await opened.open(file);
+    return opened;
 }
