@@ -179,11 +179,11 @@ bool contours_count_layers(const visibility_scene *scene, const double p[3], con
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
-                 const int8_t *side, uint8_t *visible) {
+                 const int8_t *side, const scene_view *view, uint8_t *visible) {
     contours_scratch *s = scratch;
     s->decided = scene->adjacency != NULL && s->variant->run(scene, s, p, side, visible);
     if (!s->decided)
-        visibility_grid.find(scene, s->grid, p, side, visible);
+        visibility_grid.find(scene, s->grid, p, side, view, visible);
 }
 
 static bool sees_plainly(const visibility_scene *scene, void *scratch, size_t rank) {

@@ -49,12 +49,12 @@ static bool contours_pay(const visibility_scene *scene, const contours_scratch *
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
-                 const int8_t *side, uint8_t *visible) {
+                 const int8_t *side, const scene_view *view, uint8_t *visible) {
     const contours_scratch *s = scratch;
     if (scene->adjacency != NULL && contours_pay(scene, s, side))
-        visibility_contours.find(scene, scratch, p, side, visible);
+        visibility_contours.find(scene, scratch, p, side, view, visible);
     else
-        visibility_grid.find(scene, s->grid, p, side, visible);
+        visibility_grid.find(scene, s->grid, p, side, view, visible);
 }
 
 const visibility_engine visibility_fastest = {make_scratch, free_scratch, find, NULL};

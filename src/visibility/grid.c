@@ -91,9 +91,9 @@ grid_run *grid_choose_variant(visibility_isa wanted) {
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
-                 const int8_t *side, uint8_t *visible) {
+                 const int8_t *side, const scene_view *view, uint8_t *visible) {
     grid_scratch *g = scratch;
-    g->run(scene, g, p, side, visible);
+    g->run(scene, g, p, side, view, visible);
 }
 
 const visibility_engine visibility_grid = {make_scratch, free_scratch, find, NULL};

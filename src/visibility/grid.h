@@ -29,7 +29,7 @@ struct grid_scratch;
 
 /* All stages for one point: visible[slot] = 1 if p sees the vertex, otherwise 0. */
 typedef void grid_run(const visibility_scene *scene, struct grid_scratch *g, const double p[3],
-                      const int8_t *side, uint8_t *visible);
+                      const int8_t *side, const scene_view *view, uint8_t *visible);
 
 typedef struct grid_scratch {
     grid_run *run;

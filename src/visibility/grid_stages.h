@@ -116,13 +116,13 @@ static void keep_patches(const visibility_scene *scene, size_t rank, uint8_t kee
 /* Stage 1: lists the faces that can block first, and the vertices that they use; others are not
  * seen, or out of range. */
 static void keep_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
-                       grid_scratch *g) {
+                       const scene_view *view, grid_scratch *g) {
     size_t chunk_count = order_chunks(scene, g);
     g->front_facing_count = g->used_count = 0;
     memset(g->in_use, 0, scene->slot_count);
     for (size_t c = 0; c < chunk_count; c++) {
         size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
-        if (scene_is_beyond(scene, g->chunks[c].chunk, p))
+        if (scene_is_beyond(scene, g->chunks[c].chunk, p, view))
             continue;
         for (; rank < end && rank < scene->face_count; rank++) {
             uint8_t keep = scene_may_block(scene, rank, side[rank]);
@@ -145,9 +145,9 @@ static void keep_faces(const visibility_scene *scene, const double p[3], const i
 #include "visibility/grid_faces.h"
 
 void GRID_RUN(const visibility_scene *scene, grid_scratch *g, const double p[3], const int8_t *side,
-              uint8_t *visible) {
+              const scene_view *view, uint8_t *visible) {
     cube_make_relative(scene, p, &g->at);
-    keep_faces(scene, p, side, g);
+    keep_faces(scene, p, side, view, g);
     cube_project(scene->slot_count, &g->at);
     sort_into_cells(scene, g);
     test_faces(scene, p, side, g);

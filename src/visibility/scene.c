@@ -201,12 +201,13 @@ done:
     return status;
 }
 
-starg_status scene_limit(visibility_scene *scene, double range) {
+starg_status scene_limit(visibility_scene *scene, double range, bool directed) {
     size_t count = (scene->face_count + SCENE_CHUNK - 1) / SCENE_CHUNK;
-    if (!(range < 1e100) || !(range > 1e-100)) /* squares neither overflow nor vanish */
+    if (range < 1e100 && range > 1e-100) /* squares neither overflow nor vanish */
+        scene->range = range;
+    else if (!directed)
         return STARG_OK;
     NEW(scene->context, "visibility", scene->chunks, count);
-    scene->range = range;
     for (size_t c = 0; c < count; c++)
         for (int k = 0; k < 3; k++) {
             scene->chunks[c].lower[k] = INFINITY;
@@ -222,6 +223,17 @@ starg_status scene_limit(visibility_scene *scene, double range) {
             }
     }
     return STARG_OK;
+}
+
+scene_view scene_view_of(const sensor *aimed) {
+    static const double Y[3] = {0, 1, 0};
+    const double cone = aimed->options->cone, around[2] = {cone, cone};
+    scene_view view = {.count = aimed->rectangular || cone < 180 ? 4 : 0};
+    if (aimed->rectangular)
+        memcpy(view.normals, aimed->planes, sizeof view.normals);
+    else if (view.count > 0)
+        starg_frustum(aimed->direction, Y, around, view.normals);
+    return view;
 }
 
 void scene_free(visibility_scene *scene) {

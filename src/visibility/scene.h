@@ -71,7 +71,7 @@ typedef struct visibility_scene {
     sides_run *find_sides;
 
     double range;    /* vertices farther away need not be looked at; INFINITY: all are */
-    bvh_box *chunks; /* with a range: boxes of SCENE_CHUNK faces each, by rank */
+    bvh_box *chunks; /* where views are limited: boxes of SCENE_CHUNK faces each, by rank */
 
     struct visibility_adjacency *adjacency; /* for the engine by contours if `cull` */
     sight_tree *sights;                     /* for single sight lines, if they were prepared */
@@ -87,11 +87,23 @@ starg_status scene_add_adjacency(visibility_scene *scene);
 /* Prepares it for many single sight lines (scene_sees_vertex, scene_sees_face). Errors: MEMORY. */
 starg_status scene_add_sights(visibility_scene *scene);
 
-/* Lets engines leave out what is farther than the range. Errors: MEMORY. */
-starg_status scene_limit(visibility_scene *scene, double range);
+/* Lets engines leave out what is farther than the range, and with directed views what they do not
+ * hold. Errors: MEMORY. */
+starg_status scene_limit(visibility_scene *scene, double range, bool directed);
 
-/* Is all of a chunk of faces beyond the range of p? Then it blocks no view that ends within. */
-static inline bool scene_is_beyond(const visibility_scene *scene, size_t chunk, const double p[3]) {
+/* What is looked at from a place: half-spaces about it; none: all around. */
+typedef struct scene_view {
+    int count;
+    double normals[4][3]; /* unit, inwards */
+} scene_view;
+
+/* The view of an aimed sensor, or one around it. */
+scene_view scene_view_of(const sensor *aimed);
+
+/* Is all of a chunk of faces out of reach of p, or out of its view? Then it blocks no line of sight
+ * that ends within, since ranges and views are convex. */
+static inline bool scene_is_beyond(const visibility_scene *scene, size_t chunk, const double p[3],
+                                   const scene_view *view) {
     double square = 0;
     if (scene->chunks == NULL)
         return false;
@@ -101,7 +113,19 @@ static inline bool scene_is_beyond(const visibility_scene *scene, size_t chunk, 
         double gap = below > 0 ? below : above > 0 ? above : 0;
         square += gap * gap;
     }
-    return square > scene->range * scene->range * (1 + 1e-9); /* more than its roundings */
+    if (square > scene->range * scene->range * (1 + 1e-9)) /* more than its roundings */
+        return true;
+    for (int i = 0; i < view->count; i++) {
+        double most = 1e-9 * scene->extent;
+        for (int k = 0; k < 3; k++) {
+            double n = view->normals[i][k];
+            most +=
+                n * ((n > 0 ? scene->chunks[chunk].upper : scene->chunks[chunk].lower)[k] - p[k]);
+        }
+        if (most < 0)
+            return true;
+    }
+    return false;
 }
 
 /* Can the face be the first to block a view from a point that has this side of it? */
@@ -205,9 +229,10 @@ typedef struct visibility_engine {
     /* Memory for one thread; *scratch is freed by free_scratch. */
     starg_status (*make_scratch)(const visibility_scene *scene, void **scratch);
     void (*free_scratch)(const visibility_scene *scene, void *scratch);
-    /* visible[slot] = 1 if p sees the vertex, otherwise 0. p is strictly inside. */
+    /* visible[slot] = 1 if p sees the vertex, otherwise 0; out of the view it may be either. p is
+     * strictly inside. */
     void (*find)(const visibility_scene *scene, void *scratch, const double p[3],
-                 const int8_t *side, uint8_t *visible);
+                 const int8_t *side, const scene_view *view, uint8_t *visible);
     /* After find, for a face with p on its inner side and three visible vertices: true only if all
      * of it is visible; false may mean unknown. NULL: never known. */
     bool (*sees_plainly)(const visibility_scene *scene, void *scratch, size_t rank);

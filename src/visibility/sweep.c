@@ -208,7 +208,8 @@ static bool sees(const visibility_scene *scene, sweep_scratch *s, size_t *active
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
-                 const int8_t *side, uint8_t *visible) {
+                 const int8_t *side, const scene_view *view, uint8_t *visible) {
+    (void)view;
     sweep_scratch *s = scratch;
     measure_directions(scene, p, s->directions);
     size_t range_count = measure_ranges(scene, p, side, s), next = 0, active_count = 0;

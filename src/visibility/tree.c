@@ -148,7 +148,8 @@ bool scene_sees_slot(const visibility_scene *scene, const double p[3], const int
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
-                 const int8_t *side, uint8_t *visible) {
+                 const int8_t *side, const scene_view *view, uint8_t *visible) {
+    (void)view;
     (void)scratch;
     for (uint32_t slot = 0; slot < scene->slot_count; slot++)
         visible[slot] = scene_sees_slot(scene, p, side, slot);

@@ -92,7 +92,7 @@ static void list_patches(worker *w, const double p[3], size_t rank) {
 }
 
 /* Directions of one place look among what it sees all around. */
-static void list_visible(worker *w, const double p[3]) {
+static void list_visible(worker *w, const double p[3], const scene_view *view) {
     const visibility_scene *scene = w->job->scene;
     for (size_t i = 0; i < w->slot_count; i++)
         w->within[w->slots[i]] = 0;
@@ -105,7 +105,7 @@ static void list_visible(worker *w, const double p[3]) {
     for (size_t first = 0; first < scene->face_count; first += SCENE_CHUNK) {
         size_t end =
             first + SCENE_CHUNK < scene->face_count ? first + SCENE_CHUNK : scene->face_count;
-        if (scene_is_beyond(scene, first / SCENE_CHUNK, p))
+        if (scene_is_beyond(scene, first / SCENE_CHUNK, p, view))
             continue;
         for (size_t rank = first; rank < end; rank++)
             list_patches(w, p, rank);
@@ -123,20 +123,30 @@ static void look_closely(const visibility_scene *scene, const double p[3], const
             visible[slot] = scene_sees_slot(scene, p, side, (uint32_t)slot);
 }
 
-static void find_visible(const job *all, worker *w, const double p[3]) {
+static void find_visible(const job *all, worker *w, const double p[3], const scene_view *view) {
     scene_sides(all->scene, p, w->side);
-    all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
+    all->engine->find(all->scene, w->engine_scratch, p, w->side, view, w->visible);
     look_closely(all->scene, p, w->side, w->visible);
     drop_out_of_reach(w, p);
     if (sensor_is_directed(all->options))
-        list_visible(w, p);
+        list_visible(w, p, view);
 }
 
-/* Aims the sensor of an item and leaves out what is not in its view. */
-static void narrow(const job *all, worker *w, const double p[3], size_t item) {
-    const visibility_scene *scene = all->scene;
+/* Aims the sensor of an item. What has to be looked at: all around, if the next stands there too.
+ */
+static scene_view aim(const job *all, worker *w, size_t item) {
     const starg_visibility_options *o = all->options;
+    const double *p = all->points + 3 * item;
+    if (!sensor_is_directed(o))
+        return (scene_view){.count = 0};
     sensor_aim(&w->sensor, o->directions + 3 * item, o->ups != NULL ? o->ups + 3 * item : NULL);
+    return item + 1 < all->count && vec3_equal(p, p + 3) ? (scene_view){.count = 0}
+                                                         : scene_view_of(&w->sensor);
+}
+
+/* Leaves out what is not in the view of the sensor, which is aimed. */
+static void narrow(const job *all, worker *w, const double p[3]) {
+    const visibility_scene *scene = all->scene;
     for (size_t i = 0; i < w->slot_count; i++) {
         uint32_t slot = w->slots[i];
         const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
@@ -206,11 +216,12 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     const uint8_t *visible = w->visible;
     if (starg_solid_contains(all->scene->solid, p)) {
         /* directions at the same point are consecutive */
+        const scene_view view = aim(all, w, item);
         if (w->last == NULL || !vec3_equal(w->last, p))
-            find_visible(all, w, p);
+            find_visible(all, w, p, &view);
         w->last = p;
         if (sensor_is_directed(all->options)) {
-            narrow(all, w, p, item);
+            narrow(all, w, p);
             visible = w->within;
         }
         if (all->options->target == STARG_TARGET_VERTICES)
@@ -262,7 +273,7 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
                                   visibility_scene **out) {
     starg_status status = scene_create(context, solid, out);
     if (status == STARG_OK)
-        status = scene_limit(*out, options->range);
+        status = scene_limit(*out, options->range, sensor_is_directed(options));
     if (status == STARG_OK && options->engine >= STARG_VISIBILITY_CONTOURS &&
         solid->patches == NULL && count > 1) /* does not pay for a single point */
         status = scene_add_adjacency(*out);

@@ -26,7 +26,7 @@ static void pick_views(const starg_solid *solid, double *points, double *directi
             for (size_t k = 0; k < 3; k++)
                 p[k] = lower[k] + (upper[k] - lower[k]) * starg_rng_unit(&rng);
         } while (!starg_solid_contains(solid, p));
-        if (i % 3 != 0)
+        if (i % 4 >= 2)
             memcpy(p, p - 3, 3 * sizeof *p);
         size_t target = starg_rng_below(&rng, starg_mesh_vertex_count(mesh));
         for (size_t k = 0; k < 3; k++)
@@ -86,6 +86,45 @@ static void test_rows(void **state) {
             if (what < 2 || cones[c] <= 180)
                 check_rows(context, solid, options, points);
         }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* A place that looks in one direction only is asked for no more than that view; where another
+ * stands there too, both look among what is seen all around. */
+static void test_one_view(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "gallery", 3000);
+    double points[3 * POINTS], directions[3 * POINTS], twice[6 * POINTS], ways[6 * POINTS];
+    pick_views(solid, points, directions);
+    for (size_t i = 0; i < 3 * POINTS; i++) {
+        twice[6 * (i / 3) + i % 3] = twice[6 * (i / 3) + 3 + i % 3] = points[i];
+        ways[6 * (i / 3) + i % 3] = directions[i];
+        ways[6 * (i / 3) + 3 + i % 3] = -directions[i];
+    }
+    const double views[][3] = {{0, 0, 30}, {0, 0, 170}, {90, 60, 360}, {20, 150, 360}};
+    for (size_t c = 0; c < sizeof views / sizeof *views; c++) {
+        size_t seen = 0;
+        starg_bits *one = NULL, *both = NULL;
+        starg_visibility_options options;
+        starg_visibility_options_default(&options);
+        memcpy(options.fov, views[c], sizeof options.fov);
+        options.cone = views[c][2];
+        for (size_t i = 0; i < POINTS; i++) {
+            options.directions = directions + 3 * i;
+            test_ok(context, starg_visibility(context, solid, points + 3 * i, 1, &options, &one));
+            options.directions = ways + 6 * i;
+            test_ok(context, starg_visibility(context, solid, twice + 6 * i, 2, &options, &both));
+            for (size_t j = 0; j < starg_bits_columns(one); j++) {
+                assert_int_equal(starg_bits_test(one, 0, j), starg_bits_test(both, 0, j));
+                seen += starg_bits_test(one, 0, j);
+            }
+            starg_bits_free(one);
+            starg_bits_free(both);
+        }
+        assert_true(seen > 0);
+    }
     starg_solid_free(solid);
     test_context_free(context);
 }
@@ -240,6 +279,7 @@ int main(void) {
         cmocka_unit_test(test_rows),       cmocka_unit_test(test_bad_cones),
         cmocka_unit_test(test_bad_limits), cmocka_unit_test(test_frustum),
         cmocka_unit_test(test_baseline),   cmocka_unit_test(test_guards_with_cones),
+        cmocka_unit_test(test_one_view),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
