@@ -64,18 +64,20 @@ static starg_status look_from(starg_context *context, const starg_solid *scene,
     return starg_visibility(context, scene, guards->positions, guards->count, &view, out);
 }
 
-/* Files without patches have the word for auto. */
+/* Files without patches have the word for auto; `usual` is what is done then. */
 static starg_status cut_patches(starg_context *context, const starg_solid *scene,
-                                const starg_guards *guards, patched_solid *out) {
+                                const starg_guards *guards, double usual, patched_solid *out) {
     starg_visibility_options view = guards->options.visibility;
     view.target = STARG_TARGET_FACES;
-    view.patch = view.patch > 0 ? view.patch : STARG_PATCH_OFF;
+    view.patch = view.patch > 0 ? view.patch : usual;
     return patched_solid_make(context, scene, &view, out);
 }
 
 starg_status guards_look(starg_context *context, const starg_solid *scene,
                          const starg_guards *guards, patched_solid *patched, starg_bits **rows) {
-    starg_status status = cut_patches(context, scene, guards, patched);
+    bool points = guards->options.visibility.target == STARG_TARGET_POINTS;
+    starg_status status =
+        cut_patches(context, scene, guards, points ? STARG_PATCH_AUTO : STARG_PATCH_OFF, patched);
     return status == STARG_OK ? look_from(context, &patched->solid, guards, rows) : status;
 }
 
@@ -91,7 +93,7 @@ starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
     SCOPED_BY(patched_solid_free) patched_solid patched = {0};
     size_t faces = starg_space_model_faces(scene);
     *out = NULL;
-    TRY(cut_patches(context, scene, guards, &patched));
+    TRY(cut_patches(context, scene, guards, STARG_PATCH_OFF, &patched));
     TRY(look_from(context, &patched.solid, guards, &rows));
     TRY(starg_bits_create(context, guards->count, faces, &model));
     for (size_t i = 0; i < guards->count; i++)
@@ -121,7 +123,7 @@ starg_status starg_guards_patch_faces(starg_context *context, const starg_solid 
     SCOPED_BY(patched_solid_free) patched_solid patched = {0};
     *faces = NULL;
     *count = 0;
-    TRY(cut_patches(context, scene, guards, &patched));
+    TRY(cut_patches(context, scene, guards, STARG_PATCH_OFF, &patched));
     *count = drawn_patches(&patched);
     NEW(context, STAGE, *faces, *count);
     for (size_t j = 0; j < *count; j++)
@@ -156,7 +158,7 @@ starg_status starg_guards_patches(starg_context *context, const starg_solid *sce
     *seen = NULL;
     if (missing != NULL)
         *missing = NULL;
-    STARG_TRY(cut_patches(context, scene, guards, &patched));
+    STARG_TRY(cut_patches(context, scene, guards, STARG_PATCH_OFF, &patched));
     STARG_TRY(look_from(context, &patched.solid, guards, &rows));
     STARG_TRY(starg_bits_create(context, guards->count, drawn_patches(&patched), &model));
     for (size_t i = 0; i < guards->count; i++)

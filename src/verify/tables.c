@@ -369,8 +369,8 @@ static starg_status claim_tables(starg_verdict *verdict, const verify_facts *kno
     if (evidence->table == NULL && evidence->summary == NULL)
         return STARG_OK;
     if (verify_targets_points(known)) {
-        verify_leave_asked(verdict, "the tables: they are of faces by their corners, and the "
-                                    "result is about every point");
+        verify_leave_asked(verdict, "the tables: they are of faces in parts, and the result is "
+                                    "about every point");
         return STARG_OK;
     }
     TRY(verify_count_held(known, known->patches, &held));
