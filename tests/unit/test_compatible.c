@@ -12,8 +12,8 @@
 #include "geometry/vec3.h"
 #include "star/compatible/compatible.h"
 #include "star/compatible/twin_pieces.h"
-#include "star/strict/start/region_growing.h"
-#include "star/strict/start/start.h"
+#include "star/certified/region_growing.h"
+#include "star/certified/search.h"
 #include "tetra/tetmesh.h"
 #include "tetrahedra.h"
 

@@ -7,7 +7,7 @@
 #include "core/rng.h"
 #include "geometry/bvh.h"
 #include "star/compatible/twin_region.h"
-#include "star/strict/search/search.h"
+#include "star/certified/search.h"
 
 #define NOWHERE UINT32_MAX
 

@@ -6,7 +6,7 @@
  *
  * Method: as in bsp_start.c. A part that has a kernel in both places is done. Any other is cut
  * where it has none by the plane after which two guards miss the least of its surface there
- * (star/strict/search/split_plane.c), through the tetrahedra (through.c), into connected parts. A
+ * (star/certified/split_plane.c), through the tetrahedra (through.c), into connected parts. A
  * part that resists, because no plane is found or tetrahedra would lose their sign, is tried again
  * with fewer demands, and at last given up: its tetrahedra are grown into regions.
  *
@@ -20,7 +20,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "star/strict/search/search.h"
+#include "star/certified/search.h"
 
 static const char STAGE[] = "planes";
 

@@ -4,7 +4,7 @@
 
 #include "core/rng.h"
 #include "star/piece_faces.h"
-#include "star/strict/start/region_growing.h"
+#include "star/certified/region_growing.h"
 
 /* Pieces that are star-shaped in two solids: sets of tetrahedra that lie in two places. */
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/rng.h"
-#include "star/strict/partition/partition.h"
+#include "star/certified/partition.h"
 #include "visibility/kernel.h"
 
 /* To a cube of about unit size. */
