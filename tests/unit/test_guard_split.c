@@ -221,11 +221,11 @@ static void test_crossings(void **state) {
         for (uint32_t i = 0; i < TRIANGLES; i += 2)
             for (uint32_t n = 1; n < TRIANGLES; n += 2) {
                 const separator_task one = {.r = &s.r,
-                                         .guards = (const double(*)[3])s.guards,
-                                         .guard_count = 2,
-                                         .own = {.data = &i, .count = 1},
-                                         .others = {.data = &n, .count = 1},
-                                         .gap = 1e-9};
+                                            .guards = (const double(*)[3])s.guards,
+                                            .guard_count = 2,
+                                            .own = {.data = &i, .count = 1},
+                                            .others = {.data = &n, .count = 1},
+                                            .gap = 1e-9};
                 const double *a[4] = {s.guards[0]}, *b[4] = {s.guards[1]};
                 size_t crossings;
                 for (int k = 0; k < 3; k++) {
@@ -305,7 +305,8 @@ static size_t cut_some(partition *p, size_t wanted, uint64_t seed, int *planes) 
             partition_to_unit(p, p->pieces.data[pieces[i]].guard, starts[i]);
         const guard_split_options options = {1e-5, (const double(*)[3])starts, count};
         test_ok(p->context, region_gather(p, pieces, count, &scratch, &r));
-        test_ok(p->context, guard_split_find(&r, count - 1, &options, &rng, &scratch, &plan, &found));
+        test_ok(p->context,
+                guard_split_find(&r, count - 1, &options, &rng, &scratch, &plan, &found));
         if (!found)
             continue;
         partition before = partition_oracle_copy(p);

@@ -9,7 +9,8 @@
 #include "star/certified/search.h"
 
 static ruin_recreate_options options_of(uint64_t round, improve_tallies *tallies) {
-    return (ruin_recreate_options){.trials = 600, .work = UINT64_MAX, .round = round, .tallies = tallies};
+    return (ruin_recreate_options){
+        .trials = 600, .work = UINT64_MAX, .round = round, .tallies = tallies};
 }
 
 /* Guards and surface hold, there are no more pieces, and most are as they were. */
@@ -53,7 +54,7 @@ static void test_threads(void **state) {
         for (uint64_t round = 1; round <= 6; round++) {
             ruin_recreate_report report;
             const ruin_recreate_options options = options_of(round, &tallies);
-            test_ok(contexts[i], renew(&done[i], &options, &report));
+            test_ok(contexts[i], ruin_recreate(&done[i], &options, &report));
         }
     }
     assert_true(partition_oracle_same(&done[0], &done[1]));

@@ -117,13 +117,6 @@ static starg_status settle_piece(change *c, uint32_t number, bool *done) {
     return STARG_OK;
 }
 
-static bool is_new(const change *c, uint32_t number) {
-    for (size_t i = 0; i < c->part_count; i++)
-        if (c->parts[i] == number)
-            return true;
-    return false;
-}
-
 /* Do the guards of pieces outside the plan still see those of their facets that were split? */
 static bool check_others(const change *c) {
     const partition *p = &c->extract.part;
@@ -134,7 +127,8 @@ static bool check_others(const change *c) {
             continue;
         for (int side = 0; side < 2; side++) {
             uint32_t k[3];
-            if (f->side[side] == PARTITION_OUTSIDE || is_new(c, f->side[side]))
+            if (f->side[side] == PARTITION_OUTSIDE ||
+                partition_lists(c->parts, c->part_count, f->side[side]))
                 continue;
             facet_outward(f, side, k);
             if (orient3d(partition_point(p, k[0]), partition_point(p, k[1]),
@@ -178,14 +172,6 @@ done:
 }
 
 /* ---- fans: finding facets again ---- */
-
-/* An edge of the union, from a to b in the facet that `taker` receives. */
-typedef struct fan_edge {
-    uint32_t a, b;
-    uint8_t taker;
-} fan_edge;
-
-typedef STARG_ARRAY(fan_edge) fan_edges;
 
 void fan_plan_free(fan_plan *plan) {
     RELEASE(plan->entries.data, plan->takes.data, plan->corners.data);
@@ -243,37 +229,12 @@ starg_status fan_plan_find(const partition *p, fan_plan *plan, bool *found) {
 
 /* ---- the fan ---- */
 
-static starg_status gather_edges(const partition *p, const fan_plan *plan, fan_edges *edges) {
-    for (size_t i = 0; i < plan->entries.count; i++) {
-        uint32_t entry = plan->entries.data[i], c[3];
-        facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), c);
-        for (int k = 0; k < 3; k++) {
-            const fan_edge fresh = {c[k], c[(k + 1) % 3], plan->takes.data[i]};
-            PUSH(p->context, PARTITION_STAGE, edges, fresh);
-        }
-    }
-    return STARG_OK;
-}
-
-/* Sorts both directions of an edge next to each other. */
-static int compare_fan_edges(const void *left, const void *right) {
-    const fan_edge *x = left, *y = right;
-    int order = partition_compare_edges(x->a, x->b, y->a, y->b);
-    return order != 0 ? order : (x->a > y->a) - (x->a < y->a);
-}
-
-static bool is_piece(const fan_plan *plan, uint32_t number) {
-    for (size_t i = 0; i < plan->piece_count; i++)
-        if (plan->pieces[i] == number)
-            return true;
-    return false;
-}
-
 /* Facets between two of the pieces get the same number on both sides. */
 static void hand_over(partition *p, const fan_plan *plan) {
     for (size_t i = 0; i < p->facets.count; i++) {
         facet *f = &p->facets.data[i];
-        if (is_piece(plan, f->side[0]) && is_piece(plan, f->side[1]))
+        if (partition_lists(plan->pieces, plan->piece_count, f->side[0]) &&
+            partition_lists(plan->pieces, plan->piece_count, f->side[1]))
             f->side[1] = f->side[0];
     }
     for (size_t i = 0; i < plan->entries.count; i++) {
@@ -290,35 +251,43 @@ static void drop_inner(partition *p) {
     p->facets.count = kept;
 }
 
-static starg_status add_triangles(partition *p, const fan_plan *plan, const fan_edges *edges,
-                                  uint32_t apex) {
-    for (size_t i = 0; i + 1 < edges->count; i += 2) {
-        const fan_edge *e = &edges->data[i];
-        if (e[0].taker == e[1].taker)
-            continue;
-        facet f = {.corners = {e[0].b, e[0].a, apex},
-                   .side = {plan->takers[e[0].taker], plan->takers[e[1].taker]},
-                   .plane = (uint32_t)p->planes.count};
-        partition_plane plane;
-        partition_plane_of(p, f.corners, &plane);
-        PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
-        PUSH(p->context, PARTITION_STAGE, &p->facets, f);
-    }
+/* Between the facets of the plan's entries at an edge, if they go to different takers. */
+static starg_status add_triangle(partition *p, const fan_plan *plan, const partition_edge *edge,
+                                 uint32_t apex) {
+    const partition_edge *one = edge->a < edge->b ? edge : edge + 1;
+    const partition_edge *two = one == edge ? edge + 1 : edge;
+    const uint8_t *takes = plan->takes.data;
+    if (takes[one->facet] == takes[two->facet])
+        return STARG_OK;
+    facet f = {.corners = {one->b, one->a, apex},
+               .side = {plan->takers[takes[one->facet]], plan->takers[takes[two->facet]]},
+               .plane = (uint32_t)p->planes.count};
+    partition_plane plane;
+    partition_plane_of(p, f.corners, &plane);
+    PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
+    PUSH(p->context, PARTITION_STAGE, &p->facets, f);
     return STARG_OK;
 }
 
 starg_status partition_fan(partition *p, const fan_plan *plan) {
-    SCOPED fan_edges edges = {0};
+    SCOPED partition_edge *edges = NULL;
+    const size_t count = 3 * plan->entries.count;
     double at[3];
     uint32_t apex;
     partition_from_unit(p, plan->apex, at);
     TRY(partition_add_point(p, at, &apex));
-    TRY(gather_edges(p, plan, &edges));
-    if (edges.count > 0)
-        qsort(edges.data, edges.count, sizeof *edges.data, compare_fan_edges);
+    NEW(p->context, PARTITION_STAGE, edges, count);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t entry = plan->entries.data[i / 3], c[3];
+        facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), c);
+        edges[i] = (partition_edge){c[i % 3], c[(i + 1) % 3], i / 3};
+    }
+    TRY(partition_sort_edges(p->context, edges, count, p->points.count / 3));
     hand_over(p, plan);
     drop_inner(p);
-    return add_triangles(p, plan, &edges, apex);
+    for (size_t i = 0; i + 1 < count; i += 2)
+        TRY(add_triangle(p, plan, &edges[i], apex));
+    return STARG_OK;
 }
 
 /* ---- fans: carried out ---- */
@@ -328,11 +297,6 @@ static uint32_t place_of(const uint32_t *numbers, size_t count, uint32_t number)
     while (place < count && numbers[place] != number)
         place++;
     return place;
-}
-
-static int ascending(const void *x, const void *y) {
-    uint32_t a = *(const uint32_t *)x, b = *(const uint32_t *)y;
-    return (a > b) - (a < b);
 }
 
 /* The plan in the numbers of the extract. */
@@ -348,7 +312,7 @@ static starg_status translate(const change *c, const fan_plan *plan, fan_plan *o
     for (size_t i = 0; i < plan->entries.count; i++) {
         uint32_t entry = plan->entries.data[i], number = entry / 2;
         const uint32_t *found =
-            bsearch(&number, e->facets.data, e->facets.count, sizeof number, ascending);
+            bsearch(&number, e->facets.data, e->facets.count, sizeof number, partition_ascending);
         PUSH(e->part.context, PARTITION_STAGE, &out->entries,
              2 * (uint32_t)(found - e->facets.data) + entry % 2);
     }
@@ -361,7 +325,7 @@ static size_t list_concerned(const fan_plan *plan, uint32_t *out) {
     for (size_t i = 0; i < plan->piece_count; i++)
         out[count++] = plan->pieces[i];
     for (size_t i = 0; i < plan->taker_count; i++)
-        if (place_of(out, count, plan->takers[i]) == count)
+        if (!partition_lists(out, count, plan->takers[i]))
             out[count++] = plan->takers[i];
     return count;
 }

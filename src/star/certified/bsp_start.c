@@ -4,9 +4,8 @@
  * Problem: a partition of a solid into few star-shaped pieces with flat borders, found fast.
  *
  * Method: as a decision tree is grown. A piece with a kernel is done; any other is cut by the plane
- * after which two guards miss the least of it (split_plane.c), into connected
- * parts, and each of these goes on. All open pieces are looked at at once, then cut one after the
- * other.
+ * after which two guards miss the least of it (split_plane.c), into connected parts, and each of
+ * these goes on. All open pieces are looked at at once, then cut one after the other.
  *
  * A piece that resists (no plane gains, or the cut fails, or leaves a small component that nothing
  * sees) is tried again with more effort and with less room for its guard, and is then halved: a
@@ -22,9 +21,9 @@
  * that they are on, and a part without any is convex, which is star-shaped [Chazelle 1984].
  * Rounding is what this leaves out: new vertices are off their edges by some 1e-16 of the model's
  * size, so that faces bend by as much. It does no harm where the pieces are thicker than that by
- * far, and where they are not it shows in the exact certificate, or in a section whose edges
- * cross: the piece is opened again, or cut elsewhere, and so many times at most. After that the
- * start has failed; nothing that is not certified leaves it.
+ * far, and where they are not it shows in the exact certificate, or in a section whose edges cross:
+ * the piece is opened again, or cut elsewhere, and so many times at most. After that the start has
+ * failed; nothing that is not certified leaves it.
  *
  * Invariants: what a cut does to other pieces is nothing but split facets; every guard is certified
  * on the finished partition, and where that fails the piece is opened again. The result does not
@@ -104,59 +103,43 @@ enum { TRIES = 12 };
 
 static const double FLAT = 1e-12; /* no more than this above a plane is not above it */
 
-typedef struct ridge {
-    uint32_t ends[2], triangle;
-} ridge;
-
 typedef struct ridges {
     const region *r;
-    STARG_ARRAY(ridge) all;       /* by edge */
+    partition_edge *all; /* by edge */
+    size_t count;
     STARG_ARRAY(uint32_t) reflex; /* the first of each reflex edge */
 } ridges;
 
-static int by_edge(const void *x, const void *y) {
-    const ridge *a = x, *b = y;
-    int order = partition_compare_edges(a->ends[0], a->ends[1], b->ends[0], b->ends[1]);
-    return order != 0 ? order : (a->triangle > b->triangle) - (a->triangle < b->triangle);
-}
-
-static bool same_edge(const ridge *a, const ridge *b) {
-    return partition_compare_edges(a->ends[0], a->ends[1], b->ends[0], b->ends[1]) == 0;
-}
-
 static starg_status list_edges(ridges *e, starg_context *context) {
-    for (uint32_t i = 0; i < e->r->triangles.count; i++) {
-        const uint32_t *c = e->r->triangles.data[i].corners;
-        for (int k = 0; k < 3; k++) {
-            const ridge fresh = {{c[k], c[(k + 1) % 3]}, i};
-            PUSH(context, PARTITION_STAGE, &e->all, fresh);
-        }
+    e->count = 3 * e->r->triangles.count;
+    NEW(context, PARTITION_STAGE, e->all, e->count);
+    for (uint32_t i = 0; i < e->count; i++) {
+        const uint32_t *c = e->r->triangles.data[i / 3].corners;
+        e->all[i] = (partition_edge){c[i % 3], c[(i + 1) % 3], i / 3};
     }
-    if (e->all.count > 1)
-        qsort(e->all.data, e->all.count, sizeof *e->all.data, by_edge);
-    return STARG_OK;
+    return partition_sort_edges(context, e->all, e->count, e->r->vertices.count / 3);
 }
 
-static const double *row_of(const ridges *e, const ridge *at) {
-    return e->r->rows.data + 4 * (size_t)e->r->triangles.data[at->triangle].row;
+static const double *row_of(const ridges *e, const partition_edge *at) {
+    return e->r->rows.data + 4 * (size_t)e->r->triangles.data[at->facet].row;
 }
 
 /* How far a triangle rises above the plane of another one. */
-static double rise(const ridges *e, const ridge *above, const ridge *of) {
+static double rise(const ridges *e, const partition_edge *above, const partition_edge *of) {
     const double *row = row_of(e, of);
     double most = -INFINITY;
     for (int k = 0; k < 3; k++) {
-        uint32_t corner = e->r->triangles.data[above->triangle].corners[k];
+        uint32_t corner = e->r->triangles.data[above->facet].corners[k];
         most = fmax(most, vec3_dot(row, e->r->vertices.data + 3 * (size_t)corner) - row[3]);
     }
     return most;
 }
 
 static starg_status list_reflex(ridges *e, starg_context *context) {
-    for (size_t i = 0; i < e->all.count;) {
-        const ridge *first = &e->all.data[i];
+    for (size_t i = 0; i < e->count;) {
+        const partition_edge *first = &e->all[i];
         size_t count = 1;
-        while (i + count < e->all.count && same_edge(first, &e->all.data[i + count]))
+        while (i + count < e->count && partition_same_edge(first, &e->all[i + count]))
             count++;
         if (count > 2 ||
             (count == 2 && fmax(rise(e, first, first + 1), rise(e, first + 1, first)) > FLAT))
@@ -167,19 +150,16 @@ static starg_status list_reflex(ridges *e, starg_context *context) {
 }
 
 /* Between the planes of the first two triangles; either of them, the middle, or any. */
-static bool plane_through(const ridges *e, const ridge *first, starg_rng *rng,
+static bool plane_through(const ridges *e, const partition_edge *first, starg_rng *rng,
                           partition_plane *plane) {
     const double *a = row_of(e, first), *b = row_of(e, first + 1);
     uint64_t sort = starg_rng_below(rng, 4);
     double share = sort == 3 ? starg_rng_unit(rng) : 0.5 * (double)sort;
     for (int k = 0; k < 3; k++)
         plane->normal[k] = (1 - share) * a[k] - share * b[k];
-    double length = vec3_length(plane->normal);
-    if (length < 1e-6)
+    if (vec3_normalize(plane->normal) < 1e-6)
         return false;
-    for (int k = 0; k < 3; k++)
-        plane->normal[k] /= length;
-    plane->offset = vec3_dot(plane->normal, e->r->vertices.data + 3 * (size_t)first->ends[0]);
+    plane->offset = vec3_dot(plane->normal, e->r->vertices.data + 3 * (size_t)first->a);
     return true;
 }
 
@@ -214,7 +194,7 @@ static starg_status reflex_plane_find(const region *r, starg_rng *rng, region_sc
     STARG_TRY(list_reflex(&e, context));
     for (int i = 0; i < TRIES && e.reflex.count > 0; i++) {
         partition_plane fresh;
-        const ridge *first = &e.all.data[e.reflex.data[starg_rng_below(rng, e.reflex.count)]];
+        const partition_edge *first = &e.all[e.reflex.data[starg_rng_below(rng, e.reflex.count)]];
         if (!plane_through(&e, first, rng, &fresh))
             continue;
         size_t weight = weigh(&e, &fresh);
@@ -225,7 +205,7 @@ static starg_status reflex_plane_find(const region *r, starg_rng *rng, region_sc
         }
     }
 done:
-    RELEASE(e.all.data, e.reflex.data);
+    RELEASE(e.all, e.reflex.data);
     return status;
 }
 

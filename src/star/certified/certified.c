@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Strict star decomposition: few pieces, each proven to be star-shaped.
+/* Certified star decomposition: few pieces, each proven to be star-shaped.
  *
  * Stages: the surface is one piece (partition.c), which is cut by planes until every part is
  * star-shaped (bsp_start.c); neighbours are joined where that can be done; then, in turns, small
  * changes save pieces (improve.c) and some neighbouring pieces are cut anew (ruin_recreate.c),
  * every step with an exact certificate, until nothing is found any more. At the end guards get room
  * (widen.c), borders between pieces better triangles (refine_caps.c), vertices of cuts and guards
- * better places (reshape.c), and each piece is made of tetrahedra about its guard (cone.c).
+ * better places (reshape.c), and each piece is made of tetrahedra about its guard.
  *
  * A start that the time limit overtakes goes on for a while, in a hurry, since without it there is
  * no result (starg_time_is_long_over). Where it fails, which takes roundings that spoil every cut
@@ -26,16 +26,16 @@ enum {
     EVALUATIONS_EACH = 3 /* for each grown region */
 };
 
-/* Of all searches, by effort, unless trials or time are limited: vertices, facets and rows looked
- * at, which are counted the same at any number of threads. About 2.5e8 take a second. The first
+/* Work of the search, by effort, unless trials or time are limited: vertices, facets and rows
+ * visited, which are counted the same at any number of threads. About 2.5e8 take a second. The first
  * fifth of the best effort saves all but the last piece or two (docs/decomposition.md). */
 static const uint64_t WORK_QUICK = 300000000, WORK_NORMAL = 1000000000, WORK_BEST = 4700000000;
 
-/* The same for the room of guards at the end, and for better places after that: so much and what
- * the searches have taken, up to the second; the third if more is asked for. */
+/* Work of widen() and of reshape(): ROOM_LEAST and the search's work, at most ROOM_USUAL; with
+ * `quality` ROOM_MOST. */
 static const uint64_t ROOM_LEAST = 50000000, ROOM_USUAL = 600000000, ROOM_MOST = 6000000000;
 
-/* Of small changes in a round; about as much as a renewal takes. Where pieces and facets are so few
+/* Work of small changes in a round; about as much as ruin_recreate() takes. Where pieces and facets are so few
  * that their product is below USUAL_SIZE, there is less to try: the square of its share. */
 static const uint64_t WORK_EACH = 100000000;
 static const double USUAL_SIZE = 4000;
@@ -157,10 +157,10 @@ typedef struct searches {
     uint64_t work_each; /* of small changes in a round */
     uint64_t rounds;    /* so far */
     size_t idle;        /* of them, since the last that saved a piece */
-    record changes, renewals;
+    record changes, recreations;
     bool time_limited;
     double began;                             /* clock */
-    improve_tallies tallies, renewal_tallies; /* what helps differs */
+    improve_tallies tallies, recreation_tallies; /* what helps differs */
 } searches;
 
 static uint64_t least(uint64_t a, uint64_t b) {
@@ -194,15 +194,15 @@ static starg_status change_some(searches *s, partition *p) {
 }
 
 /* Some pieces anew. */
-static starg_status renew_some(searches *s, partition *p) {
+static starg_status recreate_some(searches *s, partition *p) {
     ruin_recreate_report report;
     const ruin_recreate_options wanted = {.trials = s->trials_left,
                                           .work = s->work_left,
                                           .round = s->rounds,
-                                          .tallies = &s->renewal_tallies};
+                                          .tallies = &s->recreation_tallies};
     size_t before = p->pieces.count;
     TRY(ruin_recreate(p, &wanted, &report));
-    spend(s, &s->renewals, report.trials, report.work, before - p->pieces.count);
+    spend(s, &s->recreations, report.trials, report.work, before - p->pieces.count);
     s->time_limited = report.time_limited;
     return STARG_OK;
 }
@@ -266,7 +266,7 @@ static void tell_progress(const searches *s, const partition *p) {
     starg_progress_step(p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
 }
 
-/* The way that has lately saved more for its work is gone on with. */
+/* Continues with whichever search has lately saved more pieces for its work. */
 static starg_status search(searches *s, partition *p) {
     starg_status status = STARG_OK;
     s->began = starg_clock();
@@ -277,12 +277,12 @@ static starg_status search(searches *s, partition *p) {
     for (bool on; (status = may_go_on(s, p, &on)) == STARG_OK && on;) {
         STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
         s->rounds++;
-        if (gain_of(&s->changes, s->work_each) >= gain_of(&s->renewals, s->work_each))
+        if (gain_of(&s->changes, s->work_each) >= gain_of(&s->recreations, s->work_each))
             STARG_TRY(change_some(s, p));
         else
-            STARG_TRY(renew_some(s, p));
+            STARG_TRY(recreate_some(s, p));
         fade(&s->changes);
-        fade(&s->renewals);
+        fade(&s->recreations);
         tell_progress(s, p);
     }
 done:

@@ -275,7 +275,7 @@ static size_t complete(searcher *s, size_t pool, view **chosen, size_t count) {
     return most;
 }
 
-/* Each with what goes best with it, one by one. */
+/* For each place, greedily adds the best partners. */
 static size_t choose_supposed(searcher *s, size_t pool, view **chosen) {
     size_t most = 0;
     for (size_t first = 0; first < pool; first++) {

@@ -5,15 +5,14 @@
  *
  * Method: large neighbourhood search. First every two neighbours whose union is star-shaped are
  * joined, small pieces first. Then trials: some neighbouring pieces at random, their union to be
- * cut into one piece less by planes (repartition.c) or between guards that see
- * all of it (guard_split.c), or shared out among the pieces around
- * (reassign.c). Others are moves: as many pieces as before, which are kept when
- * large pieces get larger and small ones smaller, so that the small ones vanish in the end.
+ * cut into one piece less by planes (repartition.c) or between guards that see all of it
+ * (guard_split.c), or shared out among the pieces around (reassign.c). Others are moves: as many
+ * pieces as before, which are kept when large pieces get larger and small ones smaller, so that the
+ * small ones vanish in the end.
  *
  * There are several sorts of trials, which differ in cost by a factor of a hundred, and none is the
- * best everywhere. So moves, and what helps where nothing else does any more, get fixed shares of
- * the work, and the others share the rest by what each has lately saved for its work (adaptive
- * operator selection [Ropke and Pisinger 2006]).
+ * best everywhere. So some get fixed shares of the work, and the others share the rest by what each
+ * has lately saved for its work (adaptive operator selection [Ropke and Pisinger 2006]).
  *
  * Invariants: trials come in batches that look at the same partition, each with random numbers of
  * its own, and are carried out in their order unless an earlier one of the batch has changed a
@@ -165,13 +164,6 @@ static starg_status join_all(improver *m) {
 
 /* ---- unions ---- */
 
-static bool is_in(const uint32_t *pieces, size_t count, uint32_t number) {
-    for (size_t i = 0; i < count; i++)
-        if (pieces[i] == number)
-            return true;
-    return false;
-}
-
 static uint32_t random_seed(const improver *m, starg_rng *rng) {
     return m->seeds.data[starg_rng_below(rng, m->seeds.count)];
 }
@@ -190,7 +182,7 @@ static void choose_union(const improver *m, starg_rng *rng, size_t wanted, trial
         if (degree == 0)
             continue;
         uint32_t next = m->neighbours.data[m->first.data[from] + starg_rng_below(rng, degree)];
-        if (!is_in(t->pieces, t->count, next))
+        if (!partition_lists(t->pieces, t->count, next))
             t->pieces[t->count++] = next;
     }
     *found = t->count == wanted;
@@ -262,7 +254,8 @@ static starg_status gather_around(const improver *m, const trial *t, partition_n
     for (size_t i = 0; i < t->count; i++)
         for (uint32_t k = m->first.data[t->pieces[i]]; k < m->first.data[t->pieces[i] + 1]; k++) {
             uint32_t next = m->neighbours.data[k];
-            if (!is_in(t->pieces, t->count, next) && !is_in(out->data, out->count, next))
+            if (!partition_lists(t->pieces, t->count, next) &&
+                !partition_lists(out->data, out->count, next))
                 PUSH(m->p->context, PARTITION_STAGE, out, next);
         }
     return STARG_OK;
@@ -360,7 +353,8 @@ static bool meet(trial *a, trial *b) {
     const size_t count[2] = {others_of(a, &more[0]), others_of(b, &more[1])};
     for (size_t i = 0; i < a->count + count[0]; i++) {
         uint32_t number = i < a->count ? a->pieces[i] : more[0][i - a->count];
-        if (is_in(b->pieces, b->count, number) || is_in(more[1], count[1], number))
+        if (partition_lists(b->pieces, b->count, number) ||
+            partition_lists(more[1], count[1], number))
             return true;
     }
     return false;

@@ -8,10 +8,10 @@
  * consists of its edges that occur in one direction only. A vertex made by cuts is needed unless
  * all borders through it run straight on between the same two neighbours (it was inserted on an
  * edge that is now a seam of planes), or no border passes. Each group's border, without the
- * vertices that are not needed, is triangulated again (cut.c), with the inner
- * edges and vertices that another group's border touches (seams): these are needed, and stay. A
- * group whose border touches itself, or whose triangulation fails, stays as it is and needs all of
- * its vertices. Finally, certify.
+ * vertices that are not needed, is triangulated again (cut.c), with the inner edges and vertices
+ * that another group's border touches (seams): these are needed, and stay. A group whose border
+ * touches itself, or whose triangulation fails, stays as it is and needs all of its vertices.
+ * Finally, certify.
  *
  * Invariants: a vertex is removed from all facets or from none, so that every surface stays closed.
  *

@@ -22,7 +22,7 @@
  * extracted.
  *
  * Cost: linear; an extract is linear in its facets and those at its vertices, except for sorting.
- */
+ * */
 #include "star/certified/partition.h"
 
 #include <float.h>
@@ -33,7 +33,10 @@
 
 static const uint32_t NONE = UINT32_MAX;
 
-enum { THIN = 6 }; /* so many bits less than the longest side is the shortest at least */
+enum {
+    THIN = 6,          /* so many bits less than the longest side is the shortest at least */
+    INSERTED_MOST = 24 /* edges of a vertex, in sorting */
+};
 
 void partition_to_unit(const partition *p, const double point[3], double out[3]) {
     vec3_subtract(point, p->origin, out);
@@ -119,6 +122,61 @@ static starg_status add_facet(partition *p, const uint32_t corners[3], uint32_t 
     partition_plane_of(p, f.corners, &plane);
     PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
     PUSH(p->context, PARTITION_STAGE, &p->facets, f);
+    return STARG_OK;
+}
+
+/* ---- order ---- */
+
+int partition_ascending(const void *x, const void *y) {
+    uint32_t a = *(const uint32_t *)x, b = *(const uint32_t *)y;
+    return (a > b) - (a < b);
+}
+
+int partition_ascending_real(const void *x, const void *y) {
+    double a = *(const double *)x, b = *(const double *)y;
+    return (a > b) - (a < b);
+}
+
+static int by_ends(const void *left, const void *right) {
+    const partition_edge *x = left, *y = right;
+    int order = partition_compare_edges(x->a, x->b, y->a, y->b);
+    return order != 0 ? order : (x->facet > y->facet) - (x->facet < y->facet);
+}
+
+static uint32_t lower_end(const partition_edge *e) {
+    return e->a < e->b ? e->a : e->b;
+}
+
+/* Those of a vertex: a few as a rule. */
+static void sort_few(partition_edge *edges, size_t count) {
+    if (count > INSERTED_MOST)
+        qsort(edges, count, sizeof *edges, by_ends);
+    for (size_t i = 1; i < count; i++) {
+        const partition_edge moved = edges[i];
+        size_t at = i;
+        for (; at > 0 && by_ends(&edges[at - 1], &moved) > 0; at--)
+            edges[at] = edges[at - 1];
+        edges[at] = moved;
+    }
+}
+
+/* Filed by the lower end, then sorted there. */
+starg_status partition_sort_edges(starg_context *context, partition_edge *edges, size_t count,
+                                  size_t vertices) {
+    SCOPED uint32_t *next = NULL;
+    SCOPED partition_edge *filed = NULL;
+    NEW_ZERO(context, PARTITION_STAGE, next, vertices + 1);
+    NEW(context, PARTITION_STAGE, filed, count);
+    for (size_t i = 0; i < count; i++)
+        next[lower_end(&edges[i]) + 1]++;
+    for (size_t v = 0; v < vertices; v++)
+        next[v + 1] += next[v];
+    for (size_t i = 0; i < count; i++)
+        filed[next[lower_end(&edges[i])]++] = edges[i];
+    for (size_t v = 0, first = 0; v < vertices; first = next[v++])
+        sort_few(filed + first, next[v] - first);
+    if (count > 0)
+        memcpy(edges, filed, count * sizeof *filed);
     return STARG_OK;
 }
 
@@ -457,11 +515,6 @@ static starg_status list_facets_beside(const extractor *x) {
     return STARG_OK;
 }
 
-static int ascending(const void *x, const void *y) {
-    uint32_t a = *(const uint32_t *)x, b = *(const uint32_t *)y;
-    return (a > b) - (a < b);
-}
-
 /* ---- extracts: the part ---- */
 
 static starg_status number_piece(const extractor *x, uint32_t *side) {
@@ -535,7 +588,7 @@ starg_status extract_make(const partition *p, const uint32_t *pieces, size_t cou
     TRY(number_points(&x));
     TRY(list_facets_beside(&x));
     if (out->facets.count > 1)
-        qsort(out->facets.data, out->facets.count, sizeof *out->facets.data, ascending);
+        qsort(out->facets.data, out->facets.count, sizeof *out->facets.data, partition_ascending);
     TRY(add_facets(&x));
     TRY(add_what_is_listed(&x));
     forget(&x);

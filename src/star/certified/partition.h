@@ -116,6 +116,32 @@ static inline int partition_compare_edges(uint32_t a, uint32_t b, uint32_t c, ui
     return (high[0] > high[1]) - (high[0] < high[1]);
 }
 
+/* Edge from a to b of a facet, whatever numbers these have. */
+typedef struct partition_edge {
+    uint32_t a, b, facet;
+} partition_edge;
+
+static inline bool partition_same_edge(const partition_edge *x, const partition_edge *y) {
+    return partition_compare_edges(x->a, x->b, y->a, y->b) == 0;
+}
+
+/* Sorts edges between vertices below `vertices` by their ends, in either direction, then by their
+ * facets. Errors: MEMORY. */
+starg_status partition_sort_edges(starg_context *context, partition_edge *edges, size_t count,
+                                  size_t vertices);
+
+/* Is a number in a list? */
+static inline bool partition_lists(const uint32_t *numbers, size_t count, uint32_t number) {
+    for (size_t i = 0; i < count; i++)
+        if (numbers[i] == number)
+            return true;
+    return false;
+}
+
+/* The order of numbers, for qsort and bsearch. */
+int partition_ascending(const void *x, const void *y);
+int partition_ascending_real(const void *x, const void *y);
+
 /* The plane of three vertices, which are counter-clockwise seen from where the normal points. */
 void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane);
 

@@ -3,19 +3,19 @@
  *
  * Problem: eliminate a piece whose neighbours together see all of it: partition it so that each
  * part is visible from the guard of the neighbour that receives it. Unlike a cut of the whole union
- * (repartition.c), this keeps the rest of the neighbours' surfaces. The same for
- * the union of a few pieces, some of which may be created anew.
+ * (repartition.c), this keeps the rest of the neighbours' surfaces. The same for the union of a few
+ * pieces, some of which may be created anew.
  *
  * Method: every facet of the union goes to a taker whose guard sees it, with the tetrahedron
- * between it and a common apex (apply.c). Between two facets that share an edge
- * and go to different takers there is then a triangle from that edge to the apex, and each guard
- * must be on its own side of it. For a given apex and given guards this is a labelling of the
- * facets with conditions on neighbours only (labelling.c).
+ * between it and a common apex (apply.c). Between two facets that share an edge and go to different
+ * takers there is then a triangle from that edge to the apex, and each guard must be on its own
+ * side of it. For a given apex and given guards this is a labelling of the facets with conditions
+ * on neighbours only (labelling.c).
  *
  * Stages: a guard for each neighbour: its own, or one that sees all of the neighbour and as much as
- * can be of the union about a random place; and one for each piece that is made anew; which
- * takers each facet may go to; then, for some random places of the apex, which guards are on which
- * side at each edge, and the labelling.
+ * can be of the union about a random place; and one for each piece that is made anew; which takers
+ * each facet may go to; then, for some random places of the apex, which guards are on which side at
+ * each edge, and the labelling.
  *
  * Invariants: rounded throughout; surfaces that are no manifold are left alone. Cost: a search for
  * a guard for each neighbour, linear in its facets; for each apex linear in edges x takers, and the
@@ -29,8 +29,7 @@
 enum {
     APEXES = 16,
     NEIGHBOURS_MOST = FAN_TAKERS_MOST - FAN_PIECES_MOST,
-    OWN_GUARD = 3,      /* one in so many times */
-    INSERTED_MOST = 24, /* edges of a vertex */
+    OWN_GUARD = 3, /* one in so many times */
     /* in the work counted */
     SORTING = 45,
     LABELLING = 6
@@ -43,10 +42,10 @@ typedef struct taker {
     double guard[3];
 } taker;
 
-/* An edge of the union, from a to b in the first of its facets. Edge i of the labelling is edge i
- * here. */
+/* An edge of the union, from a to b in the first of its facets, which edge i of the labelling
+ * names. */
 typedef struct union_edge {
-    uint32_t a, b, facets[2];
+    uint32_t a, b;
 } union_edge;
 
 typedef struct reassigner {
@@ -89,10 +88,7 @@ static void random_point(const reassigner *d, size_t facet_number, double out[3]
 }
 
 static bool is_own(const reassigner *d, uint32_t number) {
-    for (size_t i = 0; i < d->task->piece_count; i++)
-        if (d->task->pieces[i] == number)
-            return true;
-    return false;
+    return partition_lists(d->task->pieces, d->task->piece_count, number);
 }
 
 /* ---- guards ---- */
@@ -199,87 +195,37 @@ static starg_status find_takers(reassigner *d, bool *fine) {
     return STARG_OK;
 }
 
-static int compare_edges(const void *left, const void *right) {
-    const union_edge *x = left, *y = right;
-    int order = partition_compare_edges(x->a, x->b, y->a, y->b);
-    return order != 0 ? order : (x->facets[0] > y->facets[0]) - (x->facets[0] < y->facets[0]);
-}
-
-static bool are_one_edge(const union_edge *x, const union_edge *y) {
-    return partition_compare_edges(x->a, x->b, y->a, y->b) == 0;
-}
-
-static uint32_t lower_end(const union_edge *e) {
-    return e->a < e->b ? e->a : e->b;
-}
-
-/* Those of a vertex: a few as a rule. */
-static void sort_few(union_edge *edges, size_t count) {
-    if (count > INSERTED_MOST)
-        qsort(edges, count, sizeof *edges, compare_edges);
-    for (size_t i = 1; i < count; i++) {
-        const union_edge moved = edges[i];
-        size_t at = i;
-        for (; at > 0 && compare_edges(&edges[at - 1], &moved) > 0; at--)
-            edges[at] = edges[at - 1];
-        edges[at] = moved;
+/* Two halves are an edge. *fine is false where an edge has other than two facets. */
+static starg_status pair_edges(reassigner *d, const partition_edge *halves, size_t count,
+                               bool *fine) {
+    *fine = true;
+    for (size_t i = 0; i < count && *fine; i += 2) {
+        const partition_edge *x = &halves[i], *y = x + 1;
+        *fine = i + 1 < count && x->a == y->b && x->b == y->a &&
+                (i + 2 == count || !partition_same_edge(x, x + 2));
+        if (!*fine)
+            break;
+        const union_edge edge = {x->a, x->b};
+        const labelling_edge same = {.nodes = {x->facet, y->facet}};
+        PUSH(d->p->context, PARTITION_STAGE, &d->edges, edge);
+        PUSH(d->p->context, PARTITION_STAGE, &d->labelling.edges, same);
     }
-}
-
-/* By their ends, then facets: filed by the lower end, then sorted there. */
-static starg_status sort_edges(reassigner *d) {
-    starg_context *context = d->p->context;
-    size_t vertices = d->own.vertices.count / 3, count = d->edges.count;
-    SCOPED uint32_t *next = NULL;
-    SCOPED union_edge *filed = NULL;
-    NEW_ZERO(context, PARTITION_STAGE, next, vertices + 1);
-    NEW(context, PARTITION_STAGE, filed, count);
-    for (size_t i = 0; i < count; i++)
-        next[lower_end(&d->edges.data[i]) + 1]++;
-    for (size_t v = 0; v < vertices; v++)
-        next[v + 1] += next[v];
-    for (size_t i = 0; i < count; i++)
-        filed[next[lower_end(&d->edges.data[i])]++] = d->edges.data[i];
-    for (size_t v = 0, first = 0; v < vertices; first = next[v++])
-        sort_few(filed + first, next[v] - first);
-    if (count > 0)
-        memcpy(d->edges.data, filed, count * sizeof *filed);
     return STARG_OK;
-}
-
-/* Pairs of edges become one. False where an edge has other than two facets. */
-static bool pair_edges(union_edge *edges, size_t count) {
-    for (size_t i = 0; i < count; i += 2) {
-        bool fine = i + 1 < count && edges[i].a == edges[i + 1].b && edges[i].b == edges[i + 1].a &&
-                    (i + 2 == count || !are_one_edge(&edges[i], &edges[i + 2]));
-        if (!fine)
-            return false;
-        edges[i].facets[1] = edges[i + 1].facets[0];
-        edges[i / 2] = edges[i];
-    }
-    return true;
 }
 
 static starg_status find_edges(reassigner *d, bool *fine) {
     starg_context *context = d->p->context;
+    const size_t count = 3 * d->entries.count;
+    SCOPED partition_edge *halves = NULL;
     d->scratch->work += SORTING * d->entries.count;
-    for (uint32_t i = 0; i < d->entries.count; i++)
-        for (int k = 0; k < 3; k++) {
-            const uint32_t *c = d->own.triangles.data[i].corners;
-            const union_edge half = {c[k], c[(k + 1) % 3], {i, i}};
-            PUSH(context, PARTITION_STAGE, &d->edges, half);
-        }
-    TRY(sort_edges(d));
-    *fine = pair_edges(d->edges.data, d->edges.count);
-    d->edges.count /= 2;
-    for (size_t i = 0; i < d->edges.count && *fine; i++) {
-        const uint32_t *facets = d->edges.data[i].facets;
-        const labelling_edge edge = {.nodes = {facets[0], facets[1]}};
-        PUSH(context, PARTITION_STAGE, &d->labelling.edges, edge);
+    NEW(context, PARTITION_STAGE, halves, count);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t *c = d->own.triangles.data[i / 3].corners;
+        halves[i] = (partition_edge){c[i % 3], c[(i + 1) % 3], i / 3};
     }
-    if (*fine)
-        TRY(labelling_prepare(&d->labelling));
-    return STARG_OK;
+    TRY(partition_sort_edges(context, halves, count, d->own.vertices.count / 3));
+    TRY(pair_edges(d, halves, count, fine));
+    return *fine ? labelling_prepare(&d->labelling) : STARG_OK;
 }
 
 /* ---- the apex ---- */
@@ -349,13 +295,6 @@ static starg_status make_plan(const reassigner *d, fan_plan *plan) {
     return STARG_OK;
 }
 
-static bool takes_part(const fan_plan *plan, uint32_t number) {
-    for (size_t i = 0; i < plan->taker_count; i++)
-        if (plan->takers[i] == number)
-            return true;
-    return false;
-}
-
 /* Does a move make the sum of the squares of volumes larger? */
 static bool is_uneven(const reassigner *d, const fan_plan *plan) {
     double taken[FAN_TAKERS_MOST] = {0}, before = 0, after = 0;
@@ -377,7 +316,7 @@ static bool is_uneven(const reassigner *d, const fan_plan *plan) {
 /* All kept pieces are there, and a move is worth while. */
 static bool will_do(const reassigner *d, const fan_plan *plan) {
     for (size_t i = 0; i < plan->kept; i++)
-        if (!takes_part(plan, plan->pieces[i]))
+        if (!partition_lists(plan->takers, plan->taker_count, plan->pieces[i]))
             return false;
     return plan->kept < plan->piece_count || is_uneven(d, plan);
 }

@@ -10,8 +10,8 @@
  * pieces are a cap. Over the shortest edge of a thin triangle a vertex is added: the centre of its
  * circle, or what makes an isosceles triangle with a fair angle, if that is closer. It is left out
  * if it is outside the cap, or sees an edge of the border at an angle near 180 degrees. After each
- * round the cap is triangulated anew (cut.c). Triangles grow in proportion
- * from short edges to long ones, so that few vertices are enough.
+ * round the cap is triangulated anew (cut.c). Triangles grow in proportion from short edges to long
+ * ones, so that few vertices are enough.
  *
  * Only caps whose tetrahedra have small dihedral angles are refined, and of all rounds the one
  * whose angles lack least is taken.
@@ -157,20 +157,16 @@ static double lack_of_all(const refiner *r, const facet *like) {
 /* ---- the plane ---- */
 
 static void find_axes(refiner *r, const facet *f) {
-    double normal[3], length;
+    double normal[3];
     int small = 0;
     for (int k = 0; k < 3; k++)
         normal[k] = ldexp(r->p->planes.data[f->plane].normal[k], r->exponent - r->p->exponents[k]);
-    length = vec3_length(normal);
-    for (int k = 0; k < 3; k++) {
-        normal[k] /= length;
+    vec3_normalize(normal);
+    for (int k = 1; k < 3; k++)
         small = fabs(normal[k]) < fabs(normal[small]) ? k : small;
-    }
     const double unit[3] = {small == 0, small == 1, small == 2};
     vec3_cross(normal, unit, r->axes[0]);
-    length = vec3_length(r->axes[0]);
-    for (int k = 0; k < 3; k++)
-        r->axes[0][k] /= length;
+    vec3_normalize(r->axes[0]);
     vec3_cross(normal, r->axes[0], r->axes[1]);
     vec3_copy(partition_point(r->p, f->corners[0]), r->origin);
 }
@@ -300,7 +296,7 @@ static starg_status keep_triangles(refiner *r) {
     return STARG_OK;
 }
 
-/* The best of all rounds. *better is false if that is how it was. */
+/* The best of all rounds. *better is false if no round improved on the input. */
 static starg_status refine(refiner *r, const facet *f, bool *better) {
     double best = lack_of_all(r, f);
     bool go_on = true;

@@ -80,13 +80,6 @@ starg_status region_scratch_fit(region_scratch *scratch, const partition *p) {
                      &scratch->piece_of.capacity, p->pieces.count);
 }
 
-static bool is_chosen(const uint32_t *pieces, size_t count, uint32_t owner) {
-    for (size_t i = 0; i < count; i++)
-        if (pieces[i] == owner)
-            return true;
-    return false;
-}
-
 static starg_status gather_vertex(const partition *p, uint32_t vertex, region_scratch *scratch,
                                   region *out, uint32_t *number) {
     uint32_t *slot = &scratch->vertex_of.data[vertex];
@@ -168,7 +161,7 @@ starg_status region_gather_some(const partition *p, const uint32_t *pieces, size
         for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1];
              k += stride_of(p, pieces[i], most)) {
             uint32_t entry = p->index.data[k];
-            if (!is_chosen(pieces, count, p->facets.data[entry / 2].side[1 - entry % 2]))
+            if (!partition_lists(pieces, count, p->facets.data[entry / 2].side[1 - entry % 2]))
                 TRY(gather_facet(p, entry, scratch, out));
             if (i == 0)
                 out->first_rows = out->rows.count / ROW;

@@ -5,9 +5,9 @@
  * half-space to each side, so that parts with planar borders have the largest kernels.
  *
  * Two parts: for a direction n let L be the highest plane with a star-shaped low side and H the
- * lowest with a star-shaped high side (region.c). A cut exists along n where
- * L > H. The overlap L - H is a function of n, piecewise smooth: random directions, the best few
- * climb by random turns of falling size.
+ * lowest with a star-shaped high side (region.c). A cut exists along n where L > H. The overlap L -
+ * H is a function of n, piecewise smooth: random directions, the best few climb by random turns of
+ * falling size.
  *
  * More parts: the direction and side whose star-shaped part takes most of the surface is cut off at
  * its highest plane, the rest is cut likewise; several such first cuts are tried in the order of
@@ -49,9 +49,7 @@ static void turn_a_little(const double from[3], double angle, starg_rng *rng, do
     double random[3];
     starg_rng_direction(rng, random);
     vec3_along(from, angle, random, out);
-    double length = vec3_length(out);
-    for (int k = 0; k < 3; k++)
-        out[k] /= length;
+    vec3_normalize(out);
 }
 
 /* Now and then the normal of a row: where pieces had a flat border before, a better one may be
@@ -83,11 +81,6 @@ static void negate(const double a[3], double out[3]) {
 }
 
 /* ---- places along a direction ---- */
-
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 typedef struct place {
     double height, room;
@@ -124,7 +117,7 @@ static int find_places(const searcher *s, const direction *d, place places[PLACE
     for (size_t i = 0; i < s->scratch->heights.count; i++)
         if (heights[i] >= d->low && heights[i] <= d->high)
             heights[count++] = heights[i];
-    qsort(heights, count, sizeof *heights, ascending);
+    qsort(heights, count, sizeof *heights, partition_ascending_real);
     double least = fmax(2 * PLANE_ROOM, FAIR * widest_gap(heights, count));
     for (size_t i = 0; i + 1 < count; i++) {
         place fresh = {0.5 * (heights[i] + heights[i + 1]), heights[i + 1] - heights[i]};
@@ -259,7 +252,7 @@ static starg_status place_peel(const searcher *s, const direction *d, double *he
     for (size_t i = 0; i < s->scratch->heights.count; i++)
         if (heights[i] <= d->high)
             heights[count++] = heights[i];
-    qsort(heights, count, sizeof *heights, ascending);
+    qsort(heights, count, sizeof *heights, partition_ascending_real);
     /* among the highest gaps, not the widest of all */
     size_t first = count > PEEL_GAPS ? count - PEEL_GAPS : 0;
     double least = fmax(2 * PLANE_ROOM, FAIR * widest_gap(heights + first, count - first));

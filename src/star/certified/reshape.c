@@ -9,9 +9,9 @@
  * towards a neighbour, or onto it, where the facets at both vanish (edge collapse); or two
  * triangles exchange their common edge for the other diagonal (edge swap). Of all changes at a
  * facet the best is made, if what angles lack gets less and no facet lacks more than the worst did.
- * Rounds go on while anything changes; then guards move, and again. A guard
- * moves by pattern search [Hooke, Jeeves 1961] towards the 26 neighbours in a grid, whose step is
- * halved where none is better, the flattest facets looked at first.
+ * Rounds go on while anything changes; then guards move, and again. A guard moves by pattern search
+ * [Hooke, Jeeves 1961] towards the 26 neighbours in a grid, whose step is halved where none is
+ * better, the flattest facets looked at first.
  *
  * A vertex may move towards what is in all faces of the model that it is in, so that each of them
  * stays covered. Borders between pieces may bend.
@@ -19,9 +19,9 @@
  * Why pieces stay star-shaped: let each guard be strictly inside all facets at the vertex that do
  * not vanish, before and after. The orientation of a facet with a guard is affine in the vertex, so
  * it is positive all the way, and no facet passes a guard; hence the surface winds around it once
- * as before. Likewise for a swap: guards see both pairs of triangles from the same side, so
- * that none is in the tetrahedron between them. And facets in a face of the model that are all
- * seen from the same side cover it once if they did so before.
+ * as before. Likewise for a swap: guards see both pairs of triangles from the same side, so that
+ * none is in the tetrahedron between them. And facets in a face of the model that are all seen from
+ * the same side cover it once if they did so before.
  *
  * A guard stays strictly inside all facets of its piece: on the way between two points of a kernel
  * no facet is met.

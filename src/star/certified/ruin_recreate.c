@@ -4,10 +4,9 @@
  * Problem: a search by small changes ends where none of them helps.
  *
  * Method: ruin and recreate [Schrimpf et al. 2000]. Some neighbouring pieces of a copy become one,
- * which is cut by planes as the whole was at the start (bsp_start.c), and
- * searched alone with what touches it (improve.c). The copy replaces the
- * partition unless it has more pieces. If the pieces are all there are, that is another search from
- * another start.
+ * which is cut by planes as the whole was at the start (bsp_start.c), and searched alone with what
+ * touches it (improve.c). The copy replaces the partition unless it has more pieces. If the pieces
+ * are all there are, that is another search from another start.
  *
  * Cost: that of a start and of a search for the pieces, and some passes over the partition. */
 #include "star/certified/search.h"
@@ -25,13 +24,6 @@ typedef struct group {
     size_t count;
 } group;
 
-static bool is_in(const group *g, uint32_t number) {
-    for (size_t i = 0; i < g->count; i++)
-        if (g->pieces[i] == number)
-            return true;
-    return false;
-}
-
 /* What is beyond a random facet of a random piece of the group, until there are enough. The first
  * is one of which there may be fewer. */
 static starg_status choose_group(const partition *p, starg_rng *rng, group *g) {
@@ -47,7 +39,7 @@ static starg_status choose_group(const partition *p, starg_rng *rng, group *g) {
         uint32_t facets = p->start.data[from + 1] - first;
         uint32_t entry = p->index.data[first + starg_rng_below(rng, facets)];
         uint32_t next = p->facets.data[entry / 2].side[1 - entry % 2];
-        if (next != PARTITION_OUTSIDE && !is_in(g, next))
+        if (next != PARTITION_OUTSIDE && !partition_lists(g->pieces, g->count, next))
             g->pieces[g->count++] = next;
     }
     return STARG_OK;

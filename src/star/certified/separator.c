@@ -238,11 +238,8 @@ static bool find_plane_touching(parting *p, partition_plane *out) {
     for (int i = 1; i < p->touched_count; i++, count++) {
         vec3_subtract(p->r->vertices.data + 3 * (size_t)p->touched[i], origin, axes[count]);
         project(axes[count], axes, count);
-        double length = vec3_length(axes[count]);
-        if (length < p->gap)
+        if (vec3_normalize(axes[count]) < p->gap)
             return false;
-        for (int k = 0; k < 3; k++)
-            axes[count][k] /= length;
     }
     return find_plane_through(p, origin, axes, count, out);
 }

@@ -8,10 +8,10 @@
  * above. A plane is used if it costs less than the best guard of the whole region.
  *
  * Stages: guards to choose from, each as far inside of as many triangles around a place as can be
- * (region.c): along random directions, about random places, about triangles
- * that the best one misses; for random directions the cost of all heights at once, by histograms;
- * the best plane turned a little; planes through edges of missed triangles, which leave no sliver
- * of either side at a sharp reflex edge.
+ * (region.c): along random directions, about random places, about triangles that the best one
+ * misses; for random directions the cost of all heights at once, by histograms; the best plane
+ * turned a little; planes through edges of missed triangles, which leave no sliver of either side
+ * at a sharp reflex edge.
  *
  * Large regions are searched by a sample of their triangles.
  *
@@ -84,21 +84,10 @@ static int tries(const plane_search *d, int usual) {
     return d->options->effort > 0 ? usual * d->options->effort : usual / HURRY;
 }
 
-static void normalize(double v[3]) {
-    double length = vec3_length(v);
-    for (int k = 0; k < 3; k++)
-        v[k] /= length;
-}
-
 /* ---- preparation ---- */
 
 static starg_status measure(plane_search *d) {
-    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < d->r->vertices.count; i++) {
-        lower[i % 3] = fmin(lower[i % 3], d->r->vertices.data[i]);
-        upper[i % 3] = fmax(upper[i % 3], d->r->vertices.data[i]);
-    }
-    d->size = vec3_distance(lower, upper);
+    d->size = region_diagonal(d->r);
     for (size_t i = 0; i < d->r->triangles.count; i++) {
         const region_triangle *t = &d->r->triangles.data[i];
         PUSH(d->context, PARTITION_STAGE, &d->areas,
@@ -294,7 +283,7 @@ static void propose(const plane_search *d, int sort, double out[3]) {
     if (sort == 0) {
         const double *row = d->r->rows.data + 4 * starg_rng_below(d->rng, d->r->rows.count / 4);
         vec3_along(row, starg_rng_below(d->rng, 2) == 0 ? 0.05 : 0.3, out, out);
-        normalize(out);
+        vec3_normalize(out);
     } else if (sort == 1) {
         double between[3];
         /* one after the other: compilers evaluate arguments in orders of their own */
@@ -302,7 +291,7 @@ static void propose(const plane_search *d, int sort, double out[3]) {
         vec3_subtract(to, from, between);
         if (vec3_length(between) > 1e-9) {
             vec3_copy(between, out);
-            normalize(out);
+            vec3_normalize(out);
         }
     }
 }
@@ -321,7 +310,7 @@ static void turn_best(plane_search *d) {
         double random[3], normal[3], before = d->best.cost;
         starg_rng_direction(d->rng, random);
         vec3_along(d->best.normal, angle, random, normal);
-        normalize(normal);
+        vec3_normalize(normal);
         try_direction(d, normal);
         if (d->best.cost == before)
             angle *= 0.85;
@@ -359,7 +348,7 @@ static double cost_of_plane(plane_search *d, const double normal[3], double heig
 static void turn_about(const double edge[3], const double normal[3], double angle, double out[3]) {
     double across[3];
     vec3_cross(edge, normal, across);
-    normalize(across);
+    vec3_normalize(across);
     for (int k = 0; k < 3; k++)
         out[k] = cos(angle) * normal[k] + sin(angle) * across[k];
 }
@@ -384,7 +373,7 @@ static void try_edge(plane_search *d, const double a[3], const double b[3]) {
     vec3_along(normal, -vec3_dot(normal, edge) / squared, edge, normal);
     if (vec3_length(normal) < 0.05)
         return;
-    normalize(normal);
+    vec3_normalize(normal);
     double cost = cost_of_plane(d, normal, vec3_dot(normal, a));
     for (int i = 0; i < EDGE_TURNS && cost < range; i++) {
         double turned[3];
@@ -415,11 +404,6 @@ static void try_edges(plane_search *d) {
 
 /* ---- the place of the plane ---- */
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The middle of the widest gap between vertices' heights within the bin: a plane close to a vertex
  * makes slivers. */
 static double widest_gap_near(const plane_search *d, const cut *c) {
@@ -430,7 +414,7 @@ static double widest_gap_near(const plane_search *d, const cut *c) {
         if (fabs(height - c->height) < 0.5 * d->size / BINS)
             heights[count++] = height;
     }
-    qsort(heights, count, sizeof *heights, ascending);
+    qsort(heights, count, sizeof *heights, partition_ascending_real);
     for (size_t i = 0; i + 1 < count; i++)
         if (heights[i + 1] - heights[i] > widest) {
             widest = heights[i + 1] - heights[i];

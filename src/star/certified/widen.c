@@ -12,11 +12,10 @@
  * better, never whether one is valid.
  *
  * Method: local search, the piece that lacks most first. Its union with a neighbour is cut anew
- * into two parts: by another plane (repartition.c), or else from two guards that
- * see all of it (guard_split.c). These searches require a margin from the start:
- * the goal, or else a multiple of the smaller ball so far. Rounds go on until some have changed
- * nothing. Unions of more than two pieces are hardly ever better off (docs/decomposition.md,
- * "Angles and margins").
+ * into two parts: by another plane (repartition.c), or else from two guards that see all of it
+ * (guard_split.c). These searches require a margin from the start: the goal, or else a multiple of
+ * the smaller ball so far. Rounds go on until some have changed nothing. Unions of more than two
+ * pieces are hardly ever better off (docs/decomposition.md, "Angles and margins").
  *
  * Invariants: those of the partition; a change lowers the sum. Cost: up to four searches for each
  * union; `work` in total. */
@@ -192,24 +191,12 @@ typedef struct pair {
     double margin;   /* of guards, in unit coordinates */
 } pair;
 
-static starg_status cut_by_plane(widener *w, const pair *of, bool *done) {
-    const repartition_options options = {
-        .margin = of->margin, .directions = DIRECTIONS, .steps = STEPS};
-    starg_rng rng = starg_rng_make(w->p->context->seed, RNG_STREAM, w->tries++);
-    cut_plan plan = {.count = 0};
-    apply_effect effect = {.done = false};
-    bool found = false;
-    TRY(repartition_find(of->r, 2, &options, &rng, &w->scratch, &plan, &found));
-    if (found)
-        TRY(apply_cuts(w->p, of->pieces, 2, &plan, ROUNDED * of->margin, fitness, &w->scratch,
-                       &effect));
-    *done = effect.done;
-    return STARG_OK;
-}
-
-static starg_status cut_from_guards(widener *w, const pair *of, bool *done) {
+/* By a plane, or else from two guards that see all of the union. */
+static starg_status cut(widener *w, const pair *of, bool plane, bool *done) {
     double starts[2][3];
-    const guard_split_options options = {
+    const repartition_options planes = {
+        .margin = of->margin, .directions = DIRECTIONS, .steps = STEPS};
+    const guard_split_options guards = {
         .margin = of->margin, .starts = (const double(*)[3])starts, .start_count = 2};
     starg_rng rng = starg_rng_make(w->p->context->seed, RNG_STREAM, w->tries++);
     cut_plan plan = {.count = 0};
@@ -217,7 +204,8 @@ static starg_status cut_from_guards(widener *w, const pair *of, bool *done) {
     bool found = false;
     for (int i = 0; i < 2; i++)
         partition_to_unit(w->p, w->p->pieces.data[of->pieces[i]].guard, starts[i]);
-    TRY(guard_split_find(of->r, 2, &options, &rng, &w->scratch, &plan, &found));
+    TRY(plane ? repartition_find(of->r, 2, &planes, &rng, &w->scratch, &plan, &found)
+              : guard_split_find(of->r, 2, &guards, &rng, &w->scratch, &plan, &found));
     if (found)
         TRY(apply_cuts(w->p, of->pieces, 2, &plan, ROUNDED * of->margin, fitness, &w->scratch,
                        &effect));
@@ -236,9 +224,9 @@ static starg_status try_pair(widener *w, uint32_t a, uint32_t b, bool *done) {
     TRY(region_gather(p, of.pieces, 2, &w->scratch, &r));
     for (int i = 0; i < 2 && !*done && margins[i] <= margins[0]; i++) {
         of.margin = margins[i];
-        TRY(cut_by_plane(w, &of, done));
+        TRY(cut(w, &of, true, done));
         if (!*done)
-            TRY(cut_from_guards(w, &of, done));
+            TRY(cut(w, &of, false, done));
     }
     return STARG_OK;
 }
