@@ -100,10 +100,13 @@ starg_status cap_fill(starg_context *context, const double *points, const double
     starg_status status = STARG_OK;
     constrained_triangles all = {0};
     winder w = {.context = context};
-    int u, v;
-    cap_choose_view(normal, &u, &v);
-    STARG_TRY(constrained_triangulate(context, points, u, v, edges->data, edges->count, loose->data,
-                                      loose->count, &all, done));
+    constrained_graph graph = {.points = points,
+                               .edges = edges->data,
+                               .edge_count = edges->count,
+                               .loose = loose->data,
+                               .loose_count = loose->count};
+    cap_choose_view(normal, &graph.u, &graph.v);
+    STARG_TRY(constrained_triangulate(context, &graph, &all, done));
     if (!*done || all.count == 0)
         goto done;
     w.triangles = all.data;
