@@ -41,7 +41,9 @@
 
 static const int32_t UNKNOWN = INT32_MIN;
 
-void cap_choose_view(const double normal[3], int *u, int *v) {
+/* Projection axes: points near a plane with this normal appear counter-clockwise when viewed
+ * against the normal. */
+static void choose_view(const double normal[3], int *u, int *v) {
     int axis = 0;
     for (int k = 1; k < 3; k++)
         if (fabs(normal[k]) > fabs(normal[axis]))
@@ -105,7 +107,7 @@ starg_status cap_fill(starg_context *context, const double *points, const double
                                .edge_count = edges->count,
                                .loose = loose->data,
                                .loose_count = loose->count};
-    cap_choose_view(normal, &graph.u, &graph.v);
+    choose_view(normal, &graph.u, &graph.v);
     STARG_TRY(constrained_triangulate(context, &graph, &all, done));
     if (!*done || all.count == 0)
         goto done;
@@ -352,7 +354,7 @@ static starg_status split_facets(slicer *s) {
 static bool is_lid(const slicer *s, const facet *f, int side) {
     int u, v;
     uint32_t c[3];
-    cap_choose_view(s->plane.normal, &u, &v);
+    choose_view(s->plane.normal, &u, &v);
     facet_outward(f, side, c);
     return orient2d(partition_point(s->p, c[0]), partition_point(s->p, c[1]),
                     partition_point(s->p, c[2]), u, v) >= 0;

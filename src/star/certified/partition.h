@@ -291,10 +291,6 @@ starg_status region_find_center(const region *r, const double *normal, double he
 typedef STARG_ARRAY(uint32_t) cap_indices;
 typedef STARG_ARRAY(constrained_edge) cap_edges;
 
-/* Projection axes: points near a plane with this normal appear counter-clockwise when viewed
- * against the normal. */
-void cap_choose_view(const double normal[3], int *u, int *v);
-
 /* Takes vertices near a plane with the given normal, and distinct edges between them; viewed
  * against the normal, the winding number on the left of an edge exceeds that on the right by its
  * turns. Appends triangles (counter-clockwise in the same view) that fill the regions of winding

@@ -14,8 +14,8 @@
  * exact signs: what rounding of later cuts has spoilt is given up, too.
  *
  * Cost: for each part that of the split plane search, and a pass over all tetrahedra. */
+#include "star/compatible/cone_builder.h"
 #include "star/compatible/twin_pieces.h"
-#include "star/compatible/twin_region.h"
 
 #include <stdlib.h>
 
