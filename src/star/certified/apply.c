@@ -227,7 +227,7 @@ starg_status fan_plan_find(const partition *p, fan_plan *plan, bool *found) {
     return STARG_OK;
 }
 
-/* ---- the fan ---- */
+/* ---- fans: made ---- */
 
 /* Facets between two of the pieces get the same number on both sides. */
 static void hand_over(partition *p, const fan_plan *plan) {

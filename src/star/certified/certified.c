@@ -27,16 +27,17 @@ enum {
 };
 
 /* Work of the search, by effort, unless trials or time are limited: vertices, facets and rows
- * visited, which are counted the same at any number of threads. About 2.5e8 take a second. The first
- * fifth of the best effort saves all but the last piece or two (docs/decomposition.md). */
+ * visited, which are counted the same at any number of threads. About 2.5e8 take a second. The
+ * first fifth of the best effort saves all but the last piece or two (docs/decomposition.md). */
 static const uint64_t WORK_QUICK = 300000000, WORK_NORMAL = 1000000000, WORK_BEST = 4700000000;
 
 /* Work of widen() and of reshape(): ROOM_LEAST and the search's work, at most ROOM_USUAL; with
  * `quality` ROOM_MOST. */
 static const uint64_t ROOM_LEAST = 50000000, ROOM_USUAL = 600000000, ROOM_MOST = 6000000000;
 
-/* Work of small changes in a round; about as much as ruin_recreate() takes. Where pieces and facets are so few
- * that their product is below USUAL_SIZE, there is less to try: the square of its share. */
+/* Work of small changes in a round; about as much as ruin_recreate() takes. Where pieces and facets
+ * are so few that their product is below USUAL_SIZE, there is less to try: the square of its share.
+ */
 static const uint64_t WORK_EACH = 100000000;
 static const double USUAL_SIZE = 4000;
 
@@ -159,7 +160,7 @@ typedef struct searches {
     size_t idle;        /* of them, since the last that saved a piece */
     record changes, recreations;
     bool time_limited;
-    double began;                             /* clock */
+    double began;                                /* clock */
     improve_tallies tallies, recreation_tallies; /* what helps differs */
 } searches;
 

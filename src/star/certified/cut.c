@@ -166,7 +166,7 @@ typedef struct slicer {
     cap_indices loose, triangles;
 } slicer;
 
-/* ---- heights ---- */
+/* ---- slices: heights ---- */
 
 static int side_of_piece(const slicer *s, const facet *f) {
     for (int side = 0; side < 2; side++)
@@ -226,7 +226,7 @@ static bool find_heights(slicer *s, size_t *nodes) {
     return above && below;
 }
 
-/* ---- crossings ---- */
+/* ---- slices: crossings ---- */
 
 static size_t slot_of(const slicer *s, uint32_t a, uint32_t b) {
     uint64_t key = (uint64_t)a << 32 | b;
@@ -278,7 +278,7 @@ static starg_status find_crossings(slicer *s) {
     return STARG_OK;
 }
 
-/* ---- splitting ---- */
+/* ---- slices: splitting ---- */
 
 static starg_status add_facet(slicer *s, const facet *parent, uint32_t a, uint32_t b, uint32_t c) {
     facet child = *parent;
@@ -348,7 +348,7 @@ static starg_status split_facets(slicer *s) {
     return STARG_OK;
 }
 
-/* ---- the graph in the plane ---- */
+/* ---- slices: the graph in the plane ---- */
 
 /* Is the piece below a facet in the plane, seen along the axis of the cap? */
 static bool is_lid(const slicer *s, const facet *f, int side) {

@@ -43,17 +43,12 @@ static const uint32_t NONE = UINT32_MAX;
  * what is enough. */
 static const double LEAST = 1e-3, SHARE_LEAST = 1.0 / 128, ENOUGH = 0.6;
 
-typedef struct ranked_facet {
-    double lack;
-    uint32_t number;
-} ranked_facet;
-
 typedef struct reshaper {
     partition *p;
     double *margins; /* by piece: what the guard's is not to fall below, in unit coordinates */
     bool *touched;   /* by point: some facet at it has changed in this round */
     uint64_t looks;  /* at facets that are left */
-    STARG_ARRAY(ranked_facet) flat;
+    STARG_ARRAY(flatness_rank) flat;
 } reshaper;
 
 /* What facets lack, in all and at most. */
@@ -295,13 +290,6 @@ static starg_status make(reshaper *r, const change *how) {
 
 /* ---- rounds ---- */
 
-static int by_lack(const void *x, const void *y) {
-    const ranked_facet *a = x, *b = y;
-    if (a->lack != b->lack)
-        return a->lack > b->lack ? -1 : 1;
-    return (a->number > b->number) - (a->number < b->number);
-}
-
 /* Those with vertices of cuts. */
 static starg_status rank_flat(reshaper *r) {
     const partition *p = r->p;
@@ -311,12 +299,12 @@ static starg_status rank_flat(reshaper *r) {
         bool made = false;
         for (int k = 0; k < 3; k++)
             made = made || f->corners[k] >= p->first_points;
-        const ranked_facet one = {made ? flatness_of_facet(p, f) : 0, i};
+        const flatness_rank one = {made ? flatness_of_facet(p, f) : 0, i};
         if (one.lack > 0)
             PUSH(p->context, PARTITION_STAGE, &r->flat, one);
     }
     if (r->flat.count > 1)
-        qsort(r->flat.data, r->flat.count, sizeof *r->flat.data, by_lack);
+        qsort(r->flat.data, r->flat.count, sizeof *r->flat.data, flatness_compare);
     return STARG_OK;
 }
 
@@ -399,32 +387,20 @@ enum { HALVINGS = 8, NEIGHBOURS = 27 /* and the place itself */ };
 /* What a step must save at least. */
 static const double STEP_LEAST = 1e-2;
 
-typedef struct ranked_entry {
-    double lack;
-    uint32_t entry; /* of the partition's index */
-} ranked_entry;
-
 typedef struct settler {
     partition *p;
     const double *margins;
-    ranked_entry *entries; /* of the piece, the flattest first */
+    flatness_rank *entries; /* of the partition's index, for the piece, the flattest first */
     size_t count;
     uint64_t looks; /* at facets that are left */
 } settler;
-
-static int by_entry_lack(const void *x, const void *y) {
-    const ranked_entry *a = x, *b = y;
-    if (a->lack != b->lack)
-        return a->lack > b->lack ? -1 : 1;
-    return (a->entry > b->entry) - (a->entry < b->entry);
-}
 
 /* What the angles of the piece lack, or more than `enough`. */
 static double lack_of_angles(settler *s, double enough) {
     double sum = 0;
     size_t i = 0;
     for (; i < s->count && sum <= enough; i++) {
-        uint32_t entry = s->entries[i].entry;
+        uint32_t entry = s->entries[i].number;
         sum += flatness_of_side(s->p, &s->p->facets.data[entry / 2], (int)(entry % 2));
     }
     s->looks -= i < s->looks ? i : s->looks;
@@ -439,11 +415,11 @@ static double rank_entries(settler *s, uint32_t number) {
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
         uint32_t entry = p->index.data[k];
         double lack = flatness_of_side(p, &p->facets.data[entry / 2], (int)(entry % 2));
-        s->entries[s->count++] = (ranked_entry){lack, entry};
+        s->entries[s->count++] = (flatness_rank){lack, entry};
         sum += lack;
     }
     if (sum > 0)
-        qsort(s->entries, s->count, sizeof *s->entries, by_entry_lack);
+        qsort(s->entries, s->count, sizeof *s->entries, flatness_compare);
     return sum;
 }
 

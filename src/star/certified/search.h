@@ -134,8 +134,7 @@ bool separator_holds(const region *r, const cut_plan *plan, uint32_t triangle);
 starg_status crossings_count(const separator_task *task, size_t most, region_scratch *scratch,
                              size_t *count);
 
-/* ---- a few guards that see all of a region, and borders between their parts (guard_split.c) ----
- */
+/* ---- guards that see all of a region, and borders between their parts (guard_split.c) ---- */
 
 enum { GUARD_SPLIT_MOST = 4 };
 
@@ -228,6 +227,15 @@ starg_status reassign_find(const partition *p, const reassign_task *task, starg_
  * piece's bounding box. */
 #define FLATNESS_ANGLE  0.2
 #define FLATNESS_MARGIN 2e-3
+
+/* A piece, facet or entry of an index, and what it lacks; and the order for qsort that begins with
+ * what lacks most. */
+typedef struct flatness_rank {
+    double lack;
+    uint32_t number;
+} flatness_rank;
+
+int flatness_compare(const void *x, const void *y);
 
 /* What the smallest dihedral angles of the tetrahedra on a facet lack in all, 0 if nothing;
  * infinite if the guard of a piece at the facet is not strictly inside. */

@@ -86,6 +86,13 @@ double flatness_of_facet(const partition *p, const facet *f) {
     return sum;
 }
 
+int flatness_compare(const void *x, const void *y) {
+    const flatness_rank *a = x, *b = y;
+    if (a->lack != b->lack)
+        return a->lack > b->lack ? -1 : 1;
+    return (a->number > b->number) - (a->number < b->number);
+}
+
 double flatness_diagonal(const partition *p, uint32_t number) {
     box all = EMPTY;
     for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++)
@@ -150,18 +157,6 @@ typedef struct widener {
     uint64_t work, tries; /* the work allowed; searches so far */
     numbers around;       /* of a piece: its neighbours */
 } widener;
-
-typedef struct ranked_piece {
-    double lack;
-    uint32_t number;
-} ranked_piece;
-
-static int by_lack(const void *x, const void *y) {
-    const ranked_piece *a = x, *b = y;
-    if (a->lack != b->lack)
-        return a->lack > b->lack ? -1 : 1;
-    return (a->number > b->number) - (a->number < b->number);
-}
 
 /* ---- unions ---- */
 
@@ -246,18 +241,18 @@ static starg_status widen_piece(widener *w, uint32_t number, bool *done) {
 /* ---- rounds ---- */
 
 /* The pieces that lack something, the worst first. */
-static void rank(const widener *w, ranked_piece *list, size_t *count) {
+static void rank(const widener *w, flatness_rank *list, size_t *count) {
     *count = 0;
     for (uint32_t i = 0; i < w->p->pieces.count; i++) {
-        const ranked_piece one = {flatness_of_piece(w->p, i), i};
+        const flatness_rank one = {flatness_of_piece(w->p, i), i};
         if (one.lack > 0)
             list[(*count)++] = one;
     }
     if (*count > 1)
-        qsort(list, *count, sizeof *list, by_lack);
+        qsort(list, *count, sizeof *list, flatness_compare);
 }
 
-static starg_status run_round(widener *w, ranked_piece *list, bool *any) {
+static starg_status run_round(widener *w, flatness_rank *list, bool *any) {
     size_t count;
     *any = false;
     rank(w, list, &count);
@@ -272,7 +267,7 @@ static starg_status run_round(widener *w, ranked_piece *list, bool *any) {
 starg_status widen(partition *p, uint64_t work) {
     starg_status status = STARG_OK;
     widener w = {.p = p, .scratch = {.context = p->context}, .work = work};
-    ranked_piece *list = NULL;
+    flatness_rank *list = NULL;
     bool any, changed = false;
     int idle = p->pieces.count > 1 ? 0 : IDLE_MOST;
     STARG_NEW(p->context, PARTITION_STAGE, list, p->pieces.count);
