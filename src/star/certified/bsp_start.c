@@ -525,7 +525,6 @@ starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *rep
             STARG_TRY(run_round(&b));
             swap_lists(&b);
         }
-        report->evaluations = b.done;
         report->work = b.work;
         if (b.jobs.count > 0)
             goto done;

@@ -41,9 +41,8 @@ typedef struct bsp_options {
 } bsp_options;
 
 typedef struct bsp_report {
-    bool done;          /* else the partition is of no use */
-    size_t evaluations; /* of open pieces: some two or three for each piece if none resists */
-    uint64_t work;      /* vertices, facets and rows looked at */
+    bool done;     /* else the partition is of no use */
+    uint64_t work; /* vertices, facets and rows looked at */
 } bsp_report;
 
 /* Cuts pieces of a partition, whose guards need not see anything, until each has a certified guard.

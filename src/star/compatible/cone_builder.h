@@ -19,7 +19,6 @@ typedef struct twin_frame {
 } twin_frame;
 
 twin_frame twin_frame_of(const double *places, const uint32_t *corners, size_t count);
-void twin_to_unit(const twin_frame *frame, const double p[3], double out[3]);
 
 /* `corners` are those of triangles, `count` in all. Errors: MEMORY. */
 starg_status twin_region(starg_context *context, const double *places, size_t vertices,

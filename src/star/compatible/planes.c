@@ -104,7 +104,7 @@ twin_frame twin_frame_of(const double *places, const uint32_t *corners, size_t c
     return out;
 }
 
-void twin_to_unit(const twin_frame *frame, const double p[3], double out[3]) {
+static void twin_to_unit(const twin_frame *frame, const double p[3], double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = (p[k] - frame->origin[k]) * frame->scale;
 }
