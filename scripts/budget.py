@@ -19,7 +19,7 @@ LIMITS = {"headers": re.compile(r"(Headers under \d+ lines with one user: )(\d+)
 
 
 def room_of(path):
-    """src/mesh/union counts as a room of its own, below star only star/strict does."""
+    """src/mesh/union counts as a room of its own, and so does src/star/certified."""
     folders = path.split("/")[1:-1] if path.startswith("src/") else [path.split("/")[0]]
     return "/".join(folders[:2]) if folders else "src"
 

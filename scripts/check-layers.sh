@@ -46,6 +46,14 @@ for entry in $layers; do
     done
 done
 
+# The partition knows nothing of the searches that change it.
+floor="partition region cut apply merge_coplanar"
+for name in $floor; do
+    if grep -HnE '^#include "star/certified/search.h"' "src/star/certified/$name".[ch] >&2; then
+        report "star/certified: $name is below search.h"
+    fi
+done
+
 for folder in src/*/; do
     case " $above " in
     *" $(basename "$folder") "*) ;;

@@ -48,6 +48,14 @@ static inline double vec3_length(const double a[3]) {
     return sqrt(vec3_dot(a, a));
 }
 
+/* Makes the length one; returns what it was. */
+static inline double vec3_normalize(double v[3]) {
+    double length = vec3_length(v);
+    for (int k = 0; k < 3; k++)
+        v[k] /= length;
+    return length;
+}
+
 static inline bool vec3_equal(const double a[3], const double b[3]) {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }

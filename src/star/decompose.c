@@ -157,7 +157,7 @@ static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
                              const starg_decompose_options *options, starg_decomposition **out) {
     bool paper = options->mode == STARG_DECOMPOSE_PAPER;
     starg_status status = paper ? paper_decompose(context, mesh, options, out)
-                                : strict_decompose_tetmesh(context, mesh, options, out);
+                                : certified_decompose_tetmesh(context, mesh, options, out);
     if (status == STARG_OK)
         (*out)->flattest_given = tetmesh_flattest(mesh);
     return status;
@@ -252,7 +252,7 @@ static starg_status decompose_surface(starg_context *context, const starg_solid 
     if (faces == NULL)
         return STARG_OK;
     const kernel_faces surface = {solid->mesh->vertices, faces, solid->mesh->face_count};
-    TRY(strict_decompose_surface(context, &surface, options, out));
+    TRY(certified_decompose_surface(context, &surface, options, out));
     if (*out != NULL) {
         (*out)->flattest_given = -1;
         TRY(bound_by_parts(context, solid, *out));

@@ -6,7 +6,6 @@
 
 #include "visibility/adjacency.h"
 #include "visibility/cube.h"
-#include "visibility/isa.h"
 #include "visibility/scene.h"
 
 /* Suitability of a vertex as the start of a tree edge. */

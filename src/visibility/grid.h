@@ -5,7 +5,6 @@
 #define STARG_VISIBILITY_GRID_H
 
 #include "visibility/cube.h"
-#include "visibility/isa.h"
 #include "visibility/scene.h"
 
 enum { CHUNK = SCENE_CHUNK, LANES = 8 };

@@ -9,7 +9,6 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "visibility/adjacency.h"
-#include "visibility/sides.h"
 
 /* Numbers the vertices in the order in which the faces use them, leaf by leaf. */
 static void order_vertices(visibility_scene *scene) {
@@ -145,6 +144,26 @@ static void compute_planes(visibility_scene *scene) {
         scene->blur = fmax(scene->blur, fabs(scene->mesh->vertices[i]));
     scene->blur = dyadic_blur(scene->blur);
     scene->point_bound = scene->side_bound + 8 * edge * edge * scene->blur;
+}
+
+bool isa_is_supported(visibility_isa isa) {
+#if defined(__x86_64__)
+    bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+    bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
+    return isa == ISA_PLAIN || (avx2 && (isa == ISA_AVX2 || avx512));
+#else
+    return isa < ISA_WIDEST; /* NEON is part of every aarch64 */
+#endif
+}
+
+visibility_isa isa_resolve(visibility_isa wanted) {
+    if (wanted != ISA_WIDEST)
+        return wanted;
+    while (--wanted > ISA_PLAIN)
+        if (isa_is_supported(wanted))
+            return wanted;
+    return ISA_PLAIN;
 }
 
 static sides_run *choose_sides(void) {

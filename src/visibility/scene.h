@@ -25,8 +25,39 @@ typedef struct scene_point {
     uint32_t support[3]; /* slots of the vertices that it lies between, or SCENE_NONE */
 } scene_point;
 
+/* ---- instruction sets ---- */
+
+/* The stages of an engine are compiled once per instruction set and selected at run time. All
+ * variants give the same bits: whatever floating point cannot decide within its error bound is
+ * decided exactly. */
+
+/* Variants for the processor's architecture, in this order after the plain one. */
+typedef enum visibility_isa {
+    ISA_PLAIN,
+#if defined(__aarch64__)
+    ISA_NEON,
+#elif defined(__x86_64__)
+    ISA_AVX2,
+    ISA_AVX512,
+#endif
+    ISA_WIDEST
+} visibility_isa;
+
+/* The given variant, or for ISA_WIDEST the best one that the processor supports. */
+visibility_isa isa_resolve(visibility_isa wanted);
+
+bool isa_is_supported(visibility_isa isa);
+
 /* side[rank] = 1 or -1 as in scene_sides if certain, otherwise 0. */
 typedef void sides_run(const struct visibility_scene *scene, const double p[3], int8_t *side);
+
+/* The main loop of scene_sides, compiled per instruction set. */
+sides_run sides_run_plain;
+#if defined(__aarch64__)
+sides_run sides_run_neon;
+#elif defined(__x86_64__)
+sides_run sides_run_avx2, sides_run_avx512;
+#endif
 
 typedef struct visibility_scene {
     starg_context *context;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sides of faces (visibility/sides.h), written once and compiled per instruction set: the including
+/* Sides of faces (visibility/scene.h), written once and compiled per instruction set: the including
  * file names the function and selects the lanes. */
 #include "visibility/lanes.h"
-#include "visibility/sides.h"
+#include "visibility/scene.h"
 
 void SIDES_RUN(const visibility_scene *scene, const double p[3], int8_t *side) {
     enum { LANES = 8 };

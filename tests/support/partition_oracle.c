@@ -7,8 +7,8 @@
 
 #include "exact_oracle.h"
 #include "geometry/delaunay.h"
-#include "star/strict/start/region_growing.h"
-#include "star/strict/start/start.h"
+#include "star/certified/region_growing.h"
+#include "star/certified/search.h"
 #include "support.h"
 #include "tetrahedra.h"
 

@@ -5,7 +5,7 @@
 #define TESTS_PARTITION_ORACLE_H
 
 #include "core/rng.h"
-#include "star/strict/partition/partition.h"
+#include "star/certified/partition.h"
 
 /* Asserts the invariants of a partition with an index: facets lie between two different pieces, or
  * a piece and the outside, and are not degenerate; every piece is closed; all numbers are in use;
@@ -36,7 +36,7 @@ partition partition_oracle_copy(const partition *from);
 partition random_hull(starg_context *context, uint64_t seed, size_t points);
 
 /* A procedural sample of about `target` tetrahedra, grown into regions
- * (star/strict/start/region_growing.h). */
+ * (star/certified/region_growing.h). */
 partition grown_sample(starg_context *context, const char *name, size_t target);
 
 /* Delaunay tetrahedra of random points (at most 100), with holes, each a separate piece. */

@@ -9,9 +9,7 @@
 
 #include "models.h"
 #include "partition_oracle.h"
-#include "star/strict/partition/partition.h"
-#include "star/strict/search/search.h"
-#include "star/strict/start/start.h"
+#include "star/certified/search.h"
 #include "tetrahedra.h"
 
 enum { EVALUATIONS = 1500 };

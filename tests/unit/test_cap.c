@@ -9,7 +9,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "star/strict/partition/partition.h"
+#include "star/certified/partition.h"
 
 enum { POINTS_MOST = 1200, LOOPS_MOST = 90 };
 

@@ -156,13 +156,13 @@ static int turn_of(const drawing *d, uint32_t a, uint32_t b, uint32_t c) {
 /* All triangles are counter-clockwise, twins are mutual, the area is that of the enclosing
  * triangle, their number is correct, and no edge crosses a segment. */
 static void expect_triangulation(const drawing *d) {
-    const triangulation *t = &d->t;
-    size_t triangles = t->corner.count / 3, points = t->used.count;
+    const planar *t = &d->t.mesh;
+    size_t triangles = t->corner.count / 3, points = d->t.used.count;
     assert_int_equal(triangles, 2 * points - 5);
     for (uint32_t h = 0; h < t->corner.count; h++) {
         uint32_t a = t->corner.data[h], b = t->corner.data[corner_next(h)], g = t->twin.data[h];
         assert_int_equal(turn_of(d, a, b, t->corner.data[corner_previous(h)]), 1);
-        if (g != TRIANGULATION_NONE) {
+        if (g != PLANAR_NONE) {
             assert_int_equal(t->twin.data[g], h);
             assert_int_equal(t->corner.data[g], b);
             assert_int_equal(t->corner.data[corner_next(g)], a);

@@ -10,9 +10,7 @@
 
 #include "models.h"
 #include "partition_oracle.h"
-#include "star/strict/finish/finish.h"
-#include "star/strict/search/improve.h"
-#include "star/strict/start/start.h"
+#include "star/certified/search.h"
 
 static const uint64_t WORK = 40000000;
 

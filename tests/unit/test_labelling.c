@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "star/strict/start/start.h"
+#include "star/certified/search.h"
 
 enum { NODES_MOST = 8 };
 

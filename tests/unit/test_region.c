@@ -9,8 +9,7 @@
 
 #include "geometry/linear_program.h"
 #include "partition_oracle.h"
-#include "star/strict/partition/partition.h"
-#include "star/strict/partition/scan.h"
+#include "star/certified/partition.h"
 
 enum { UNION_MOST = 5, TURNS = 20 };
 

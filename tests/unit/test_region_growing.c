@@ -9,7 +9,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "star/strict/start/region_growing.h"
+#include "star/certified/region_growing.h"
 #include "tetrahedra.h"
 
 /* Outward faces of a tetrahedron with det(b - a, c - a, d - a) > 0. */

@@ -264,7 +264,7 @@ static void count_layers(const job *j, const uint32_t *faces, size_t count,
 }
 
 static starg_status emit_parts(job *j, const uint32_t *faces, size_t count) {
-    const triangulation *t = &j->plane;
+    const planar *t = &j->plane.mesh;
     for (size_t h = 0; h < t->corner.count; h += 3) {
         union_triangle own = {
             .corner = {t->corner.data[h], t->corner.data[h + 1], t->corner.data[h + 2]}};

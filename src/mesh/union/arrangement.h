@@ -3,6 +3,7 @@
 #pragma once
 
 #include "geometry/bvh.h"
+#include "geometry/constrained.h"
 #include "geometry/exact_points.h"
 #include "mesh/union/union.h"
 
@@ -28,32 +29,25 @@ starg_status union_find_ends(const union_surface *surface, const uint32_t *point
 
 /* Constrained triangulation of points and segments of one plane, exact. */
 
-#define TRIANGULATION_NONE UINT32_MAX
-
 /* The line of a segment: through two vertices, or where the plane meets that of a face. */
 typedef struct triangulation_carrier {
     const double *corner[3]; /* the third is NULL for a line */
 } triangulation_carrier;
 
-/* Halfedge 3 t + k runs from corner k of triangle t to the next one. */
+/* Marks are numbers of carriers, vertices numbers of points. */
 typedef struct triangulation {
-    starg_context *context;
+    planar mesh;
     exact_points *points;
     const double *plane[3]; /* a face in the plane                                        */
     int u, v;               /* the coordinates of the projection, in which that face turns left */
-    STARG_ARRAY(uint32_t) corner;  /* point per halfedge                                  */
-    STARG_ARRAY(uint32_t) twin;    /* per halfedge; NONE on the border                    */
-    STARG_ARRAY(uint32_t) carrier; /* per halfedge: of the segment on it, or NONE         */
     STARG_ARRAY(triangulation_carrier) carriers;
-    STARG_ARRAY(uint32_t) at;   /* per point: a halfedge that starts there, or NONE       */
-    STARG_ARRAY(uint32_t) used; /* the points that have one                               */
-    STARG_ARRAY(uint64_t) crossed;
-    uint32_t last; /* where the next walk starts */
+    STARG_ARRAY(uint32_t) used; /* the points that are vertices                           */
 } triangulation;
 
 /* Once for many triangulations: memory for all. */
 static inline triangulation triangulation_make(exact_points *points) {
-    return (triangulation){.context = points->context, .points = points};
+    return (triangulation){.mesh = {.context = points->context, .stage = UNION_STAGE},
+                           .points = points};
 }
 void triangulation_free(triangulation *t);
 

@@ -510,6 +510,17 @@ static bool is_turned(const conformer *c, uint32_t face, int u, int v) {
     return (q[u] - p[u]) * (r[v] - p[v]) - (q[v] - p[v]) * (r[u] - p[u]) < 0;
 }
 
+static starg_status triangulate(conformer *c, int u, int v, bool *done) {
+    const constrained_graph graph = {.points = c->points.data,
+                                     .u = u,
+                                     .v = v,
+                                     .edges = c->graph.data,
+                                     .edge_count = c->graph.count,
+                                     .loose = c->loose.data,
+                                     .loose_count = c->loose.count};
+    return constrained_triangulate(c->context, &graph, &c->triangles, done);
+}
+
 /* Divides faces together. *done is false, and nothing is emitted, if they cannot be. */
 static starg_status divide_together(conformer *c, const uint32_t *faces, size_t count, bool *done) {
     starg_status status = STARG_OK;
@@ -525,9 +536,7 @@ static starg_status divide_together(conformer *c, const uint32_t *faces, size_t 
     }
     sort_graph(c);
     c->triangles.count = 0;
-    STARG_TRY(constrained_triangulate(c->context, c->points.data, u, v, c->graph.data,
-                                      c->graph.count, c->loose.data, c->loose.count, &c->triangles,
-                                      done));
+    STARG_TRY(triangulate(c, u, v, done));
     flip_slivers(c, u, v);
     for (size_t i = 0; i < count && *done; i++) {
         bool turned = is_turned(c, faces[i], u, v);
@@ -575,8 +584,7 @@ static starg_status divide_alone(conformer *c, uint32_t face) {
     for (uint32_t i = 0; i < c->vertices.count; i++)
         STARG_TRY(push_edge(c, &c->graph, i, (uint32_t)((i + 1) % c->vertices.count)));
     c->triangles.count = 0;
-    STARG_TRY(constrained_triangulate(c->context, c->points.data, 0, 1, c->graph.data,
-                                      c->graph.count, NULL, 0, &c->triangles, &done));
+    STARG_TRY(triangulate(c, 0, 1, &done));
     for (size_t t = 0; t < c->triangles.count; t++) {
         uint32_t corner[3];
         for (int k = 0; k < 3; k++)

@@ -6,10 +6,31 @@
 #include "core/context.h"
 #include "core/rng.h"
 #include "geometry/bvh.h"
-#include "star/compatible/twin_region.h"
-#include "star/strict/search/search.h"
+#include "star/certified/search.h"
+#include "visibility/kernel.h"
 
 #define NOWHERE UINT32_MAX
+
+/* ---- faces in one of two places as the input of a search for planes (planes.c) ---- */
+
+/* To a cube of about unit size. */
+typedef struct twin_frame {
+    double origin[3], scale;
+} twin_frame;
+
+twin_frame twin_frame_of(const double *places, const uint32_t *corners, size_t count);
+
+/* `corners` are those of triangles, `count` in all. Errors: MEMORY. */
+starg_status twin_region(starg_context *context, const double *places, size_t vertices,
+                         const uint32_t *corners, size_t count, const twin_frame *frame,
+                         region *out);
+
+/* Guards that see all of a surface in both of its places, which are looked at in a random order;
+ * *blind is one where there is none, or -1. Errors: MEMORY, and those of kernel_find. */
+starg_status twin_kernels(starg_context *context, const kernel_faces surfaces[2], starg_rng *rng,
+                          double guards[2][3], int *blind);
+
+/* ---- cones ---- */
 
 typedef STARG_ARRAY(uint32_t) number_list;
 

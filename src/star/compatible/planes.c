@@ -6,7 +6,7 @@
  *
  * Method: as in bsp_start.c. A part that has a kernel in both places is done. Any other is cut
  * where it has none by the plane after which two guards miss the least of its surface there
- * (star/strict/search/split_plane.c), through the tetrahedra (through.c), into connected parts. A
+ * (star/certified/split_plane.c), through the tetrahedra (through.c), into connected parts. A
  * part that resists, because no plane is found or tetrahedra would lose their sign, is tried again
  * with fewer demands, and at last given up: its tetrahedra are grown into regions.
  *
@@ -14,13 +14,13 @@
  * exact signs: what rounding of later cuts has spoilt is given up, too.
  *
  * Cost: for each part that of the split plane search, and a pass over all tetrahedra. */
+#include "star/compatible/cone_builder.h"
 #include "star/compatible/twin_pieces.h"
-#include "star/compatible/twin_region.h"
 
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "star/strict/search/search.h"
+#include "star/certified/search.h"
 
 static const char STAGE[] = "planes";
 
@@ -104,7 +104,7 @@ twin_frame twin_frame_of(const double *places, const uint32_t *corners, size_t c
     return out;
 }
 
-void twin_to_unit(const twin_frame *frame, const double p[3], double out[3]) {
+static void twin_to_unit(const twin_frame *frame, const double p[3], double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = (p[k] - frame->origin[k]) * frame->scale;
 }

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/rng.h"
+#include "star/certified/region_growing.h"
 #include "star/piece_faces.h"
-#include "star/strict/start/region_growing.h"
 
 /* Pieces that are star-shaped in two solids: sets of tetrahedra that lie in two places. */
 
