@@ -5,9 +5,9 @@
  *
  *     bench_pipeline [POINTS [VERTICES]]
  *
- * Eleven samples of the program's own. Prints a table: guards and processor seconds of both, and how
- * many faces no candidate of the pipeline sees. Of greedy, the next guard is found from bounds of
- * earlier rounds (lazily), which changes nothing but the time. */
+ * Eleven samples of the program's own. Prints a table: guards and processor seconds of both, and
+ * how many faces no candidate of the pipeline sees. Of greedy, the next guard is found from bounds
+ * of earlier rounds (lazily), which changes nothing but the time. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>

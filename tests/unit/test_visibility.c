@@ -15,6 +15,8 @@
 #include "visibility_oracle.h"
 
 /* Points inside: random ones, and means of a few vertices, which lie in many face planes. */
+static const scene_view around = {0};
+
 static size_t pick_points(const starg_solid *solid, size_t wanted, uint64_t seed, double *points) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
     const double *v = starg_mesh_vertices(mesh);
@@ -258,7 +260,7 @@ static void test_single_sights(void **state) {
         for (size_t i = 0; i < c.count; i++) {
             const double *p = c.points + 3 * i;
             scene_sides(c.scene, p, c.side);
-            visibility_tree.find(c.scene, NULL, p, c.side, c.plain);
+            visibility_tree.find(c.scene, NULL, p, c.side, &around, c.plain);
             for (uint32_t slot = 0; slot < c.scene->vertex_count; slot++) {
                 bool sees = scene_sees_vertex(c.scene, p, slot, &all);
                 assert_int_equal(sees, c.plain[slot]);
@@ -286,7 +288,7 @@ static void test_grid_isa(void **state) {
             if (grid->run == NULL)
                 continue;
             uint8_t *out = isa == ISA_PLAIN ? c.plain : c.wide;
-            visibility_grid.find(c.scene, scratch, c.points + 3 * i, c.side, out);
+            visibility_grid.find(c.scene, scratch, c.points + 3 * i, c.side, &around, out);
             if (isa != ISA_PLAIN)
                 assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
         }
@@ -307,7 +309,7 @@ static void test_contours_isa(void **state) {
     for (size_t i = 0; i < c.count; i++) {
         const double *p = c.points + 3 * i;
         scene_sides(c.scene, p, c.side);
-        visibility_grid.find(c.scene, s->grid, p, c.side, c.plain);
+        visibility_grid.find(c.scene, s->grid, p, c.side, &around, c.plain);
         bool answers = contours_plain.run(c.scene, s, p, c.side, c.wide);
         decided += answers;
         if (answers)
@@ -341,9 +343,9 @@ static void test_fastest(void **state) {
         for (size_t k = 0; k < c.count; k++) {
             const double *p = c.points + 3 * k;
             scene_sides(c.scene, p, c.side);
-            visibility_grid.find(c.scene, s->grid, p, c.side, c.plain);
+            visibility_grid.find(c.scene, s->grid, p, c.side, &around, c.plain);
             s->decided = false;
-            visibility_fastest.find(c.scene, scratch, p, c.side, c.wide);
+            visibility_fastest.find(c.scene, scratch, p, c.side, &around, c.wide);
             assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
             by_contours += s->decided;
         }
