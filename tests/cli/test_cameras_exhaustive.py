@@ -333,7 +333,7 @@ class Exhaustive(Case):
         asked = [(name,) for name in MECHANISMS] + [pair for pair in itertools.combinations(MECHANISMS, 2)
                                                     if pair != ("density", "cone")]  # which needs a field of view
         asked += [("keep", "within", "tilt", "density", "require"), ("keep", "without", "redundancy", "range", "cone")]
-        each = ROOMS if LONG else 4
+        each = ROOMS if LONG else 2
         jobs = [((7 * k + ROOMS * i // each) % ROOMS, mechanisms) for k, mechanisms in enumerate(asked) for i in range(each)]
         with ThreadPoolExecutor(2) as pool:
             list(pool.map(lambda job: self.check(*job), jobs))

@@ -50,7 +50,7 @@ class Memory(Writing):
         return failures, size
 
     def test_commands(self):
-        step = 1 << (18 if LONG else 23)
+        step = 1 << (18 if LONG else 24)
         for name, words, outputs in self.commands():
             with self.subTest(command=name):
                 for threads in ("1", "3") if LONG else ("3",):
@@ -62,12 +62,12 @@ class Memory(Writing):
         """An instance that reaches CBC, whose memory fails by a C++ exception."""
         words = ["guard", "cat.off", "-o", "g.json", "--method", "ilp", "--candidates", "interior",
                  "--count", "300", "--redundancy", "2", "--max-nodes", "200", "--threads", "1"]
-        failures, size = self.sweep(words, ["g.json"], 1 << (16 if LONG else 22))
+        failures, size = self.sweep(words, ["g.json"], 1 << (16 if LONG else 23))
         print(f"solver: {failures} failures, enough with {size >> 20} MiB")
 
     def test_database(self):
         before = self.read("shapes.db")
-        size, step = self.least(), 1 << (18 if LONG else 22)
+        size, step = self.least(), 1 << (18 if LONG else 23)
         for _ in range(400):
             self.write("shapes.db", before)
             done = self.attempt_add(size)

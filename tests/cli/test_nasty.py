@@ -12,12 +12,12 @@ from writing import limit
 
 class Nasty(support.Case):
     """Each file of the collection: done or rejected within a minute of processor time. Without STARGUARD_LONG
-    half of them are repaired, and guards are placed in the others."""
+    a third of them are repaired, and guards are placed in another third."""
 
     def walk(self, *options, half=None):
         files = sorted(glob.glob(os.path.join(SHARED, "data", "nasty", "*")))
         if half is not None and not support.LONG:
-            files = files[half::2]
+            files = files[half::3]
         if not files:
             raise unittest.SkipTest(f"no shared data at {SHARED}")
         for file in map(os.path.abspath, files):

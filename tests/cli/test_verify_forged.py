@@ -323,7 +323,7 @@ End
         self.write("places.txt", PLACES)
         for which, model in enumerate(MODELS):
             self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
-            for question in QUESTIONS if support.LONG else QUESTIONS[which::2]:
+            for question in QUESTIONS if support.LONG else QUESTIONS[which::3]:
                 count = () if "--count" in question else ("--count", "100")
                 with self.subTest(model=model, question=question):
                     self.guard("--refine-lines", "100000", *count, *question.split())
