@@ -17,6 +17,7 @@
 #include <stdlib.h>
 
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/predicates.h"
 
 static const uint32_t GHOST = UINT32_MAX;
@@ -120,7 +121,7 @@ static void order_points(const double *points, size_t begin, size_t count, uint6
         uint32_t position[3];
         for (size_t k = 0; k < 3; k++)
             position[k] = (uint32_t)((points[3 * i + k] - lower[k]) * scale[k]);
-        starg_rng rng = starg_rng_make(seed, 0xde1a, begin + i);
+        starg_rng rng = starg_rng_make(seed, STREAM_DELAUNAY_POINTS, begin + i);
         uint64_t draw = starg_rng_next(&rng) | 1;
         uint64_t round = (uint64_t)__builtin_clzll(draw);
         round = round > 14 ? 0 : 15 - round;
@@ -466,7 +467,7 @@ starg_status delaunay_begin(starg_context *context, const double *points, size_t
     NEW_ZERO(context, "delaunay", b, 1);
     b->context = context;
     b->free_cells = NOWHERE;
-    b->rng = starg_rng_make(context->seed, 0xde1b, 0);
+    b->rng = starg_rng_make(context->seed, STREAM_DELAUNAY_ORDER, 0);
     TRY(delaunay_extend(b, points, count));
     *out = b;
     b = NULL;

@@ -11,12 +11,11 @@
 #include "guard/cell_tests.h"
 
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
 
 static const char STAGE[] = "search";
-
-enum { RANDOM_STAGE = 27 };
 
 starg_status cells_worker_make(starg_context *context, void *shared, void **scratch) {
     const search_scene *const *scene = shared;
@@ -83,7 +82,7 @@ static starg_status run_test(starg_context *context, void *shared, void *scratch
     const cell_test *test = &all->tests[item];
     cell_answer *answer = &all->answers[item];
     search_point *points = cell_tests_points(all, item);
-    starg_rng rng = starg_rng_make(context->seed, RANDOM_STAGE, all->first + item);
+    starg_rng rng = starg_rng_make(context->seed, STREAM_CELLS, all->first + item);
     witness_row known = {{0}};
     double p[3];
     *answer = (cell_answer){0};

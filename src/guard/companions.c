@@ -10,12 +10,13 @@
  *
  * Cost: ROUNDS times the rows of MOST_HOSTS x (redundancy - 1) points at most. */
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/vec3.h"
 #include "guard/pool.h"
 
 static const char STAGE[] = "guard";
 
-enum { ROUNDS = 30, MOST_HOSTS = 256, RNG_STREAM = 30 };
+enum { ROUNDS = 30, MOST_HOSTS = 256 };
 
 static const double FIRST_DISTANCE = 1.0 / 64; /* of the diagonal */
 
@@ -70,7 +71,7 @@ starg_status pool_add_companions(guard_pool *pool) {
     double distance = FIRST_DISTANCE * pool->solid->check->diagonal;
     NEW(pool->context, STAGE, lacking, starg_bit_words(pool->columns));
     for (uint64_t round = 0; round < ROUNDS && !pool->time_limited; round++, distance /= 2) {
-        starg_rng rng = starg_rng_make(pool->context->seed, RNG_STREAM, round);
+        starg_rng rng = starg_rng_make(pool->context->seed, STREAM_COMPANIONS, round);
         size_t host = 0;
         TRY(find_short(pool, lacking, &count));
         if (count == 0)

@@ -23,13 +23,14 @@
  * ends after PATIENCE steps without better guards, or with the budget. */
 #include <math.h>
 
+#include "core/streams.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";
 
-enum { RANDOM_STAGE = 29, CLIMB = 30, PATIENCE = 500, PATIENCE_PER_GUARD = 50 };
+enum { CLIMB = 30, PATIENCE = 500, PATIENCE_PER_GUARD = 50 };
 
 static const double FIRST_STEP = 0.5, STEP_FACTOR = 0.9;
 
@@ -284,7 +285,7 @@ starg_status search_fewer(search *s, uint64_t draw, bool *changed) {
     size_t first = s->points.count;
     bool more = true;
     *changed = false;
-    l.rng = starg_rng_make(context->seed, RANDOM_STAGE, draw);
+    l.rng = starg_rng_make(context->seed, STREAM_LOCAL_SEARCH, draw);
     TRY(begin(&l));
     while (more && may_go_on(&l)) {
         TRY(starg_check_cancel(context, STAGE));

@@ -27,6 +27,7 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
@@ -34,13 +35,7 @@
 
 static const char STAGE[] = "search";
 
-enum {
-    MOST_SOURCES = 512,
-    GENERATIONS = 2,
-    LEAST_PROPOSALS = 4000,
-    NEIGHBOURS = 8,
-    RANDOM_STAGE = 28
-};
+enum { MOST_SOURCES = 512, GENERATIONS = 2, LEAST_PROPOSALS = 4000, NEIGHBOURS = 8 };
 
 static const double LEAST_PRICE = 1e-3, WORTH = 1 - 2e-3, FIRST_STEP = 0.6, TIE = 1e-6,
                     STEP_FACTOR = 0.6;
@@ -283,7 +278,7 @@ static starg_status move_sources(moving *m, uint64_t stream, double step, uint64
     const search_scene *scene = m->scene;
     for (size_t i = 0; i < m->count; i++) {
         const source *n = &m->sources[i];
-        starg_rng rng = starg_rng_make(scene->context->seed, RANDOM_STAGE + stream,
+        starg_rng rng = starg_rng_make(scene->context->seed, STREAM_MOVES + stream,
                                        scene->witnesses.data[n->witness]);
         for (size_t kind = 0; kind < m->each; kind++) {
             proposal *q = &m->proposals[m->each * i + kind];

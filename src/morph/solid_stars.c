@@ -15,13 +15,13 @@
 #include "morph/solid_stars.h"
 
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "morph/solids.h"
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "stars";
-enum { RNG_STAGE = 0x73746172 };
 static const double COARSE = 0.25; /* step of a center's coordinates, over its distance to planes */
 
 /* ---- kernels ---- */
@@ -42,7 +42,7 @@ static void simplify(const kernel_faces *faces, double radius, double center[3])
 /* Moves it within half of the room. */
 static void shake(starg_context *context, const kernel_faces *faces, double radius,
                   uint64_t attempt, double center[3]) {
-    starg_rng rng = starg_rng_make(context->seed, RNG_STAGE, attempt);
+    starg_rng rng = starg_rng_make(context->seed, STREAM_SOLID_STARS, attempt);
     double way[3], moved[3];
     starg_rng_direction(&rng, way);
     vec3_along(center, 0.5 * radius, way, moved);

@@ -27,6 +27,7 @@
 
 #include "core/memory.h"
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/bvh.h"
 #include "geometry/kd_tree.h"
 #include "geometry/vec3.h"
@@ -51,7 +52,6 @@ static const double LEAST = 0.002;  /* and at least this, */
 static const double ROUND = 4;      /* and so many times what triangles leave of what is round */
 static const double CREASE = 0.5;   /* cosine between faces that are not of one round surface */
 static const double SETTLED = 1e-4; /* relative gain of a step that ends them */
-static const uint64_t RANDOM = 0x616c69676e;
 
 typedef struct side {
     double *vertices; /* centroid 0, area 1; of a mirror image if it is one */
@@ -121,7 +121,7 @@ static starg_status normalize(starg_context *context, const starg_mesh *mesh, si
 static starg_status choose_points(starg_context *context, const starg_mesh *mesh, side *s) {
     const uint32_t *corners = starg_mesh_faces(mesh);
     const size_t faces = starg_mesh_face_count(mesh);
-    starg_rng rng = starg_rng_make(context->seed, RANDOM, 0);
+    starg_rng rng = starg_rng_make(context->seed, STREAM_ALIGNMENT, 0);
     double sum = 0;
     size_t face = 0;
     NEW(context, STAGE, s->points, (size_t)3 * POINTS);

@@ -20,6 +20,7 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/vec3.h"
 #include "shape/signature_kinds.h"
 
@@ -34,7 +35,6 @@ enum {
     GUIDES = 1 << 15
 };
 static const double LAST = 3; /* upper end of the histogram, in mean distances */
-static const uint64_t RANDOM = 0x6432;
 
 typedef struct sampler {
     const starg_mesh *mesh;
@@ -117,7 +117,7 @@ static starg_status choose_points(starg_context *context, void *shared, void *sc
     const sampler *s = shared;
     (void)context, (void)scratch;
     for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK; i++) {
-        starg_rng rng = starg_rng_make(s->seed, RANDOM, i);
+        starg_rng rng = starg_rng_make(s->seed, STREAM_D2, i);
         random_point(s, &rng, s->points + 3 * i);
     }
     return STARG_OK;

@@ -13,6 +13,7 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/bvh.h"
 #include "geometry/kd_tree.h"
 #include "geometry/vec3.h"
@@ -21,7 +22,6 @@
 static const char STAGE[] = "reconstruct";
 
 enum { SAMPLES = 16384, CHUNK = 256 };
-static const uint64_t RANDOM = 0x7265636f;
 
 starg_status starg_descriptor_points(starg_context *context, const starg_descriptor *d,
                                      double **out) {
@@ -80,7 +80,7 @@ static starg_status sum_areas(starg_context *context, comparison *c) {
 
 /* The square root makes the points uniform. */
 static void sample(const comparison *c, size_t index, double out[3]) {
-    starg_rng rng = starg_rng_make(c->seed, RANDOM, index);
+    starg_rng rng = starg_rng_make(c->seed, STREAM_RECONSTRUCT, index);
     size_t low = 0, high = starg_mesh_face_count(c->mesh) - 1;
     double goal = c->sums[high] * starg_rng_unit(&rng);
     while (low < high) {

@@ -16,6 +16,7 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "views";
@@ -24,8 +25,7 @@ enum {
     POINTS = 1024,
     DIRECTIONS = 24,
     VIEW = STARG_DESCRIPTOR_VIEW,
-    SPREAD = STARG_DESCRIPTOR_SPREAD,
-    RNG_STAGE = 0x76696577 /* "view" */
+    SPREAD = STARG_DESCRIPTOR_SPREAD
 };
 
 typedef struct viewer {
@@ -75,7 +75,7 @@ static size_t find_tetrahedron(const viewer *v, double volume) {
 
 /* Uniform in its share of the volume: barycentric weights from exponential numbers. */
 static void choose_point(const viewer *v, size_t item, double out[3]) {
-    starg_rng rng = starg_rng_make(v->seed, RNG_STAGE, item);
+    starg_rng rng = starg_rng_make(v->seed, STREAM_VIEWS, item);
     double all = v->volumes[v->mesh->count - 1], weights[4], sum = 0;
     size_t t = find_tetrahedron(v, ((double)item + starg_rng_unit(&rng)) / POINTS * all);
     for (int c = 0; c < 4; c++)

@@ -34,6 +34,7 @@
 #include <stdlib.h>
 
 #include "core/parallel.h"
+#include "core/streams.h"
 #include "geometry/vec3.h"
 
 enum { FAIR_FROM = 1, HALVE_FROM = 4, REFLEX_FROM = 8, ATTEMPTS_MOST = 60, EFFORT_MOST = 3 };
@@ -278,7 +279,7 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     job *j = &b->jobs.data[item];
     SCOPED_BY(region_free) region r = {.vertices = {0}};
     starg_rng rng =
-        starg_rng_make(context->seed, 78 + STREAMS * b->options->stream, b->done + item);
+        starg_rng_make(context->seed, STREAM_START + STREAMS * b->options->stream, b->done + item);
     uint32_t facets = b->p->start.data[j->number + 1] - b->p->start.data[j->number];
     region_scratch *own = scratch;
     uint64_t before = own->work;

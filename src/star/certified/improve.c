@@ -21,6 +21,7 @@
 #include "star/certified/search.h"
 
 #include "core/parallel.h"
+#include "core/streams.h"
 
 enum { BATCH = 16, UNION_MOST = APPLY_MOST };
 
@@ -314,7 +315,8 @@ static const sort SORTS[IMPROVE_SORTS] = {
 static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
     improver *m = shared;
     trial *t = &m->trials[item];
-    starg_rng rng = starg_rng_make(context->seed, 77, m->options->first + m->report->trials + item);
+    starg_rng rng =
+        starg_rng_make(context->seed, STREAM_IMPROVE, m->options->first + m->report->trials + item);
     region_scratch *own = scratch;
     uint64_t before = own->work;
     choose_union(m, &rng, t->sort->count, t, &t->found);

@@ -9,6 +9,7 @@
  * are all there are, that is another search from another start.
  *
  * Cost: that of a start and of a search for the pieces, and some passes over the partition. */
+#include "core/streams.h"
 #include "star/certified/search.h"
 
 enum {
@@ -100,7 +101,7 @@ starg_status ruin_recreate(partition *p, const ruin_recreate_options *options,
                            ruin_recreate_report *report) {
     starg_status status = STARG_OK;
     partition copy = {.context = p->context};
-    starg_rng rng = starg_rng_make(p->context->seed, 79, options->round);
+    starg_rng rng = starg_rng_make(p->context->seed, STREAM_RUIN, options->round);
     group g;
     bool done;
     *report = (ruin_recreate_report){.trials = 0};

@@ -23,6 +23,7 @@
 
 #include <stdlib.h>
 
+#include "core/streams.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "star/piece_faces.h"
@@ -140,7 +141,6 @@ double flatness_of_first(const partition *p, size_t count) {
 
 enum {
     IDLE_MOST = 12, /* consecutive rounds without a change before it stops */
-    RNG_STREAM = 78,
     DIRECTIONS = 32,
     STEPS = 24
 };
@@ -193,7 +193,7 @@ static starg_status cut(widener *w, const pair *of, bool plane, bool *done) {
         .margin = of->margin, .directions = DIRECTIONS, .steps = STEPS};
     const guard_split_options guards = {
         .margin = of->margin, .starts = (const double(*)[3])starts, .start_count = 2};
-    starg_rng rng = starg_rng_make(w->p->context->seed, RNG_STREAM, w->tries++);
+    starg_rng rng = starg_rng_make(w->p->context->seed, STREAM_WIDEN, w->tries++);
     cut_plan plan = {.count = 0};
     apply_effect effect = {.done = false};
     bool found = false;

@@ -7,6 +7,7 @@
  * when that has long saved nothing, or after a number of tetrahedra in proportion to all. */
 #include "star/compatible/twin_pieces.h"
 
+#include "core/streams.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "join";
@@ -103,7 +104,7 @@ static starg_status divide_group(const twin_pieces *w, const uint8_t *dropped, s
 static starg_status cut_group(twin_pieces *w, uint64_t round, size_t *work, bool *saved) {
     starg_status status = STARG_OK;
     starg_context *context = w->context;
-    starg_rng rng = starg_rng_make(context->seed, 1, round);
+    starg_rng rng = starg_rng_make(context->seed, STREAM_TWIN_CUTS, round);
     through_cut cut = {.context = context, .meshes = {w->meshes[0], w->meshes[1]}};
     twin_pieces next = {.context = context};
     uint8_t *dropped = NULL, *inside = NULL;

@@ -4,6 +4,7 @@
  * Method: a random group of pieces that hang together is given up, its tetrahedra are grown into
  * regions and joined; the outcome stays if there are no more pieces than before. It ends when that
  * has long saved nothing, or after a number of tetrahedra in proportion to all. */
+#include "core/streams.h"
 #include "star/compatible/twin_pieces.h"
 
 static const char STAGE[] = "join";
@@ -36,7 +37,7 @@ starg_status compatible_regrow(twin_pieces *w) {
     NEW(context, STAGE, dropped, w->pieces.count);
     size_t idle = 0, work = 0, most = WORK_LEAST + WORK_EACH * w->meshes[0]->count;
     for (uint64_t round = 1; idle < IDLE_MOST && work < most && w->pieces.count > 1; round++) {
-        starg_rng rng = starg_rng_make(context->seed, 0, round);
+        starg_rng rng = starg_rng_make(context->seed, STREAM_TWIN_GROUPS, round);
         size_t group = 0;
         TRY(twin_pieces_drop(w, 2 + starg_rng_below(&rng, GROUP_MOST - 1), &rng, dropped, &group));
         twin_pieces_free(&next);

@@ -14,6 +14,7 @@
  * exact signs: what rounding of later cuts has spoilt is given up, too.
  *
  * Cost: for each part that of the split plane search, and a pass over all tetrahedra. */
+#include "core/streams.h"
 #include "star/compatible/cone_builder.h"
 #include "star/compatible/twin_pieces.h"
 
@@ -328,7 +329,7 @@ starg_status compatible_planes(starg_context *context, const starg_tetmesh *cons
     plane_builder b = {.context = context,
                        .meshes = {meshes[0], meshes[1]},
                        .scratch = {.context = context},
-                       .rng = starg_rng_make(context->seed, 2, round)};
+                       .rng = starg_rng_make(context->seed, STREAM_TWIN_PLANES, round)};
     own[0] = own[1] = NULL;
     NEW(context, STAGE, b.labels, meshes[0]->count);
     for (size_t t = 0; t < meshes[0]->count; t++)

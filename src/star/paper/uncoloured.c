@@ -14,6 +14,7 @@
  * for each guard a look-up for each candidate and vertex of its component. */
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "core/streams.h"
 #include "star/paper/state.h"
 
 /* Breadth-first search through uncoloured tetrahedra. Marks are numbers of searches, so that
@@ -64,7 +65,7 @@ void component_find(const paper_state *s, component_search *c, uint32_t tetrahed
             add_tetrahedron(s, c, s->mesh->neighbours[4 * (size_t)c->found.tetrahedra[i] + k]);
 }
 
-enum { CANDIDATES = 32, RNG_STAGE = 0x7265 };
+enum { CANDIDATES = 32 };
 static const double GRACE = 1; /* seconds */
 
 typedef struct rest {
@@ -84,7 +85,7 @@ typedef struct trial {
 
 static size_t pick_candidates(const rest *r, trial *t) {
     const paper_domain *c = &r->component.found;
-    starg_rng rng = starg_rng_make(r->state->context->seed, RNG_STAGE, c->tetrahedra[0]);
+    starg_rng rng = starg_rng_make(r->state->context->seed, STREAM_UNCOLOURED, c->tetrahedra[0]);
     size_t count = c->count < CANDIDATES ? c->count : CANDIDATES;
     for (size_t i = 0; i < count; i++) {
         size_t at = c->count <= CANDIDATES ? i : starg_rng_below(&rng, c->count);
