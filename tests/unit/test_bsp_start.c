@@ -10,6 +10,7 @@
 #include "models.h"
 #include "partition_oracle.h"
 #include "star/certified/search.h"
+#include "star/compatible/cone_builder.h"
 #include "tetrahedra.h"
 
 enum { EVALUATIONS = 1500 };
@@ -423,13 +424,38 @@ static void test_limits(void **state) {
     test_context_free(context);
 }
 
+/* No plane is found where all triangles are too thin to be any of the region's. */
+static void test_nothing(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    static const double places[] = {0, 0, 0, 1, 1, 1, 2, 2, 2};
+    static const uint32_t corners[] = {0, 1, 2, 2, 1, 0};
+    const twin_frame frame = twin_frame_of(places, corners, 6);
+    region_scratch scratch = {.context = context};
+    region r = {.vertices = {0}};
+    starg_rng rng = starg_rng_make(1, 2, 3);
+    test_ok(context, twin_region(context, places, 3, corners, 6, &frame, &r));
+    assert_int_equal(r.triangles.count, 0);
+    for (int demand = SPLIT_PLANE_GAIN; demand <= SPLIT_PLANE_HALVE; demand++) {
+        const split_plane_options options = {
+            .margin = 1e-5, .effort = 1, .demand = (split_plane_demand)demand};
+        partition_plane plane;
+        bool found = true;
+        test_ok(context, split_plane_find(&r, &options, &rng, &scratch, &plane, &found));
+        assert_false(found);
+    }
+    region_free(&r);
+    region_scratch_free(&scratch);
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_parts),         cmocka_unit_test(test_cavity),
         cmocka_unit_test(test_cuts_of_cubes), cmocka_unit_test(test_cubes),
         cmocka_unit_test(test_samples),       cmocka_unit_test(test_random_cells),
         cmocka_unit_test(test_fins),          cmocka_unit_test(test_large),
-        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_limits),        cmocka_unit_test(test_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

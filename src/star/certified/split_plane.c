@@ -465,6 +465,8 @@ starg_status split_plane_find(const region *r, const split_plane_options *option
                       .best = {.cost = INFINITY},
                       .fair = {.cost = INFINITY}};
     *found = false;
+    if (r->triangles.count == 0)
+        return STARG_OK;
     if (r->triangles.count > SAMPLE) {
         TRY(take_sample(scratch->context, r, &sample));
         d.r = &sample;

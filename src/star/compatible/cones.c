@@ -28,7 +28,7 @@
 
 static const char STAGE[] = "cones";
 
-enum { ROUNDS = 8 };
+enum { ROUNDS = 8, ROUNDS_BLIND = 4 };
 /* Of cuts of a piece; of triangles and of faces of cut pieces in a round, in times of the faces. */
 enum { ATTEMPTS_MOST = 3, GROWTH_MOST = 24, WORK_MOST = 30 };
 
@@ -177,6 +177,20 @@ void compatible_cones_free(starg_context *context, compatible_cones *cones) {
     *cones = (compatible_cones){0};
 }
 
+/* More for a solid that is seen from a point in one place: what resists there does so by chance. */
+static starg_status count_rounds(starg_context *context, const double *const places[2],
+                                 const uint32_t *faces, size_t count, uint64_t *rounds) {
+    *rounds = ROUNDS_BLIND;
+    for (int end = 0; end < 2; end++) {
+        const kernel_faces surface = {places[end], faces, count};
+        starg_kernel_result kernel;
+        TRY(kernel_find(context, &surface, &kernel));
+        if (kernel.verdict == STARG_KERNEL_INTERIOR)
+            *rounds = ROUNDS;
+    }
+    return STARG_OK;
+}
+
 starg_status compatible_fill(starg_context *context, const double *const places[2], size_t vertices,
                              const uint32_t *faces, size_t count, compatible_cones *out,
                              size_t *left) {
@@ -184,7 +198,9 @@ starg_status compatible_fill(starg_context *context, const double *const places[
     cone_builder b = {.context = context};
     *out = (compatible_cones){0};
     *left = 1;
-    for (uint64_t round = 0; round<ROUNDS && * left> 0; round++) {
+    uint64_t rounds = 0;
+    STARG_TRY(count_rounds(context, places, faces, count, &rounds));
+    for (uint64_t round = 0; round<rounds && * left> 0; round++) {
         cones_free(&b);
         b = (cone_builder){.context = context,
                            .balance = (double)(round % 2),

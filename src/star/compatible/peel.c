@@ -292,8 +292,9 @@ static starg_status find_hub(peeling *m, const cut_node *loop, size_t count, uin
     return STARG_OK;
 }
 
-/* Part of the way from g, in a direction, to where points no longer see all of the leaf. */
-static void go_from_g(const peeling *m, const double direction[3], double out[3]) {
+/* Part of the way from g, in a direction, to where points no longer see all of the leaf; false if
+ * they do all the way. */
+static bool go_from_g(const peeling *m, const double direction[3], double out[3]) {
     int end = m->blind[0] ? 1 : 0;
     double reach = INFINITY;
     for (size_t i = 0; i < m->side.count; i += 3) {
@@ -304,6 +305,7 @@ static void go_from_g(const peeling *m, const double direction[3], double out[3]
             reach = fmin(reach, vec3_dot(normal, way) / vec3_dot(normal, direction));
     }
     vec3_along(m->g, DEPTH * reach, direction, out);
+    return reach < INFINITY;
 }
 
 /* Which wall does a loop have where it is not flat? */
@@ -320,8 +322,7 @@ static starg_status find_wall(peeling *m, const cut_node *loop, size_t count, ui
         list_ways(m, loop, count, m->g, ways);
         TRY(find_direction(m, ways, count, direction, &found));
         TRY(list_side(m, false));
-        if (found)
-            go_from_g(m, direction, out->hub);
+        found = found && go_from_g(m, direction, out->hub);
     }
     if (found || !about_g) {
         out->kind = found ? WALL_FAN : WALL_NONE;
@@ -538,7 +539,7 @@ static starg_status build_web(peeling *m, const double foot[3], double room, boo
         double places[2][3], way[3];
         vec3_subtract(m->wall.points.data + 3 * i, foot, way);
         vec3_along(foot, 0.5 * room * m->wall.extent / vec3_length(way), way, places[m->end]);
-        go_from_g(m, m->web.ring.data + 3 * i, places[1 - m->end]);
+        *done = go_from_g(m, m->web.ring.data + 3 * i, places[1 - m->end]);
         corners[i] = loop[i].from;
         TRY(cones_add_vertex(m->b, (const double(*)[3])places, &corners[count + i]));
     }
