@@ -45,6 +45,10 @@ enum { SAMPLE = 12000 }; /* facets of a piece that are looked at first, or twice
 /* Numbers of stages are below. */
 static const uint64_t STREAMS = 1000;
 
+/* Where a start takes longer than this, it is taken to fail: in units of work, for each facet that
+ * there is at first, and in any case. Those that end take a fifth. */
+static const uint64_t WORK_EACH = 100000, WORK_LEAST = UINT64_C(2500000000);
+
 static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9,
                     SMALL_COMPONENT = 1e-7; /* unit coordinates */
 static const double THIN_SHARE = 0.125;
@@ -76,7 +80,7 @@ typedef struct bsp_builder {
     double volume;     /* of the solid, in unit coordinates */
     double finished;   /* of it, in pieces that have a guard */
     uint64_t began;    /* with this stamp */
-    uint64_t work;
+    uint64_t work, most_work;
     bool stale;  /* the index of the partition is */
     size_t many; /* more pieces than that: only planes of reflex edges are taken, which end */
     bool hopeless;
@@ -431,6 +435,7 @@ static starg_status run_round(bsp_builder *b) {
         TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
         if (b->options->to_the_end && starg_time_is_long_over(b->p->context))
             return starg_fail_time(b->p->context, PARTITION_STAGE);
+        b->hopeless = b->hopeless || b->work > b->most_work;
         if (b->hopeless)
             continue;
         if (is_star(j))
@@ -520,6 +525,7 @@ starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *rep
     STARG_TRY(take_hints(&b));
     STARG_TRY(open_all(&b));
     b.merge_from = p->facets.count + p->facets.count / 8;
+    b.most_work = WORK_LEAST + WORK_EACH * p->facets.count;
     for (int round = 1; b.next.count > 0 && !b.hopeless; round++) {
         swap_lists(&b);
         while (may_go_on(&b)) {
