@@ -112,6 +112,34 @@ static void check(starg_context *context, const starg_mesh *a, const starg_mesh 
 
 /* ---- maps ---- */
 
+/* Two poses of a cat and the map between them, made once for tests that need any map. */
+static struct {
+    starg_context *context;
+    starg_mesh *a, *b;
+    starg_solid_map *map;
+} cats;
+
+static void need_cats(void) {
+    if (cats.map != NULL)
+        return;
+    cats.context = test_context(1);
+    cats.a = test_pose(cats.context, "cat", 0, VERTICES);
+    cats.b = test_pose(cats.context, "cat", 1, VERTICES);
+    test_ok(cats.context, starg_solid_map_create(cats.context, cats.a, starg_mesh_vertices(cats.b),
+                                                 &QUICK, &cats.map));
+}
+
+static int free_cats(void **state) {
+    (void)state;
+    if (cats.map == NULL)
+        return 0;
+    starg_solid_map_free(cats.context, cats.map);
+    starg_mesh_free(cats.a);
+    starg_mesh_free(cats.b);
+    test_context_free(cats.context);
+    return 0;
+}
+
 static void check_pair(starg_mesh *a, starg_mesh *b) {
     starg_context *one = test_context(1), *many = test_context(3);
     starg_solid_map *map, *same;
@@ -617,11 +645,10 @@ static void test_forged(void **state) {
     (void)state;
     if (!has_tetgen())
         skip();
-    starg_context *context = test_context(1);
-    starg_mesh *a = test_pose(context, "cat", 0, VERTICES),
-               *b = test_pose(context, "cat", 1, VERTICES);
-    starg_solid_map *map;
-    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
+    need_cats();
+    starg_context *context = cats.context;
+    const starg_mesh *a = cats.a, *b = cats.b;
+    starg_solid_map *map = cats.map;
     size_t last = 3 * map->vertex_count - 1;
     assert_true(map->vertex_count > starg_mesh_vertex_count(a));
     double before = map->images[last];
@@ -645,10 +672,6 @@ static void test_forged(void **state) {
     assert_false(is_verified(context, a, b, map, false));
     map->count++;
     assert_false(is_verified(context, a, a, map, false)); /* another target */
-    starg_solid_map_free(context, map);
-    starg_mesh_free(a);
-    starg_mesh_free(b);
-    test_context_free(context);
 }
 
 /* ---- bad ends ---- */
@@ -767,17 +790,9 @@ static void test_points(void **state) {
     (void)state;
     if (!has_tetgen())
         skip();
-    starg_context *context = test_context(1);
-    starg_mesh *a = test_pose(context, "dog", 0, VERTICES),
-               *b = test_pose(context, "dog", 1, VERTICES);
-    starg_solid_map *map;
-    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
-    check_files(context, map);
-    check_points(context, map);
-    starg_solid_map_free(context, map);
-    starg_mesh_free(a);
-    starg_mesh_free(b);
-    test_context_free(context);
+    need_cats();
+    check_files(cats.context, cats.map);
+    check_points(cats.context, cats.map);
 }
 
 static void test_samples(void **state) {
@@ -825,5 +840,5 @@ int main(void) {
         cmocka_unit_test(test_overlay_of_balls),
         cmocka_unit_test(test_folded),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, free_cats);
 }
