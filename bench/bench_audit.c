@@ -19,7 +19,7 @@
 #include "starguard/space.h"
 
 #ifdef HAVE_EMBREE
-#include <embree3/rtcore.h>
+#include "embree.h"
 #endif
 
 enum { CORNERS = 8, SIDES = 12 };
@@ -134,25 +134,6 @@ static int by_cell(const void *left, const void *right) {
                               : (a->vertex > b->vertex) - (a->vertex < b->vertex);
 }
 
-static RTCScene make_scene(RTCDevice device, const hall *h) {
-    RTCScene scene = rtcNewScene(device);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                       3 * sizeof(float), h->vertices);
-    uint32_t *f = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                          3 * sizeof(uint32_t), h->faces);
-    for (size_t i = 0; i < 3 * h->vertices; i++)
-        v[i] = (float)h->points[i];
-    memcpy(f, h->corners, 3 * h->faces * sizeof *f);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    return scene;
-}
-
 /* Is a corner in the view? Its cell of 64 x 64. */
 static bool is_in_view(const double *p, double planes[4][3], const double *q, uint32_t *cell) {
     double line[3], distance[4], sum[2];
@@ -234,7 +215,7 @@ static size_t cast_rays(const hall *h, RTCScene scene, size_t camera, const ray 
 static void run_embree(const hall *h, double ours) {
     RTCDevice device = rtcNewDevice("threads=1");
     double start = starg_clock(), listing = 0, plain = 0, sorting = 0, sorted = 0;
-    RTCScene scene = make_scene(device, h);
+    RTCScene scene = embree_scene(device, h->points, h->vertices, h->corners, h->faces);
     printf("Embree scene %.2f s\n", starg_clock() - start);
     uint8_t *wanted = need(malloc(h->vertices));
     ray *rays = need(malloc(h->vertices * sizeof *rays));

@@ -14,9 +14,8 @@
 #include <string.h>
 #include <time.h>
 
-#include <embree3/rtcore.h>
-
 #include "core/rng.h"
+#include "embree.h"
 #include "starguard/guard.h"
 #include "starguard/sample.h"
 
@@ -46,26 +45,6 @@ static void stop_unless(starg_context *context, starg_status status) {
     exit(EXIT_FAILURE);
 }
 
-static RTCScene make_scene(RTCDevice device, const starg_mesh *mesh) {
-    size_t vertices = starg_mesh_vertex_count(mesh), faces = starg_mesh_face_count(mesh);
-    RTCScene scene = rtcNewScene(device);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                       3 * sizeof(float), vertices);
-    uint32_t *f = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                          3 * sizeof(uint32_t), faces);
-    for (size_t i = 0; i < 3 * vertices; i++)
-        v[i] = (float)starg_mesh_vertices(mesh)[i];
-    memcpy(f, starg_mesh_faces(mesh), 3 * faces * sizeof *f);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    return scene;
-}
-
 static void draw_point(const starg_solid *solid, starg_rng *rng, double p[3]) {
     double lower[3], upper[3];
     starg_mesh_bounds(starg_solid_mesh(solid), lower, upper);
@@ -73,23 +52,6 @@ static void draw_point(const starg_solid *solid, starg_rng *rng, double p[3]) {
         for (int k = 0; k < 3; k++)
             p[k] = lower[k] + (upper[k] - lower[k]) * starg_rng_unit(rng);
     while (!starg_solid_contains(solid, p));
-}
-
-static bool is_free(RTCScene scene, const double p[3], const double q[3]) {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    struct RTCRay ray = {.org_x = (float)p[0],
-                         .org_y = (float)p[1],
-                         .org_z = (float)p[2],
-                         .dir_x = (float)(q[0] - p[0]),
-                         .dir_y = (float)(q[1] - p[1]),
-                         .dir_z = (float)(q[2] - p[2]),
-                         .tnear = 0,
-                         .tfar = 0.9999F,
-                         .mask = UINT32_MAX};
-    rtcOccluded1(scene, &context, &ray);
-    return ray.tfar > 0;
 }
 
 /* Is p on the inner side of a face of a solid? */
@@ -111,7 +73,7 @@ static void find_row(RTCScene scene, const starg_mesh *mesh, const double p[3], 
     const double *v = starg_mesh_vertices(mesh);
     const uint32_t *f = starg_mesh_faces(mesh);
     for (size_t i = 0; i < vertices; i++)
-        open[i] = is_free(scene, p, v + 3 * i);
+        open[i] = embree_is_free(scene, p, v + 3 * i);
     for (size_t j = 0; j < faces; j++, f += 3)
         if (open[f[0]] && open[f[1]] && open[f[2]] && is_inner(v, f, p))
             row[j / 64] |= UINT64_C(1) << (j % 64);
@@ -164,7 +126,8 @@ static answer run_pipeline(const starg_solid *solid, size_t count) {
     answer found = {0};
     double start = processor_seconds();
     RTCDevice device = rtcNewDevice("threads=1");
-    RTCScene scene = make_scene(device, mesh);
+    RTCScene scene = embree_scene(device, starg_mesh_vertices(mesh), starg_mesh_vertex_count(mesh),
+                                  starg_mesh_faces(mesh), starg_mesh_face_count(mesh));
     for (size_t i = 0; i < count; i++) {
         double p[3];
         draw_point(solid, &rng, p);

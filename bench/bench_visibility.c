@@ -20,7 +20,7 @@
 #include "starguard/starguard.h"
 
 #ifdef HAVE_EMBREE
-#include <embree3/rtcore.h>
+#include "embree.h"
 #endif
 
 typedef struct setting {
@@ -94,25 +94,6 @@ static double run_engine(setting *s, starg_visibility_engine engine, size_t poin
 }
 
 #ifdef HAVE_EMBREE
-static RTCScene make_scene(RTCDevice device, const setting *s) {
-    RTCScene scene = rtcNewScene(device);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                       3 * sizeof(float), s->vertex_count);
-    uint32_t *f = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                          3 * sizeof(uint32_t), s->face_count);
-    for (size_t i = 0; i < 3 * s->vertex_count; i++)
-        v[i] = (float)s->vertices[i];
-    memcpy(f, s->faces, 3 * s->face_count * sizeof *f);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    return scene;
-}
-
 /* A ray and the cell of its direction. */
 typedef struct order {
     uint32_t cell, vertex;
@@ -187,7 +168,7 @@ typedef struct embree {
 static void start_embree(const setting *s, embree *e) {
     *e = (embree){.points = s->point_count / 4 + 1};
     e->device = rtcNewDevice("threads=1");
-    e->scene = make_scene(e->device, s);
+    e->scene = embree_scene(e->device, s->vertices, s->vertex_count, s->faces, s->face_count);
     e->rays = aligned_alloc(64, (s->vertex_count * sizeof *e->rays + 63) / 64 * 64);
     e->orders = malloc(s->vertex_count * sizeof *e->orders);
     if (e->rays == NULL || e->orders == NULL)
