@@ -100,10 +100,10 @@ static bool run(const visibility_scene *scene, contours_scratch *s, const double
     s->side = side;
     if (!find_contours(scene, side, s))
         return false;
-    cube_make_relative(scene, p, &s->directions);
+    cube_make_relative(scene, p, NULL, &s->directions);
     if (!(s->directions.bound < INFINITY))
         return false; /* too small for the error bounds */
-    cube_project(scene->vertex_count, &s->directions);
+    cube_project(scene->vertex_count, NULL, &s->directions);
     measure_contours(s);
     choose_tree_edges(scene, s);
     return sort_contours(s) && follow_tree_edges(scene, p, side, s) &&

@@ -13,21 +13,24 @@
 
 enum { CUBE_FACES = 6, BINS = 1024, RIM = 8 };
 
+/* Slots that are skipped together if none of them is in use. */
+enum { SLOT_BLOCK = 64 };
+
 /* Far above the rounding of a projected coordinate in single precision (2^-23). */
 static const float CELL_MARGIN = 0x1p-20f;
 
 /* The sides of a widened frustum, as planes through p: axis x SLACK - sign x coordinate k. */
 static const double SLACK = 1 + 0x1p-18;
 
-/* Intersections of directions with the cube: face 2 k or 2 k + 1 for the largest coordinate k,
- * positive or negative; u and v in [-1, 1] are the next two coordinates divided by it. All by
- * slot. */
+/* Intersections of directions with the cube, where slots are in use: face 2 k or 2 k + 1 for the
+ * largest coordinate k, positive or negative; u and v in [-1, 1] are the next two coordinates
+ * divided by it. All by slot. */
 typedef struct cube_directions {
     double *x, *y, *z; /* relative to p */
     float *u, *v;
     float *nearness; /* the largest coordinate of all vertices over its own: 1 or more */
     uint32_t *face;  /* plus RIM if rounding could put it on another face */
-    double extent;   /* the largest coordinate of all vertices */
+    double extent;   /* the largest coordinate of these vertices */
     double bound;    /* error bound of determinants; infinite: always exact */
 } cube_directions;
 
@@ -91,15 +94,38 @@ static inline double subtract_all(const double *restrict from, double by, size_t
     return largest[0];
 }
 
+static inline bool block_in_use(const uint8_t *in_use, size_t first) {
+    uint8_t any = 0;
+    for (size_t i = 0; i < SLOT_BLOCK; i++)
+        any |= in_use[first + i];
+    return any != 0;
+}
+
+/* The next run of blocks with slots in use, from *end on; all slots at once if in_use is NULL. The
+ * last slots, fewer than a block, count as in use. False: there is none. */
+static inline bool next_run(const uint8_t *in_use, size_t count, size_t *first, size_t *end) {
+    size_t i = *end;
+    while (in_use != NULL && i + SLOT_BLOCK <= count && !block_in_use(in_use, i))
+        i += SLOT_BLOCK;
+    *first = i;
+    while (in_use != NULL && i + SLOT_BLOCK <= count && block_in_use(in_use, i))
+        i += SLOT_BLOCK;
+    *end = in_use == NULL || i + SLOT_BLOCK > count ? count : i;
+    return *first < *end;
+}
+
 /* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
  * most 6 mx my mz and an error of at most 8 roundings of it; four of them sum to less than 30. One
  * whose last row is off by b in each coordinate is off by at most 6 m^2 b more, m being the largest
  * of the three. */
 static inline void cube_make_relative(const visibility_scene *scene, const double p[3],
-                                      cube_directions *d) {
-    double mx = subtract_all(scene->x, p[0], scene->slot_count, d->x);
-    double my = subtract_all(scene->y, p[1], scene->slot_count, d->y);
-    double mz = subtract_all(scene->z, p[2], scene->slot_count, d->z);
+                                      const uint8_t *in_use, cube_directions *d) {
+    double mx = 0, my = 0, mz = 0;
+    for (size_t i, end = 0; next_run(in_use, scene->slot_count, &i, &end);) {
+        mx = larger(subtract_all(scene->x + i, p[0], end - i, d->x + i), mx);
+        my = larger(subtract_all(scene->y + i, p[1], end - i, d->y + i), my);
+        mz = larger(subtract_all(scene->z + i, p[2], end - i, d->z + i), mz);
+    }
     d->extent = larger(larger(mx, my), mz);
     d->bound = 6 * 40 * 0x1p-53 * mx * my * mz;
     if (scene->slot_count > scene->vertex_count)
@@ -108,16 +134,16 @@ static inline void cube_make_relative(const visibility_scene *scene, const doubl
         d->bound = INFINITY;
 }
 
-/* Projects all vertices; branch-free and with restrict pointers, for vectorization. If the major
+/* Projects vertices; branch-free and with restrict pointers, for vectorization. If the major
  * coordinate is so small that its inverse is infinite, u is NaN or infinite, and the rim flag is
  * set. */
-static inline void cube_project(size_t count, cube_directions *d) {
+static inline void project_run(size_t begin, size_t end, cube_directions *d) {
     const float rim = 1 - CELL_MARGIN;
     const double *restrict all_x = d->x, *restrict all_y = d->y, *restrict all_z = d->z;
     float *restrict all_u = d->u, *restrict all_v = d->v, *restrict nearness = d->nearness;
     uint32_t *restrict faces = d->face;
     double extent = d->extent;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = begin; i < end; i++) {
         double x = all_x[i], y = all_y[i], z = all_z[i];
         double ax = fabs(x), ay = fabs(y), az = fabs(z);
         double most = larger(ay, az);
@@ -136,6 +162,11 @@ static inline void cube_project(size_t count, cube_directions *d) {
         nearness[i] = (float)(extent * scale);
         faces[i] = face + margin;
     }
+}
+
+static inline void cube_project(size_t count, const uint8_t *in_use, cube_directions *d) {
+    for (size_t begin, end = 0; next_run(in_use, count, &begin, &end);)
+        project_run(begin, end, d);
 }
 
 /* Permutes coordinates: the cube face's axis first, then u and v. */

@@ -321,8 +321,8 @@ static void test_block(const visibility_scene *scene, const double p[3], grid_sc
 static void test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
                        grid_scratch *g) {
     face_block block;
-    for (size_t slot = 0; slot < scene->slot_count; slot++)
-        g->hider[slot] = SCENE_NONE;
+    for (size_t i = 0; i < g->used_count; i++)
+        g->hider[g->used[i]] = SCENE_NONE;
     for (size_t done = 0; done < g->front_facing_count;) {
         done += fill_block(scene, side, g, done, &block);
         test_block(scene, p, g, &block);

@@ -92,13 +92,14 @@ static int compare_chunks(const void *left, const void *right) {
 }
 
 /* Near chunks of faces hide most, which leaves little to test for far ones. */
-static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
-    size_t count = (scene->face_count + CHUNK - 1) / CHUNK;
-    for (size_t c = 0; c < count; c++) {
+static size_t order_chunks(const visibility_scene *scene, const double p[3], const scene_view *view,
+                           grid_scratch *g) {
+    size_t count = 0;
+    for (size_t c = 0; c * CHUNK < scene->face_count; c++) {
         uint32_t slot = scene->corners[3 * (c * CHUNK)];
-        g->chunks[c].chunk = (uint32_t)c;
-        g->chunks[c].distance = g->at.x[slot] * g->at.x[slot] + g->at.y[slot] * g->at.y[slot] +
-                                g->at.z[slot] * g->at.z[slot];
+        const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
+        if (!scene_is_beyond(scene, c, p, view))
+            g->chunks[count++] = (chunk_distance){vec3_distance_squared(p, q), (uint32_t)c};
     }
     qsort(g->chunks, count, sizeof *g->chunks, compare_chunks);
     return count;
@@ -117,13 +118,11 @@ static void keep_patches(const visibility_scene *scene, size_t rank, uint8_t kee
  * seen, or out of range. */
 static void keep_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
                        const scene_view *view, grid_scratch *g) {
-    size_t chunk_count = order_chunks(scene, g);
+    size_t chunk_count = order_chunks(scene, p, view, g);
     g->front_facing_count = g->used_count = 0;
     memset(g->in_use, 0, scene->slot_count);
     for (size_t c = 0; c < chunk_count; c++) {
         size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
-        if (scene_is_beyond(scene, g->chunks[c].chunk, p, view))
-            continue;
         for (; rank < end && rank < scene->face_count; rank++) {
             uint8_t keep = scene_may_block(scene, rank, side[rank]);
             const uint32_t *corner = scene->corners + 3 * rank;
@@ -136,21 +135,25 @@ static void keep_faces(const visibility_scene *scene, const double p[3], const i
                 keep_patches(scene, rank, keep, g);
         }
     }
-    for (uint32_t slot = 0; slot < scene->slot_count; slot++) {
-        g->used[g->used_count] = slot;
-        g->used_count += g->in_use[slot];
-    }
+    for (size_t slot, end = 0; next_run(g->in_use, scene->slot_count, &slot, &end);)
+        for (; slot < end; slot++) {
+            g->used[g->used_count] = (uint32_t)slot;
+            g->used_count += g->in_use[slot];
+        }
 }
 
 #include "visibility/grid_faces.h"
 
 void GRID_RUN(const visibility_scene *scene, grid_scratch *g, const double p[3], const int8_t *side,
               const scene_view *view, uint8_t *visible) {
-    cube_make_relative(scene, p, &g->at);
     keep_faces(scene, p, side, view, g);
-    cube_project(scene->slot_count, &g->at);
+    cube_make_relative(scene, p, g->in_use, &g->at);
+    cube_project(scene->slot_count, g->in_use, &g->at);
     sort_into_cells(scene, g);
     test_faces(scene, p, side, g);
-    for (size_t i = 0; i < scene->slot_count; i++)
-        visible[i] = g->in_use[i] && !starg_bit_test(g->hidden, g->place[i]);
+    memset(visible, 0, scene->slot_count);
+    for (size_t i = 0; i < g->used_count; i++) {
+        uint32_t slot = g->used[i];
+        visible[slot] = !starg_bit_test(g->hidden, g->place[slot]);
+    }
 }

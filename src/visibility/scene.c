@@ -287,16 +287,32 @@ int scene_side(const visibility_scene *scene, size_t rank, const double p[3]) {
                                 scene_corner(scene, rank, 2), p);
 }
 
-void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side) {
-    if (scene_holds(scene, p))
-        scene->find_sides(scene, p, side);
-    else
-        memset(side, 0, scene->face_count * sizeof *side);
-    for (size_t rank = 0; rank < scene->face_count; rank++)
-        if (side[rank] == 0)
-            side[rank] =
-                (int8_t)orient3d(scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
-                                 scene_corner(scene, rank, 2), p);
+/* With a larger box that has the same centre and holds p, the analysis is the same. */
+static double side_bound_at(const visibility_scene *scene, const double p[3]) {
+    double extent = scene->extent;
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, 2.001 * fabs(p[k] - scene->centre[k]));
+    return extent > scene->extent ? scene->side_bound * (extent / scene->extent)
+                                  : scene->side_bound;
+}
+
+void scene_sides(const visibility_scene *scene, const double p[3], const scene_view *view,
+                 int8_t *side) {
+    double bound = side_bound_at(scene, p);
+    for (size_t first = 0; first < scene->face_count; first += SCENE_CHUNK) {
+        size_t left = scene->face_count - first;
+        size_t end = first + (left < SCENE_CHUNK ? left : SCENE_CHUNK);
+        if (view != NULL && scene_is_beyond(scene, first / SCENE_CHUNK, p, view)) {
+            memset(side + first, 0, end - first);
+            continue;
+        }
+        scene->find_sides(scene, p, bound, first, end, side);
+        for (size_t rank = first; rank < end; rank++)
+            if (side[rank] == 0)
+                side[rank] =
+                    (int8_t)orient3d(scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                                     scene_corner(scene, rank, 2), p);
+    }
 }
 
 bool scene_blocks_point(const visibility_scene *scene, size_t rank, int side, const double p[3],

@@ -4,6 +4,7 @@
 #ifndef STARG_VISIBILITY_SCENE_H
 #define STARG_VISIBILITY_SCENE_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -48,8 +49,10 @@ visibility_isa isa_resolve(visibility_isa wanted);
 
 bool isa_is_supported(visibility_isa isa);
 
-/* side[rank] = 1 or -1 as in scene_sides if certain, otherwise 0. */
-typedef void sides_run(const struct visibility_scene *scene, const double p[3], int8_t *side);
+/* side[rank] = 1 or -1 as in scene_sides if certain, otherwise 0, for ranks from `rank` to before
+ * `end`. `bound` is larger than the rounding errors. */
+typedef void sides_run(const struct visibility_scene *scene, const double p[3], double bound,
+                       size_t rank, size_t end, int8_t *side);
 
 /* The main loop of scene_sides, compiled per instruction set. */
 sides_run sides_run_plain;
@@ -146,8 +149,9 @@ static inline bool scene_is_beyond(const visibility_scene *scene, size_t chunk, 
     }
     if (square > scene->range * scene->range * (1 + 1e-9)) /* more than its roundings */
         return true;
+    double slack = 1e-9 * (scene->extent + sqrt(square)); /* more than roundings of planes */
     for (int i = 0; i < view->count; i++) {
-        double most = 1e-9 * scene->extent;
+        double most = slack;
         for (int k = 0; k < 3; k++) {
             double n = view->normals[i][k];
             most +=
@@ -192,8 +196,10 @@ bool scene_holds(const visibility_scene *scene, const double p[3]);
 /* The exact side of the face on which p lies: 1 inner, -1 outer, 0 in its plane. */
 int scene_side(const visibility_scene *scene, size_t rank, const double p[3]);
 
-/* side[rank] = 1 where p lies strictly on the inner side of the face, -1 outer, 0 in its plane. */
-void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side);
+/* side[rank] = 1 where p lies strictly on the inner side of the face, -1 outer, 0 in its plane;
+ * also 0 in chunks beyond the view, if that is not NULL. */
+void scene_sides(const visibility_scene *scene, const double p[3], const scene_view *view,
+                 int8_t *side);
 
 static inline const double *scene_corner(const visibility_scene *scene, size_t rank, int k) {
     uint32_t vertex = scene->vertex_of[scene->corners[3 * rank + (size_t)k]];

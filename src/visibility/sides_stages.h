@@ -4,18 +4,17 @@
 #include "visibility/lanes.h"
 #include "visibility/scene.h"
 
-void SIDES_RUN(const visibility_scene *scene, const double p[3], int8_t *side) {
+void SIDES_RUN(const visibility_scene *scene, const double p[3], double bound, size_t rank,
+               size_t end, int8_t *side) {
     enum { LANES = 8 };
     const double back[3] = {scene->centre[0] - p[0], scene->centre[1] - p[1],
                             scene->centre[2] - p[2]};
-    double bound = scene->side_bound;
-    size_t rank = 0;
-    for (; rank + LANES <= scene->face_count; rank += LANES) {
+    for (; rank + LANES <= end; rank += LANES) {
         lanes above = lanes_dot(back, lanes_load(scene->nx + rank), lanes_load(scene->ny + rank),
                                 lanes_load(scene->nz + rank));
         lanes_store_signs(lanes_add(above, lanes_load(scene->offset + rank)), bound, side + rank);
     }
-    for (; rank < scene->face_count; rank++) {
+    for (; rank < end; rank++) {
         double s = scene->offset[rank] + scene->nx[rank] * back[0] + scene->ny[rank] * back[1] +
                    scene->nz[rank] * back[2];
         side[rank] = (int8_t)((s > bound) - (s < -bound));

@@ -124,7 +124,8 @@ static void look_closely(const visibility_scene *scene, const double p[3], const
 }
 
 static void find_visible(const job *all, worker *w, const double p[3], const scene_view *view) {
-    scene_sides(all->scene, p, w->side);
+    /* contours need the sides of all faces */
+    scene_sides(all->scene, p, all->scene->adjacency == NULL ? view : NULL, w->side);
     all->engine->find(all->scene, w->engine_scratch, p, w->side, view, w->visible);
     look_closely(all->scene, p, w->side, w->visible);
     drop_out_of_reach(w, p);

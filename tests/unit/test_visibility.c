@@ -7,6 +7,7 @@
 
 #include "core/bits.h"
 #include "core/rng.h"
+#include "geometry/predicates.h"
 #include "models.h"
 #include "starguard/sample.h"
 #include "starguard/visibility.h"
@@ -259,7 +260,7 @@ static void test_single_sights(void **state) {
         test_ok(c.context, scene_add_sights(c.scene));
         for (size_t i = 0; i < c.count; i++) {
             const double *p = c.points + 3 * i;
-            scene_sides(c.scene, p, c.side);
+            scene_sides(c.scene, p, NULL, c.side);
             visibility_tree.find(c.scene, NULL, p, c.side, &around, c.plain);
             for (uint32_t slot = 0; slot < c.scene->vertex_count; slot++) {
                 bool sees = scene_sees_vertex(c.scene, p, slot, &all);
@@ -273,6 +274,30 @@ static void test_single_sights(void **state) {
     }
 }
 
+/* Sides of places far from the solid, nearly in planes of its faces. */
+static void test_sides_far_away(void **state) {
+    (void)state;
+    isa_case c;
+    size_t inner = 0, outer = 0;
+    make_isa_case("octopus", &c);
+    for (size_t i = 0; i < 40; i++) {
+        const double *a = scene_corner(c.scene, 7 * i, 0), *b = scene_corner(c.scene, 7 * i, 1);
+        double p[3], times = pow(10, 1 + (double)(i % 8));
+        for (int k = 0; k < 3; k++)
+            p[k] = a[k] + times * (b[k] - a[k]);
+        scene_sides(c.scene, p, NULL, c.side);
+        for (size_t rank = 0; rank < c.scene->face_count; rank++) {
+            assert_int_equal(c.side[rank], orient3d(scene_corner(c.scene, rank, 0),
+                                                    scene_corner(c.scene, rank, 1),
+                                                    scene_corner(c.scene, rank, 2), p));
+            inner += c.side[rank] > 0;
+            outer += c.side[rank] < 0;
+        }
+    }
+    assert_true(inner > 1000 && outer > 1000);
+    free_isa_case(&c);
+}
+
 /* The stages for each instruction set of the processor: the same bits. */
 static void test_grid_isa(void **state) {
     (void)state;
@@ -282,7 +307,7 @@ static void test_grid_isa(void **state) {
     assert_int_equal(visibility_grid.make_scratch(c.scene, &scratch), STARG_OK);
     grid_scratch *grid = scratch;
     for (size_t i = 0; i < c.count; i++) {
-        scene_sides(c.scene, c.points + 3 * i, c.side);
+        scene_sides(c.scene, c.points + 3 * i, NULL, c.side);
         for (int isa = ISA_PLAIN; isa <= ISA_WIDEST; isa++) {
             grid->run = grid_choose_variant((visibility_isa)isa);
             if (grid->run == NULL)
@@ -308,7 +333,7 @@ static void test_contours_isa(void **state) {
     contours_scratch *s = scratch;
     for (size_t i = 0; i < c.count; i++) {
         const double *p = c.points + 3 * i;
-        scene_sides(c.scene, p, c.side);
+        scene_sides(c.scene, p, NULL, c.side);
         visibility_grid.find(c.scene, s->grid, p, c.side, &around, c.plain);
         bool answers = contours_plain.run(c.scene, s, p, c.side, c.wide);
         decided += answers;
@@ -342,7 +367,7 @@ static void test_fastest(void **state) {
         contours_scratch *s = scratch;
         for (size_t k = 0; k < c.count; k++) {
             const double *p = c.points + 3 * k;
-            scene_sides(c.scene, p, c.side);
+            scene_sides(c.scene, p, NULL, c.side);
             visibility_grid.find(c.scene, s->grid, p, c.side, &around, c.plain);
             s->decided = false;
             visibility_fastest.find(c.scene, scratch, p, c.side, &around, c.wide);
@@ -397,6 +422,7 @@ int main(void) {
         cmocka_unit_test(test_samples),       cmocka_unit_test(test_shared),
         cmocka_unit_test(test_single_sights), cmocka_unit_test(test_lattice_boxes),
         cmocka_unit_test(test_grid_isa),      cmocka_unit_test(test_contours_isa),
-        cmocka_unit_test(test_fastest),       cmocka_unit_test(test_arguments)};
+        cmocka_unit_test(test_fastest),       cmocka_unit_test(test_sides_far_away),
+        cmocka_unit_test(test_arguments)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
