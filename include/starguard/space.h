@@ -46,7 +46,9 @@ typedef struct starg_space_options {
     double standoff_least;   /* distance of guards from the model */
     double standoff_most;    /* may be INFINITY */
     double within[6];        /* guards stand in this box: lower corner, upper corner; all 0:
-                                anywhere */
+                                anywhere, or if the free space has no end and nothing else limits
+                                where guards stand, in the model's box, wider by 0.1 diagonals (a
+                                soup without `cell`) or 4 (outside) */
     const starg_zone *zones; /* zone_count of them: guards stand in the union of those that do not
                                 exclude, if there are any, and in none of those that do */
     size_t zone_count;

@@ -198,7 +198,7 @@ static starg_status fail_unseen(const guard_problem *problem, const guard_pool *
          problem->solid->other_side != NULL && !solid_is_two_sided(problem->solid)},
         {"other faces to see", problem->weights.faces < starg_space_model_faces(problem->solid)},
         {"wider limits of where guards may stand (box, distances, faces)",
-         problem->solid->scene && is_limited(&problem->solid->space)},
+         problem->solid->scene && !problem->solid->own_box && is_limited(&problem->solid->space)},
         {"other candidates", o->candidates == STARG_CANDIDATES_GIVEN},
     };
     char advice[256] = "";
@@ -261,6 +261,8 @@ static starg_status find_pool(const guard_problem *problem, const guard_detail *
     TRY(find_candidates(problem, detail, out));
     TRY(pool_augment(out, &problem->weights));
     TRY(look_everywhere(problem, out));
+    if (problem->options->candidates != STARG_CANDIDATES_GIVEN && pool_count(out) > 0)
+        TRY(pool_add_companions(out));
     out->time_limited = out->time_limited || (detail->time_limited && pool_count(out) == 0);
     if (problem->kept == NULL &&
         starg_bit_count(out->coverable, starg_bit_words(out->columns)) == 0)

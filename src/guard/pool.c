@@ -288,9 +288,6 @@ starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
         if (found.data.count > 0)
             STARG_TRY(pool_add(pool, &found));
     }
-    if (pool->options->redundancy > 1 && pool->options->candidates != STARG_CANDIDATES_GIVEN &&
-        pool_count(pool) > 0)
-        STARG_TRY(pool_add_companions(pool));
 done:
     candidates_free(&found);
     RELEASE(all.tried, unseen);

@@ -144,11 +144,17 @@ static starg_status reach(flood_cells *f, size_t cell, cell_stack *stack) {
     return STARG_OK;
 }
 
-static starg_status fail_beyond(const flood_cells *f, const starg_solid *scene,
-                                const double from[3]) {
+/* Limits may even leave an empty box. */
+static starg_status check_from(starg_context *context, const starg_solid *scene,
+                               const double from[3]) {
     bvh_box box;
+    bool in = true;
     solid_reach(scene, &box);
-    return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
+    for (int k = 0; k < 3; k++)
+        in = in && from[k] >= box.lower[k] && from[k] <= box.upper[k];
+    if (in)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                       "nobody can stand at (%g, %g, %g): it is not in the box where guards may be, "
                       "from (%g, %g, %g) to (%g, %g, %g); choose a point in it, or another box "
                       "(--within)",
@@ -158,10 +164,9 @@ static starg_status fail_beyond(const flood_cells *f, const starg_solid *scene,
 
 static starg_status spread(flood_cells *f, const starg_solid *scene, const double from[3]) {
     SCOPED cell_stack stack = {0};
-    size_t at[3];
+    size_t at[3] = {0};
     const size_t step[3] = {1, f->count[0], f->count[0] * f->count[1]};
-    if (!flood_locate(f, from, at))
-        return fail_beyond(f, scene, from);
+    flood_locate(f, from, at); /* the cubes fill the box */
     if (starg_bit_test(f->taken, cell_at(f, at)))
         return starg_fail(f->context, STARG_ERROR_ARGUMENT, STAGE,
                           "nobody can stand at (%g, %g, %g): a face meets its cube of the size %g; "
@@ -192,6 +197,7 @@ starg_status flood_create(starg_context *context, const starg_solid *scene, cons
     *out = NULL;
     NEW_ZERO(context, STAGE, f, 1);
     f->context = context;
+    TRY(check_from(context, scene, from));
     TRY(make_grid(context, scene, size, f));
     TRY(take_faces(context, scene->mesh, f));
     TRY(spread(f, scene, from));

@@ -81,6 +81,7 @@ struct starg_solid {
                              it is no target; NULL: of all targets that is asked for */
     const mesh_patches *patches; /* what is to be seen of each face, borrowed; NULL: all of it */
     starg_space_options space;
+    bool own_box;      /* space.within is what solid_reach says of a space without an end */
     starg_mesh *model; /* the model that distances are measured from, and its tree; NULL: `mesh` */
     bvh *model_tree;
 };

@@ -24,6 +24,9 @@ void starg_space_options_default(starg_space_options *options) {
     *options = (starg_space_options){0};
 }
 
+/* Of the diagonal: how far around a soup guards may stand, if nothing says where. */
+static const double ROOM = 0.1;
+
 static bool is_bounded(const starg_space_options *o) {
     bool any = false;
     for (int k = 0; k < 6; k++)
@@ -316,6 +319,19 @@ static starg_status take_zones(starg_context *context, starg_solid *scene) {
     return status;
 }
 
+/* Where the free space has no end, and nothing else tells where guards may stand, it is a box. */
+static void bind_to_box(starg_solid *scene) {
+    starg_space_options *o = &scene->space;
+    bool elsewhere = o->standoff_most > 0 || scene->over.count > 0 || scene->mount.count > 0;
+    bvh_box reach;
+    scene->own_box = scene->ambient > 0 && !elsewhere && !is_bounded(o);
+    if (!scene->own_box)
+        return;
+    solid_reach(scene, &reach);
+    vec3_copy(reach.lower, o->within);
+    vec3_copy(reach.upper, o->within + 3);
+}
+
 static starg_status note_sizes(starg_solid *scene, const starg_mesh *const *obstacles,
                                size_t count) {
     NEW(scene->context, STAGE, scene->obstacle_sizes, 2 * count);
@@ -424,7 +440,7 @@ static starg_status reach_from(starg_context *context, starg_solid *scene) {
         return STARG_OK;
     bvh_box model =
         scene->tree->nodes[0].box; /* nobody gets out where a box ends no later than it */
-    for (int k = 0; k < 3 && is_bounded(o); k++) {
+    for (int k = 0; k < 3 && is_bounded(o) && !scene->own_box; k++) {
         model.lower[k] = o->within[k] >= model.lower[k] ? -INFINITY : model.lower[k];
         model.upper[k] = o->within[k + 3] <= model.upper[k] ? INFINITY : model.upper[k];
     }
@@ -478,6 +494,7 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     TRY(note_sizes(scene, obstacles, obstacle_count));
     if (obstacle_count > 0)
         TRY(keep_model(context, model, scene));
+    bind_to_box(scene);
     if (scene->mesh->face_count > scene->model_faces)
         TRY(starg_space_weigh(scene, NULL));
     if (o->cell > 0)
@@ -557,25 +574,28 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
     *out = solid->model_tree != NULL ? solid->model_tree->nodes[0].box : solid->tree->nodes[0].box;
     if (!solid->scene)
         return;
-    bool open = solid->ambient > 0;
-    double grow = 0; /* of a soup without distances: its own box */
+    const bool open = solid->ambient > 0, bounded = is_bounded(o);
     bvh_box bound;
-    bool near = near_faces_box(&solid->over, &solid->mount, o, &bound);
-    if (open && o->standoff_most > 0)
-        grow = o->standoff_most;
-    else if (o->outside)
-        grow = 4 * solid->check->diagonal;
+    const bool near = near_faces_box(&solid->over, &solid->mount, o, &bound);
+    const bool alone = open && !o->outside && !(o->standoff_most > 0); /* a soup's own box */
+    double grow = 0;
+    if (open && !alone)
+        grow = o->standoff_most > 0 ? o->standoff_most : 4 * solid->check->diagonal;
+    else if (alone && o->cell == 0)
+        grow = ROOM * solid->check->diagonal;
     for (int k = 0; k < 3; k++) {
         out->lower[k] -= grow;
         out->upper[k] += grow;
-        if (is_bounded(o)) {
+        if (bounded) {
             out->lower[k] = open ? o->within[k] : fmax(out->lower[k], o->within[k]);
             out->upper[k] = open ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
         }
-        if (near) { /* beside a soup's own box, too */
-            bool own = open && grow == 0 && !is_bounded(o);
-            out->lower[k] = own ? bound.lower[k] : fmax(out->lower[k], bound.lower[k]);
-            out->upper[k] = own ? bound.upper[k] : fmin(out->upper[k], bound.upper[k]);
+        if (near && alone && !bounded) {
+            out->lower[k] = bound.lower[k];
+            out->upper[k] = bound.upper[k];
+        } else if (near) {
+            out->lower[k] = fmax(out->lower[k], bound.lower[k]);
+            out->upper[k] = fmin(out->upper[k], bound.upper[k]);
         }
     }
 }

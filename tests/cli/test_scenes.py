@@ -155,6 +155,25 @@ class Scenes(Case):
         self.assertEqual(result["scene"]["from"], [1, 1, 1])
         self.verified("soup.off")
 
+    def test_soups_without_limits(self):
+        """A sheet, a box, an open one, boxes apart, a plate: all is seen, and no bound is above the guards."""
+        sheet = [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]
+        tray = box((0, 0, 0), (1, 1, 1))
+        stairs = box((0, 0, 0), (3, 1, 1)), box((0, 2, 0), (1, 3, 1))
+        for parts, fewest in [((sheet,), 1), ((box((0, 0, 0), (1, 1, 1)),), 2), (((tray[0], tray[1][:-2]),), 2),
+                              ((box((0, 0, 0), (1, 1, 1)), box((3, 0, 0), (4, 1, 1))), 2), (stairs, 2),
+                              ((box((0, 0, 0), (10, 10, 1e-3)),), 2)]:
+            self.write("soup.off", off(*parts))
+            for words in [(), ("--prove", "--prove-work", "300000")]:
+                result = self.guards("soup.off", "--soup", "--effort", "quick", *words)
+                self.assertEqual(result["coverage"]["uncovered_faces"], [])
+                self.assertGreaterEqual(len(result["guards"]), fewest)
+                self.assertLessEqual(result.get("lower_bound_everywhere") or 0, len(result["guards"]))
+                low, high = result["scene"]["within"][:3], result["scene"]["within"][3:]
+                for guard in result["guards"]:
+                    self.assertTrue(all(a <= x <= b for a, x, b in zip(low, guard["position"], high)))
+                self.verified("soup.off")
+
     def test_reach(self):
         """Guards behind a wall, in a locked room or on the roof have not been reached."""
         vertices, faces = box((0, 0, 0), (8, 6, 3), 4, inward=True)
