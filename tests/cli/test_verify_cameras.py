@@ -217,8 +217,8 @@ class Forged(Case):
         return {what for what, _ in told}
 
     def test_a_thousand(self):
-        """Of each of two plans 500, or 80 without STARGUARD_LONG."""
-        count = 500 if LONG else 80
+        """Of each of two plans 500, or 50 without STARGUARD_LONG."""
+        count = 500 if LONG else 50
         kinds = self.refuse(count, "--resolution", "1920,1080", "--density", "observe", "--tilt", "-60,0", "--without",
                             "3,-1,-1,5,4,7", "--require", "door=2,observe")
         kinds |= self.refuse(count, "--resolution", "1920,1080", "--density", "100", "--tilt", "-70,0", "--within",
