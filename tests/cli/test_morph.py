@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """map and morph: the contract, and wrong use of both."""
 import json
-import math
 import os
 import shutil
 import struct
 import unittest
 
 import support
-from plain_solids import bent
+from plain_solids import arc
 from support import Case, OPEN, TETRAHEDRON
 
 
@@ -21,9 +20,7 @@ class Morph(Case):
 
     def write_bends(self):
         for name, angle in ("a.off", 0.5), ("b.off", 2.5):
-            bend = bent("bend", name, [(4 * math.sin(angle * i / 9) / angle, 4 * math.cos(angle * i / 9) / angle, 0)
-                                       for i in range(10)], 0.5, 6)
-            bend.write(self.path(name), bend.vertices)
+            arc(angle).write(self.path(name))
 
     def vertices(self, name):
         words = self.read(name).decode().split()

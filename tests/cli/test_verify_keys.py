@@ -9,6 +9,7 @@ import unittest
 
 import support
 import test_scenes
+from plain_solids import arc
 
 PAGE = os.path.join(os.path.dirname(__file__), "..", "..", "docs", "verification.md")
 REFUSED = {2, 4}  # not readable; read, and found to be false
@@ -205,11 +206,11 @@ class Keys(support.Case):
             self.sample("cat", 500, file, "--pose", str(pose))
         self.run_text("map", "a.off", "b.off", "--overlay", "-o", "m.json")
         self.spoil("MAP.json", mutants, "m.json", ["a.off", "b.off", "m.json"])
-        self.run_text("map", "--solid", "a.off", "b.off", "-o", "m.vtu")
+        self.run_text("map", "--solid", "a.off", "b.off", "--steps", "20", "-o", "m.vtu")
         self.spoil("MAP.vtu", vtu_mutants, "m.vtu", ["a.off", "b.off", "m.vtu"])
-        self.sample("sphere", 500, "c.off")
-        self.sample("star", 800, "d.off")
-        self.run_text("map", "--solid", "c.off", "d.off", "--connectivity", "a", "-o", "n.vtu")
+        arc(0.5).write(self.path("c.off"))
+        self.sample("sphere", 500, "d.off")
+        self.run_text("map", "--solid", "c.off", "d.off", "--connectivity", "a", "--steps", "20", "-o", "n.vtu")
         self.spoil("MAP.vtu", lambda text: (m for m in vtu_mutants(text) if m[0] == "missed"), "n.vtu",
                    ["c.off", "d.off", "n.vtu"])
         self.run_text("morph", "a.off", "b.off", "--frames", "3", "-o", "frames", "--report")
