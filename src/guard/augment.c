@@ -59,8 +59,8 @@ static bool is_good(const augmentation_job *job, const double p[3], const double
            scene_sees_patch(job->scene, p, patch, &options);
 }
 
-/* The depths at which a point may be far enough from the patch's centroid, and near enough to it and
- * to its farthest corner. */
+/* The depths at which a point may be far enough from the patch's centroid, and near enough to it
+ * and to its farthest corner. */
 static void depth_limits(const augmentation_job *job, size_t patch, const double centroid[3],
                          double limits[2]) {
     const visibility_scene *scene = job->scene;

@@ -428,7 +428,8 @@ static void proportions(const starg_mesh *mesh, double out[4]) {
     out[3] = volume_of(mesh) / box;
 }
 
-/* No two members of a family are alike, and members are as every sample: two of each family, or all. */
+/* No two members of a family are alike, and members are as every sample: two of each family, or
+ * all. */
 static void members_differ(void **state) {
     (void)state;
     starg_context *context = test_context(2);

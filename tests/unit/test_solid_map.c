@@ -149,8 +149,7 @@ static void test_poses(void **state) {
     starg_context *many = test_context(3);
     const starg_solid_map *map = cats.map;
     starg_solid_map *same;
-    test_ok(many,
-            starg_solid_map_create(many, cats.a, starg_mesh_vertices(cats.b), &QUICK, &same));
+    test_ok(many, starg_solid_map_create(many, cats.a, starg_mesh_vertices(cats.b), &QUICK, &same));
     check(cats.context, cats.a, cats.b, map);
     assert_int_equal(map->count, same->count);
     assert_memory_equal(map->images, same->images, 3 * map->vertex_count * sizeof *map->images);
