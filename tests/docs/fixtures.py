@@ -16,6 +16,7 @@ LONG = bool(os.environ.get("STARGUARD_LONG"))  # commands as they stand, not as 
 # What `make check` adds to commands or puts in them, unless they say something else: the same is done with less.
 QUICK = [(r"\bstarguard sample (?=\w)(?!.*--vertices)", "starguard sample --vertices 500 "),
          (r"\bstarguard guard (?!.*--(effort|prove|method|time-limit))", "starguard guard --effort quick "),
+         (r"\bstarguard guard (?!.*--(count|candidates))", "starguard guard --count 60 "),
          (r"\bstarguard map --solid (?!.*--steps)", "starguard map --solid --steps 10 "),
          (r"--frames \d+", "--frames 4")]
 
