@@ -11,8 +11,8 @@
  * that are invisible even from there stay unseen. With a cone of view, which is aimed at the
  * centroid, faces too large for the cone from every point that sees them also stay unseen.
  *
- * Cost: O(log n) for each of at most DIRECTIONS x DEPTHS points per face; parallel over the
- * faces. */
+ * Cost: O(log n) for each of at most DIRECTIONS x DEPTHS points per face, none of a face that the
+ * range or the clearance rules out; parallel over the faces. */
 #include <math.h>
 
 #include "core/parallel.h"
@@ -59,13 +59,28 @@ static bool is_good(const augmentation_job *job, const double p[3], const double
            scene_sees_patch(job->scene, p, patch, &options);
 }
 
-/* The largest depth below `limit` at which a point along the direction sees the patch. */
+/* The depths at which a point may be far enough from the patch's centroid, and near enough to it
+ * and to its farthest corner. */
+static void depth_limits(const augmentation_job *job, size_t patch, const double centroid[3],
+                         double limits[2]) {
+    const visibility_scene *scene = job->scene;
+    const uint32_t *corner = scene_patch_corners(scene, patch);
+    double range = job->all->visibility->range * (1 + 1e-9), radius = 0;
+    for (size_t k = 0; k < scene_patch_size(scene); k++) {
+        const double at[3] = {scene->x[corner[k]], scene->y[corner[k]], scene->z[corner[k]]};
+        radius = fmax(radius, vec3_distance(centroid, at));
+    }
+    limits[0] = (1 - 1e-9) * fmax(job->all->clearance, radius - range);
+    limits[1] = range;
+}
+
+/* The largest depth within the limits at which a point along the direction sees the patch. */
 static double deepest(const augmentation_job *job, size_t patch, const double from[3],
-                      const double direction[3], double limit, double p[3]) {
+                      const double direction[3], const double limits[2], double p[3]) {
     double depth = 0.5 * job->all->solid->check->diagonal;
-    for (int i = 0; i < DEPTHS && depth > limit; i++, depth *= SHRINK) {
+    for (int i = 0; i < DEPTHS && depth > limits[0]; i++, depth *= SHRINK) {
         vec3_along(from, depth, direction, p);
-        if (is_good(job, p, from, patch))
+        if (depth <= limits[1] && is_good(job, p, from, patch))
             return depth;
     }
     return 0;
@@ -108,23 +123,24 @@ static starg_status augment_patch(starg_context *context, void *shared, void *sc
     found_point *found = &job->found[item];
     size_t patch = job->patches[item];
     size_t rank = job->scene->rank_of[solid_patch_face(job->all->solid, patch)];
-    double centroid[3], normal[3], side[2][3], best = 0;
+    double centroid[3], normal[3], side[2][3], limits[2];
     (void)context;
     (void)scratch;
     found->count = 0;
     if (!make_frame(job->scene, rank, normal, side))
         return STARG_OK;
     scene_patch_centre(job->scene, patch, centroid);
+    depth_limits(job, patch, centroid, limits);
     int sides = scene_back(job->scene, rank) == SCENE_NONE ? 1 : 2;
     for (int d = 0; d < sides * DIRECTIONS; d++) {
         double direction[3], p[3];
         lean(normal, (const double(*)[3])side, d % DIRECTIONS, direction);
         for (int k = 0; k < 3 && d >= DIRECTIONS; k++)
             direction[k] = -direction[k]; /* above the back */
-        double depth = deepest(job, patch, centroid, direction, best, p);
-        if (depth <= best)
+        double depth = deepest(job, patch, centroid, direction, limits, p);
+        if (depth <= limits[0])
             continue;
-        best = depth;
+        limits[0] = depth;
         int slot = d > 0 && found->count > 0;
         vec3_copy(p, found->p[slot]);
         look_at(job->all->visibility, p, centroid, found->direction[slot]);

@@ -221,6 +221,12 @@ def bent(kind, name, path, radius, sides):
     return Solid(kind, name, vertices, faces, 0, tips, inner, alike=True)
 
 
+def arc(angle):
+    """A small tube along an arc; those of two angles have the same faces."""
+    return bent("bend", f"arc_{angle:g}", [(4 * math.sin(angle * i / 9) / angle, 4 * math.cos(angle * i / 9) / angle, 0)
+                                           for i in range(10)], 0.5, 6)
+
+
 def bend(sides, rings, radius, angle):
     """A tube along an arc between straight pieces."""
     straight = 4.0

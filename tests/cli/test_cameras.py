@@ -11,6 +11,7 @@ ROOM = [(0, 0, 0), (8, 0, 0), (8, 0, 6), (0, 0, 6), (0, 3, 0), (8, 3, 0), (8, 3,
 GROUPS = {"floor": ["1 2 3 4"], "ceiling": ["5 8 7 6"], "door": ["1 5 6 2"],
           "walls": ["2 6 7 3", "3 7 8 4", "4 8 5 1"]}
 CAMERA = ("--fov", "90,60", "--range", "6")
+SEARCH = ("--effort", "quick", "--count", "40", "--quiet")
 
 
 def room(scale):
@@ -27,7 +28,7 @@ class Cameras(Case):
         self.write("stay.txt", "0.5 2.8 0.5 1 -0.5 1\n7.5 2.8 5.5 -1 -0.5 -1\n")
 
     def guard(self, *words, model="room.obj"):
-        self.run_text("guard", model, *words, "-o", "g.json", "--quiet")
+        self.run_text("guard", model, *words, "-o", "g.json", *SEARCH)
         self.run_text("verify", model, "g.json")
         return json.loads(self.read("g.json"))
 
@@ -61,8 +62,8 @@ class Cameras(Case):
 
     def test_poses_of_every_kind(self):
         """CSV, JSON, GUARDS.json and GLB tell the same cameras."""
-        self.run_text("guard", "room.obj", *CAMERA, "-o", "g.json", "--poses", "p.csv", "--quiet")
-        self.run_text("guard", "room.obj", *CAMERA, "-o", "g.json", "--poses", "p.json", "--quiet")
+        self.run_text("guard", "room.obj", *CAMERA, "-o", "g.json", "--poses", "p.csv", *SEARCH)
+        self.run_text("guard", "room.obj", *CAMERA, "-o", "g.json", "--poses", "p.json", *SEARCH)
         self.run_text("export", "g.json", "-o", "g.glb")
         count = len(json.loads(self.read("g.json"))["guards"])
         for name in "g.json", "p.csv", "p.json", "g.glb":
@@ -134,7 +135,7 @@ class Cameras(Case):
 
     def test_density(self):
         """The same plan for a room in metres and in millimetres; no camera counts beyond its depth."""
-        words = ("--fov", "90,60", "--resolution", "1920,1080", "--density", "recognise", "--count", "150")
+        words = ("--fov", "90,60", "--resolution", "1920,1080", "--density", "recognise")
         metres = self.guard(*words)
         self.write("mm.obj", room(1000))
         millimetres = self.guard(*words, "--unit", "mm", model="mm.obj")
@@ -181,11 +182,10 @@ class Cameras(Case):
             for option, value in asked.items():
                 self.usage_error("guard", "room.obj", "--target", "points", *sensor, option, value, "-o", "h.json",
                                  says="leave out")
-                self.run_text("guard", "room.obj", "--patch", "1", *sensor, option, value, "--effort", "quick", "-o",
-                              "g.json", "--quiet")
+                self.run_text("guard", "room.obj", "--patch", "1", *sensor, option, value, *SEARCH, "-o", "g.json")
                 self.run_text("verify", "room.obj", "g.json", *beside.get(option, []))
         self.run_text("guard", "room.obj", "--target", "points", *CAMERA, "-o", "g.json", "--table", "t.csv",
-                      "--summary", "s.csv", "--quiet")
+                      "--summary", "s.csv", *SEARCH)
         groups = [float(row["share"]) for row in self.rows("s.csv") if row["kind"] == "group"]
         self.assertTrue(groups and min(groups) > 0.9, groups)  # in parts: all but those that two cameras share
         out, _ = self.run_text("verify", "room.obj", "g.json", "--table", "t.csv")
@@ -198,8 +198,8 @@ class Cameras(Case):
         self.assertEqual({face["share"] for face in told["shares"]}, {1})
 
     def test_curve_and_matrix(self):
-        self.sample("gallery", 1000, "gallery.off")
-        self.run_text("guard", "gallery.off", "-o", "g.json", "--curve", "c.csv", "--matrix", "m.txt", "--quiet")
+        self.sample("gallery", 500, "gallery.off")
+        self.run_text("guard", "gallery.off", "-o", "g.json", "--curve", "c.csv", "--matrix", "m.txt", *SEARCH)
         curve = [(float(row["coverage"]), float(row["bound"])) for row in self.rows("c.csv")]
         self.assertEqual(len(curve), len(json.loads(self.read("g.json"))["guards"]))
         self.assertEqual(curve, sorted(curve))
@@ -214,7 +214,7 @@ class Cameras(Case):
             self.assertTrue(held and max(held) < sets)
             at += 2 + numbers[at + 1]
         self.assertEqual(at, len(numbers))
-        self.run_text("guard", "gallery.off", "-o", "g.json", "--curve", "c.svg", "--quiet")
+        self.run_text("guard", "gallery.off", "-o", "g.json", "--curve", "c.svg", *SEARCH)
         self.assertIn(b"<svg", self.read("c.svg"))
 
 

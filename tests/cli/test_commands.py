@@ -312,7 +312,7 @@ class Guard(support.Case):
         """There is a bound for all places in the line of the guards, or the reason why not."""
         for words, says in [(["--no-refine", "--target", "vertices"], r"was not sought \(--prove does\)"),
                             (["--coverage", "0.9"], r"is not sought for a part of the area \(--prove does\)"),
-                            (["--coverage", "0.9", "--prove", "--prove-work", "100000"], None), ([], None)]:
+                            (["--coverage", "0.9", "--prove", "--prove-work", "30000"], None), ([], None)]:
             text = self.run_text("guard", self.sample("gallery"), "-o", "g.json", "--count", "60", *words)[0]
             known = "lower_bound_everywhere" in json.loads(self.read("g.json"))
             self.assertEqual(known, says is None, words)
@@ -324,7 +324,7 @@ class Guard(support.Case):
         plain = self.run_json("guard", maze, "-o", "g.json", "--count", "60")
         self.assertGreater(plain.get("lower_bound_everywhere", 2), 1)
         report = self.run_json("guard", maze, "-o", "p.json", "--count", "60", "--prove",
-                               "--prove-work", "200000")
+                               "--prove-work", "50000")
         self.assertLessEqual(len(report["guards"]), len(plain["guards"]))
         self.assertLessEqual(report["lower_bound_everywhere"], report["lower_bound"])
         self.assertIs(report["optimal_everywhere"],
@@ -332,7 +332,7 @@ class Guard(support.Case):
         self.assertGreater(report["cells"], 1)
         self.run_text("verify", maze, "p.json")
         text = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
-                             "--prove-work", "100000")[0]
+                             "--prove-work", "30000")[0]
         self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed) "
                                "wherever they stand$")
 
@@ -342,7 +342,7 @@ class Guard(support.Case):
         for options in [["--coverage", "0.9"], ["--redundancy", "2"], ["--cone", "120"],
                         ["--candidates", "g.json"], ["--max-guards", "2"]]:
             out = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
-                                "--prove-work", "100000", "--refine-lines", "100000", *options)[0]
+                                "--prove-work", "20000", "--refine-lines", "20000", *options)[0]
             self.run_text("verify", maze, "p.json")
             report = json.loads(self.read("p.json"))
             if options[0] == "--max-guards":
@@ -364,7 +364,7 @@ class Guard(support.Case):
 
     def test_certificate(self):
         maze = self.sample("gallery")
-        prove = ["guard", maze, "--count", "60", "--prove", "--prove-work", "100000"]
+        prove = ["guard", maze, "--count", "60", "--prove", "--prove-work", "30000"]
         self.run_text(*prove, "-o", "plain.json")
         self.run_text(*prove, "-o", "g.json", "--certificate", "why.txt")
         self.assertEqual(self.read("plain.json"), self.read("g.json"))

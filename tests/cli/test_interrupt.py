@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Signals, time limits, and results that do not depend on threads."""
+"""Signals, time limits, and results that do not depend on the locale."""
 import json
 import os
 import signal
@@ -19,7 +19,7 @@ class Interrupt(support.Case):
     def interrupt(self, number, *words):
         names = self.names()
         with self.start("guard", self.model, "--visibility", "sweep", "--threads", "1", *words) as process:
-            self.wait_for_work(process, 1)
+            self.wait_for_work(process, 0.5)
             before = processor_time_of_ended() + processor_time(process.pid)
             process.send_signal(number)
             out, err = process.communicate()
@@ -62,7 +62,7 @@ class KeepBest(support.Case):
 
     def interrupt(self, words, times):
         with self.start(*words, "--keep-best", "--threads", "1") as process:
-            self.wait_for_work(process, 1)
+            self.wait_for_work(process, 0.5)
             for _ in range(times):
                 process.send_signal(signal.SIGINT)
                 time.sleep(0.05)
@@ -126,27 +126,7 @@ class TimeLimit(support.Case):
 
 
 class SameBytes(support.Case):
-    def test_threads(self):
-        model = self.sample("cat", 700)
-        variants = {
-            "ilp": [],
-            "greedy": ["--method", "greedy", "--candidates", "interior"],
-            "part": ["--coverage", "0.9", "--redundancy", "2", "--faces", "whole", "--count", "60",
-                     "--max-nodes", "50"],
-        }
-        for name, words in variants.items():
-            results = set()
-            for threads in ["1", "2", "3"]:
-                outputs = ["-o", "g.json", "--marks", "g.ply", "--picture", "g.png"]
-                self.run_text("guard", model, *outputs, *words, "--threads", threads, "--quiet")
-                results.add((self.read("g.json"), self.read("g.ply"), self.read("g.png")))
-            self.assertEqual(len(results), 1, name)
-
-    def test_samples(self):
-        for name in ["octopus", "knot"]:
-            self.sample(name, 2000, "a.off", "--threads", "1")
-            self.sample(name, 2000, "b.off", "--threads", "2")
-            self.assertEqual(self.read("a.off"), self.read("b.off"))
+    """For threads see test_determinism."""
 
     def test_locale(self):
         """A locale with a decimal comma changes nothing."""

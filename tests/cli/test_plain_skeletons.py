@@ -4,8 +4,8 @@
 
 usage: test_plain_skeletons.py [--all] [--long] [--only WORD] [--keep FOLDER] [--processes N]
 
-Each solid is taken as it is, and every third one also turned at random, and shaken by 1e-15 to 1e-4 of its
-size; with --all all of them. A skeleton is right if
+Every second solid is taken as it is, and every third of these also turned at random, and shaken by 1e-15 to 1e-4
+of its size; with --all all of them, in all three ways. A skeleton is right if
   - it has the loops and ends of its solid, and no two nodes coincide;
   - its ends lie between the centre of the last ball and the cap, up to a tenth of the radius, both alike;
   - that of a straight round solid is within a twentieth of the radius of the axis;
@@ -31,7 +31,7 @@ from plain_solids import add, dot
 PROGRAM = os.environ.get("STARGUARD", "build/starguard")
 LONG = 500
 AXIS, END, COPY = 0.05, 0.1, 0.02
-LEAST = {129: 116, 231: 192}  # of so many results, right in all
+LEAST = {65: 58, 231: 192}  # of so many results, right in all
 
 
 class Skeleton:
@@ -216,8 +216,8 @@ def examine(job):
     return results
 
 
-def solids_of_family(long):
-    solids = list(enumerate(plain.bases()))
+def solids_of_family(long, every):
+    solids = list(enumerate(plain.bases()))[::every]
     if long:
         rng = random.Random(500)
         solids += [(1000 + i, plain.random_base(rng)) for i in range(LONG)]
@@ -232,9 +232,10 @@ def main():
     parser.add_argument("--keep", default=None)
     parser.add_argument("--processes", type=int, default=1)
     options = parser.parse_args()
+    every = 1 if options.all or options.long or options.only else 2
     with tempfile.TemporaryDirectory() as scratch:
         jobs = [(solid, number, options.keep or scratch, options.all or options.long or number % 3 == 0)
-                for number, solid in solids_of_family(options.long) if options.only in solid.name]
+                for number, solid in solids_of_family(options.long, every) if options.only in solid.name]
         with multiprocessing.Pool(options.processes) as pool:
             results = [r for group in pool.imap(examine, jobs) for r in group]
     kinds = {}

@@ -28,7 +28,7 @@ class Forged(Case):
 
     def plan(self, *words):
         self.run_text("guard", "room.obj", *SENSOR, "--keep", "stay.txt", *words, "-o", "g.json", "--table", "t.csv",
-                      "--summary", "s.csv", "--curve", "c.csv", "--quiet", "--threads", "1")
+                      "--summary", "s.csv", "--curve", "c.csv", "--quiet", "--threads", "1", "--effort", "quick", "--count", "60")
         out, _ = self.verify("g.json", "t.csv", "s.csv", "c.csv")
         self.assertIn("verified", out)
         return json.loads(self.read("g.json"))
@@ -217,8 +217,8 @@ class Forged(Case):
         return {what for what, _ in told}
 
     def test_a_thousand(self):
-        """Of each of two plans 500, or 80 without STARGUARD_LONG."""
-        count = 500 if LONG else 80
+        """Of each of two plans 500, or 60 without STARGUARD_LONG."""
+        count = 500 if LONG else 60
         kinds = self.refuse(count, "--resolution", "1920,1080", "--density", "observe", "--tilt", "-60,0", "--without",
                             "3,-1,-1,5,4,7", "--require", "door=2,observe")
         kinds |= self.refuse(count, "--resolution", "1920,1080", "--density", "100", "--tilt", "-70,0", "--within",

@@ -23,7 +23,7 @@ PLACES = "".join(f"{x / 4} {y / 4} {z / 4}\n" for x in range(-4, 9) for y in ran
 class Forged(support.Case):
     def setUp(self):
         super().setUp()
-        self.run_text("sample", "octopus", "--vertices", "700", "-o", "m.off")
+        self.sample("octopus", 500, "m.off")
 
     def guard(self, *words, model="m.off"):
         self.run_text("guard", model, "-o", "g.json", *words)
@@ -89,7 +89,7 @@ class Forged(support.Case):
 
     def test_certificates_of_points(self):
         self.run_text("sample", "horse", "--vertices", "500", "-o", "h.off")
-        prove = ["--effort", "quick", "--prove", "--certificate"]
+        prove = ["--effort", "quick", "--count", "60", "--prove", "--certificate"]
         self.guard(*prove, "faces.txt", model="h.off")
         faces = self.read("g.json")
         bound = self.guard("--target", "points", *prove, "points.txt", model="h.off")["lower_bound_everywhere"]
@@ -122,7 +122,7 @@ class Forged(support.Case):
         forged = self.guard("--method", "ilp", "--no-refine")
         forged["options"]["redundancy"] = 2
         self.refused(forged, "what fewer than 2 guards see")
-        forged = self.guard("--no-refine", "--within", "-1,-1,0,1,1,1", "--clearance", "0.01")
+        forged = self.guard("--no-refine", "--within", "-1,-1,0,1,1,1", "--clearance", "0.01", "--count", "60")
         forged["options"]["redundancy"] = 2
         self.refused(forged, "what fewer than 2 guards see")
 
@@ -165,7 +165,7 @@ class Forged(support.Case):
     # ---- pieces ----
 
     def decompose(self, *words, model="m.off"):
-        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "500", *words)
+        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "100", *words)
         return json.loads(self.read("p.json"))
 
     def refused_pieces(self, report, text, model="m.off"):
@@ -201,7 +201,7 @@ class Forged(support.Case):
 
     def test_bound_for_pieces(self):
         self.run_text("sample", "gallery", "--vertices", "500", "-o", "maze.off")
-        prove = ["--prove", "--prove-work", "300000"]
+        prove = ["--prove", "--prove-work", "60000"]
         self.decompose(*prove, model="maze.off")
         plain = self.read("p.json")
         report = self.decompose(*prove, "--certificate", "why.txt", model="maze.off")
@@ -226,7 +226,7 @@ class Forged(support.Case):
         # a certificate of another model, of guards, and damaged ones
         self.run_text("decompose", "m.off", "-o", "o.vtk", "--effort", "10", *prove,
                       "--certificate", "other.txt")
-        self.run_text("guard", "maze.off", "-o", "g.json", *prove, "--certificate", "guards.txt")
+        self.run_text("guard", "maze.off", "-o", "g.json", "--count", "60", *prove, "--certificate", "guards.txt")
         for name, text in [("other.txt", "another model"), ("guards.txt", "not about corners")]:
             out, _ = self.run_text("verify", "maze.off", "p.vtk", "p.json", name, status=4)
             self.assertRegex(out, "FAILED the certificate is about pieces.*" + text)
@@ -324,9 +324,9 @@ End
         for which, model in enumerate(MODELS):
             self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
             for question in QUESTIONS if support.LONG else QUESTIONS[which::3]:
-                count = () if "--count" in question else ("--count", "100")
+                count = () if "--count" in question else ("--count", "60")
                 with self.subTest(model=model, question=question):
-                    self.guard("--refine-lines", "100000", *count, *question.split())
+                    self.guard("--refine-lines", "20000", *count, *question.split())
                     self.run_text("verify", "m.off", "g.json")
 
     def test_genuine_pieces(self):

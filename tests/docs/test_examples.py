@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import unittest
 
-from fixtures import PROGRAM, Fixtures
+from fixtures import PROGRAM, Fixtures, quick
 
 TABLE = json.loads(subprocess.run([PROGRAM, "help", "--json"], check=True,
                                   capture_output=True).stdout)
@@ -46,7 +46,7 @@ class Examples(unittest.TestCase):
             if "| jq" in line and shutil.which("jq") is None:
                 print(f"skipped, no jq: {line}")
                 continue
-            self.fixtures.shell(folder, line)
+            self.fixtures.shell(folder, quick(line))
 
     def test_comments(self):
         """Examples are commands with a line before the first that says what is done."""

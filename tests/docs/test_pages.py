@@ -3,8 +3,9 @@
 
 A block marked `sh` is run, all blocks of a page in one folder in their order (it holds models under the
 names that the pages use, see fixtures.py). In a block marked `console`, lines that begin with "$ " are
-run, and the lines below have to be among what comes out, in their order. A block that cannot be run
-here has a comment <!-- not run: REASON --> before it."""
+run, and the lines below have to be among what comes out, in their order. `make check` runs blocks of `sh`
+quickly: smaller models, shorter searches (see fixtures.py). A block that cannot be run here has a
+comment <!-- not run: REASON --> before it."""
 import csv
 import glob
 import os
@@ -12,7 +13,7 @@ import re
 import shutil
 import unittest
 
-from fixtures import PROGRAM, SOURCE, Fixtures
+from fixtures import PROGRAM, SOURCE, Fixtures, quick
 
 # Pages that the build makes stand among those of docs/ when they are installed.
 BUILD = os.environ.get("STARGUARD_BUILD", os.path.dirname(PROGRAM))
@@ -72,7 +73,7 @@ class Pages(unittest.TestCase):
             if reason:
                 print(f"skipped in {page}, {reason}: {text.split(chr(10))[0]}")
             elif language == "sh":
-                self.fixtures.shell(folder, text)
+                self.fixtures.shell(folder, quick(text))
             else:
                 self.run_console(folder, text)
 

@@ -60,7 +60,7 @@ static void check_folder(const char *folder, size_t *checked) {
             continue;
         snprintf(path, sizeof path, "%s/%s/%s", data, folder, file->d_name);
         test_ok(context, starg_mesh_read(context, path, &mesh));
-        if (starg_mesh_vertex_count(mesh) <= test_rounds(500, 1200)) {
+        if (starg_mesh_vertex_count(mesh) <= test_rounds(1000, 1200)) {
             check_model(context, file->d_name, mesh);
             ++*checked;
         }

@@ -59,15 +59,15 @@ const char *test_shared_data(void) {
 }
 
 #ifdef __SANITIZE_ADDRESS__
-enum { SANITIZED_SHARE = 4 };
+enum { SHARE = 4 };
 #else
-enum { SANITIZED_SHARE = 1 };
+enum { SHARE = 2 };
 #endif
 
 size_t test_rounds(size_t usual, size_t thorough) {
     const char *percent = getenv("STARGUARD_LONG");
     if (percent == NULL)
-        return (usual + SANITIZED_SHARE - 1) / SANITIZED_SHARE;
+        return (usual + SHARE - 1) / SHARE;
     size_t rounds = thorough * strtoul(percent, NULL, 10) / 100;
     return rounds > usual ? rounds : usual;
 }

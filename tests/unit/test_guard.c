@@ -329,55 +329,6 @@ static void test_bad_options(void **state) {
     test_context_free(context);
 }
 
-/* An allocator that fails at the n-th call, for every n: correct status, no leaks. */
-typedef struct failing {
-    size_t calls, fail_at;
-} failing;
-
-static void *failing_allocate(void *user, size_t size) {
-    failing *f = user;
-    return ++f->calls == f->fail_at ? NULL : malloc(size);
-}
-
-static void failing_release(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
-static void test_memory(void **state) {
-    (void)state;
-    starg_context *plain = test_context(1);
-    starg_sample_options sample;
-    starg_mesh *mesh = NULL;
-    starg_sample_options_default(&sample);
-    sample.vertex_count = 500;
-    test_ok(plain, starg_sample_create(plain, "torus", &sample, &mesh));
-    for (size_t n = 2;; n += 1 + n / 40) {
-        failing f = {0, n};
-        starg_context_options options;
-        starg_context *context = NULL;
-        starg_solid *solid = NULL;
-        starg_guards *guards = NULL;
-        starg_guard_options guarding = small_options();
-        guarding.candidate_count = 30;
-        starg_context_options_default(&options);
-        options.threads = 1;
-        options.allocator = (starg_allocator){failing_allocate, failing_release, &f};
-        assert_int_equal(starg_context_create(&options, &context), STARG_OK);
-        starg_status status = starg_solid_create(context, mesh, &solid);
-        if (status == STARG_OK)
-            status = starg_guard(context, solid, &guarding, &guards);
-        assert_true(status == STARG_OK || status == STARG_ERROR_MEMORY);
-        starg_guards_free(context, guards);
-        starg_solid_free(solid);
-        test_context_free(context);
-        if (f.calls < n)
-            break;
-    }
-    starg_mesh_free(mesh);
-    test_context_free(plain);
-}
-
 /* Given guards, in any order and repeated: the result reports what they see, and verifies. A point
  * that is not inside is rejected. */
 static void test_given_guards(void **state) {
@@ -511,7 +462,6 @@ int main(void) {
                                        cmocka_unit_test(test_lines_of_points),
                                        cmocka_unit_test(test_bad_files),
                                        cmocka_unit_test(test_bad_options),
-                                       cmocka_unit_test(test_memory),
                                        cmocka_unit_test(test_given_guards)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

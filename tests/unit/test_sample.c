@@ -428,7 +428,8 @@ static void proportions(const starg_mesh *mesh, double out[4]) {
     out[3] = volume_of(mesh) / box;
 }
 
-/* All members of all families are as every sample, and no two are alike. */
+/* No two members of a family are alike, and members are as every sample: two of each family, or
+ * all. */
 static void members_differ(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -442,7 +443,8 @@ static void members_differ(void **state) {
         assert_int_equal(info->poses, 10);
         for (int member = 0; member < info->poses; member++) {
             starg_mesh *mesh = make(context, info->name, member, 500);
-            check_mesh(info, member, mesh, 500, 0.1);
+            if (member % test_step() == 0)
+                check_mesh(info, member, mesh, 500, 0.1);
             proportions(mesh, measures[member]);
             starg_mesh_free(mesh);
             for (int other = 0; other < member; other++) {

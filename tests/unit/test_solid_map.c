@@ -140,35 +140,22 @@ static int free_cats(void **state) {
     return 0;
 }
 
-static void check_pair(starg_mesh *a, starg_mesh *b) {
-    starg_context *one = test_context(1), *many = test_context(3);
-    starg_solid_map *map, *same;
-    test_ok(one, starg_solid_map_create(one, a, starg_mesh_vertices(b), &QUICK, &map));
-    test_ok(many, starg_solid_map_create(many, a, starg_mesh_vertices(b), &QUICK, &same));
-    check(one, a, b, map);
+/* The same with three threads. */
+static void test_poses(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    need_cats();
+    starg_context *many = test_context(3);
+    const starg_solid_map *map = cats.map;
+    starg_solid_map *same;
+    test_ok(many, starg_solid_map_create(many, cats.a, starg_mesh_vertices(cats.b), &QUICK, &same));
+    check(cats.context, cats.a, cats.b, map);
     assert_int_equal(map->count, same->count);
     assert_memory_equal(map->images, same->images, 3 * map->vertex_count * sizeof *map->images);
     assert_memory_equal(map->labels, same->labels, map->count * sizeof *map->labels);
-    starg_solid_map_free(one, map);
     starg_solid_map_free(many, same);
-    test_context_free(one);
     test_context_free(many);
-}
-
-static void test_poses(void **state) {
-    (void)state;
-    static const char *const names[] = {"cat"};
-    if (!has_tetgen())
-        skip();
-    starg_context *context = test_context(1);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        starg_mesh *a = test_pose(context, names[i], 0, VERTICES),
-                   *b = test_pose(context, names[i], 1 + (int)i, VERTICES);
-        check_pair(a, b);
-        starg_mesh_free(a);
-        starg_mesh_free(b);
-    }
-    test_context_free(context);
 }
 
 /* Cuts through tetrahedra leave few pieces of a bent ring: some 20 without. */
@@ -179,7 +166,7 @@ static void test_few_pieces(void **state) {
     starg_context *context = test_context(1);
     starg_mesh *a = test_pose(context, "torus", 0, 800), *b = test_pose(context, "torus", 1, 800);
     starg_solid_map *map;
-    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), NULL, &map));
+    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
     print_message("%zu pieces\n", map->piece_count);
     assert_true(map->piece_count <= 8);
     starg_solid_map_free(context, map);
@@ -206,19 +193,19 @@ static double *twist(const starg_mesh *a, double turn, double middle, double str
 /* Genus 6, twisted. */
 static void test_handles(void **state) {
     (void)state;
-    static const char *const names[] = {"plate"};
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        starg_mesh *a = test_sample_mesh(context, names[i], VERTICES);
-        double *images = twist(a, 0.6, 0, 1.3, 1);
-        starg_mesh *b = moved(context, a, images);
-        check_pair(a, b);
-        starg_mesh_free(a);
-        starg_mesh_free(b);
-        free(images);
-    }
+    starg_mesh *a = test_sample_mesh(context, "plate", VERTICES);
+    double *images = twist(a, 0.6, 0, 1.3, 1);
+    starg_mesh *b = moved(context, a, images);
+    starg_solid_map *map;
+    test_ok(context, starg_solid_map_create(context, a, images, &QUICK, &map));
+    check(context, a, b, map);
+    starg_solid_map_free(context, map);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    free(images);
     test_context_free(context);
 }
 
@@ -428,18 +415,11 @@ static void test_overlay(void **state) {
     (void)state;
     if (!has_tetgen())
         skip();
-    starg_context *context = test_context(1);
-    starg_mesh *a = test_pose(context, "dog", 0, VERTICES),
-               *pose = test_pose(context, "dog", 1, VERTICES), *b = flipped(context, pose, 12);
-    starg_solid_map *map;
-    check_overlay(a, b);
-    test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
-    assert_false(is_verified(context, a, b, map, false)); /* without it */
-    starg_solid_map_free(context, map);
-    starg_mesh_free(a);
+    need_cats();
+    starg_mesh *b = flipped(cats.context, cats.b, 12);
+    check_overlay(cats.a, b);
+    assert_false(is_verified(cats.context, cats.a, b, cats.map, false)); /* without it */
     starg_mesh_free(b);
-    starg_mesh_free(pose);
-    test_context_free(context);
 }
 
 /* Balls with other faces: edges have many points. One faces inward. */

@@ -597,7 +597,7 @@ test("a proof shows its witnesses and the boxes of guards", async () => {
 test("a map shows both solids by one camera, alike in colours, patterns and cuts", async () => {
     starguard("sample", "human", "--vertices", "500", "-o", "a.off");
     starguard("sample", "human", "--pose", "1", "--vertices", "500", "-o", "b.off");
-    starguard("map", "--solid", "a.off", "b.off", "-o", "map.vtu");
+    starguard("map", "--solid", "a.off", "b.off", "--steps", "20", "-o", "map.vtu");
     starguard("view", "map.vtu", "-o", "map.html");
     /** Colours of the pixels of either half that are not the background: their number. */
     const colors = (page) =>
