@@ -20,7 +20,7 @@
 
 static const char STAGE[] = "medial complex";
 
-enum { BLOCK = 256 };
+enum { BLOCK = 256, MOST_STEPS = 1000 };
 
 /* Threshold on six times the volume over the cubed longest edge. */
 static const double FLAT = 1e-4;
@@ -33,7 +33,6 @@ typedef struct builder {
     const double *points;
     const delaunay *tetrahedra;
     uint32_t *node_of; /* per tetrahedron, or EDGE_NONE */
-    uint8_t *borders;  /* per node: bit k: the face opposite corner k bounds the region */
     bool *poor;        /* per node: its tetrahedron is flat */
     double limit;      /* upper bound on radii of interior balls */
     edge_table edges;
@@ -52,36 +51,49 @@ static starg_status take_nodes(builder *b, const bool *inside) {
     NEW(b->context, STAGE, c->corners, c->node_count);
     NEW(b->context, STAGE, c->centres, c->node_count);
     NEW(b->context, STAGE, c->radii, c->node_count);
-    NEW_ZERO(b->context, STAGE, b->borders, c->node_count);
     NEW(b->context, STAGE, b->poor, c->node_count);
     for (size_t t = 0; t < b->tetrahedra->count; t++)
         if (inside[t])
             memcpy(c->corners[b->node_of[t]], b->tetrahedra->tetrahedra[t], sizeof *c->corners);
-    for (size_t t = 0; t < b->tetrahedra->count; t++)
-        for (int k = 0; inside[t] && k < 4; k++) {
-            uint32_t next = b->tetrahedra->neighbours[t][k];
-            if (next == DELAUNAY_NONE || !inside[next])
-                b->borders[b->node_of[t]] |= (uint8_t)(1 << k);
-        }
     return STARG_OK;
 }
 
-/* Is p beyond a face of the tetrahedron that bounds the region? Rounded: it does not affect
- * topology. */
-static bool is_beyond_border(const builder *b, size_t node, const double *const v[4],
-                             const double p[3]) {
-    for (int k = 0; k < 4; k++) {
-        if (!(b->borders[node] >> k & 1))
+static void get_corners(const builder *b, uint32_t t, const double *v[4]) {
+    for (int k = 0; k < 4; k++)
+        v[k] = b->points + 3 * (size_t)b->tetrahedra->tetrahedra[t][k];
+}
+
+/* The first face of a tetrahedron with p beyond it, other than that to `from`; 4 if there is none.
+ * Rounded: it does not affect topology. */
+static int face_towards(const builder *b, uint32_t t, uint32_t from, const double p[3]) {
+    const double *v[4];
+    get_corners(b, t, v);
+    int k = 0;
+    for (; k < 4; k++) {
+        double normal[3], to_p[3];
+        if (b->tetrahedra->neighbours[t][k] == from)
             continue;
-        const double *const w[3] = {v[(k + 1) % 4], v[(k + 2) % 4], v[(k + 3) % 4]};
-        double normal[3], to_p[3], to_corner[3];
-        vec3_triangle_normal(w[0], w[1], w[2], normal);
-        vec3_subtract(p, w[0], to_p);
-        vec3_subtract(v[k], w[0], to_corner);
-        if (!(vec3_dot(normal, to_p) * vec3_dot(normal, to_corner) > 0))
-            return true;
+        vec3_triangle_normal(v[(k + 1) % 4], v[(k + 2) % 4], v[(k + 3) % 4], normal);
+        vec3_subtract(p, v[(k + 1) % 4], to_p);
+        if (vec3_dot(normal, to_p) * (k % 2 == 0 ? 1 : -1) < 0)
+            break;
     }
-    return false;
+    return k;
+}
+
+/* Is p in the region? Walks there from a tetrahedron. */
+static bool is_in_region(const builder *b, uint32_t t, const double p[3]) {
+    uint32_t from = DELAUNAY_NONE - 1;
+    for (int step = 0; step < MOST_STEPS; step++) {
+        int k = face_towards(b, t, from, p);
+        if (k == 4)
+            return b->node_of[t] != EDGE_NONE;
+        from = t;
+        t = b->tetrahedra->neighbours[t][k];
+        if (t == DELAUNAY_NONE)
+            return false;
+    }
+    return starg_solid_contains(b->solid, p);
 }
 
 /* Flat: four nearly concyclic points, whose circumsphere is ill-conditioned. */
@@ -114,15 +126,15 @@ static double distance_from_faces(const double *const v[4], const double p[3]) {
     return least;
 }
 
-static void place_node(const builder *b, size_t node) {
+static void place_node(const builder *b, uint32_t t) {
     medial_complex *c = b->complex;
+    uint32_t node = b->node_of[t];
     const double *v[4];
-    for (int k = 0; k < 4; k++)
-        v[k] = b->points + 3 * (size_t)c->corners[node][k];
+    get_corners(b, t, v);
     medial_ball ball;
     b->poor[node] = is_flat(v);
     if (b->poor[node] || !medial_circumscribe(v, &ball) || ball.radius > b->limit ||
-        is_beyond_border(b, node, v, ball.centre) || !starg_solid_contains(b->solid, ball.centre)) {
+        !is_in_region(b, t, ball.centre)) {
         for (int j = 0; j < 3; j++)
             ball.centre[j] = 0.25 * v[0][j] + 0.25 * v[1][j] + 0.25 * v[2][j] + 0.25 * v[3][j];
         ball.radius = distance_from_faces(v, ball.centre);
@@ -204,8 +216,9 @@ static starg_status place_block(starg_context *context, void *shared, void *scra
     const builder *b = shared;
     (void)context;
     (void)scratch;
-    for (size_t n = item * BLOCK; n < (item + 1) * BLOCK && n < b->complex->node_count; n++)
-        place_node(b, n);
+    for (size_t t = item * BLOCK; t < (item + 1) * BLOCK && t < b->tetrahedra->count; t++)
+        if (b->node_of[t] != EDGE_NONE)
+            place_node(b, (uint32_t)t);
     return STARG_OK;
 }
 
@@ -310,7 +323,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
     b.complex = complex;
     STARG_TRY(take_nodes(&b, inside));
     starg_parallel_loop loop = {.stage = STAGE,
-                                .count = (complex->node_count + BLOCK - 1) / BLOCK,
+                                .count = (tetrahedra->count + BLOCK - 1) / BLOCK,
                                 .shared = &b,
                                 .item = place_block};
     STARG_TRY(starg_parallel_for(context, &loop));
@@ -321,7 +334,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
     *out = complex;
     complex = NULL;
 done:
-    RELEASE(b.node_of, b.borders, b.poor);
+    RELEASE(b.node_of, b.poor);
     edge_table_free(context, &b.edges);
     complex_free(complex);
     return status;
