@@ -15,10 +15,10 @@
 static const char STAGE[] = "surface samples";
 
 /* Long thin faces would need far more points than wanted. */
-/* How far points move at most, of the edges at them; far less than the share of radii within which
- * centres are one. */
-static const double MOVE = 1e-5;
 enum { MAX_ROUNDS = 24, MOST_ADDED = 2 };
+
+/* How far points move, of the edges at them. */
+static const double MOVE = 1e-5;
 
 /* Numbers the edges to split, those longer than `longest`; each occurs in two faces and is tested
  * once. */
@@ -168,9 +168,9 @@ static void move_points(surface_samples *samples) {
         starg_rng rng = starg_rng_make(0, STREAM_SAMPLES, f);
         for (int j = 0; j < 3; j++) {
             double along = MOVE * starg_rng_unit(&rng);
-            double up = length > 0 ? MOVE * (starg_rng_unit(&rng) - 0.5) / length : 0;
+            double up = MOVE * (starg_rng_unit(&rng) - 0.5) / length;
             vec3_subtract(q, p, d);
-            for (int k = 0; k < 3; k++)
+            for (int k = 0; k < 3 && length > 0 && length < INFINITY; k++)
                 p[k] += along * d[k] + up * n[k];
             double *first = p;
             p = q;
@@ -181,7 +181,7 @@ static void move_points(surface_samples *samples) {
 }
 
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
-                            surface_samples *samples) {
+                            bool moved, surface_samples *samples) {
     starg_status status = STARG_OK;
     *samples = (surface_samples){0};
     STARG_TRY(copy_mesh(context, solid->mesh, samples));
@@ -193,7 +193,8 @@ starg_status samples_create(starg_context *context, const starg_solid *solid, si
         STARG_TRY(starg_check_cancel(context, STAGE));
         STARG_TRY(refine(context, samples, longest, &splits));
     }
-    move_points(samples);
+    if (moved)
+        move_points(samples);
 done:
     if (status != STARG_OK)
         samples_free(samples);

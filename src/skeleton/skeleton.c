@@ -120,8 +120,15 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
     surface_samples samples = {0};
     conformed results[CONFORM_RESULTS] = {0};
     size_t count;
-    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
+    bool moved = solid->check->embedded;
+    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, moved, &samples));
     STARG_TRY(conform_samples(context, &samples, results, &count));
+    if (moved && results[0].lost > 0) { /* too thin to be moved */
+        for (size_t i = 0; i < CONFORM_RESULTS; i++)
+            conformed_free(&results[i]);
+        STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, false, &samples));
+        STARG_TRY(conform_samples(context, &samples, results, &count));
+    }
     /* Counts decide between strategies that lose faces. If the surface intersects itself, none is
      * right. */
     size_t judged = results[0].lost > 0 && solid->check->embedded ? count : 1;
