@@ -12,7 +12,6 @@
 
 #include <stdlib.h>
 
-#include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
 #include "skeleton/graph.h"
@@ -20,7 +19,7 @@
 
 static const char STAGE[] = "medial complex";
 
-enum { BLOCK = 256 };
+enum { MOST_STEPS = 1000 };
 
 /* Threshold on six times the volume over the cubed longest edge. */
 static const double FLAT = 1e-4;
@@ -32,10 +31,10 @@ typedef struct builder {
     const starg_solid *solid;
     const double *points;
     const delaunay *tetrahedra;
-    uint32_t *node_of; /* per tetrahedron, or EDGE_NONE */
-    uint8_t *borders;  /* per node: bit k: the face opposite corner k bounds the region */
-    bool *poor;        /* per node: its tetrahedron is flat */
-    double limit;      /* upper bound on radii of interior balls */
+    uint32_t *node_of;   /* per tetrahedron, or EDGE_NONE */
+    uint32_t *centre_in; /* per tetrahedron: that which holds its centre, if known */
+    bool *poor;          /* per node: its tetrahedron is flat */
+    double limit;        /* upper bound on radii of interior balls */
     edge_table edges;
     medial_complex *complex;
 } builder;
@@ -52,36 +51,59 @@ static starg_status take_nodes(builder *b, const bool *inside) {
     NEW(b->context, STAGE, c->corners, c->node_count);
     NEW(b->context, STAGE, c->centres, c->node_count);
     NEW(b->context, STAGE, c->radii, c->node_count);
-    NEW_ZERO(b->context, STAGE, b->borders, c->node_count);
     NEW(b->context, STAGE, b->poor, c->node_count);
+    NEW(b->context, STAGE, b->centre_in, b->tetrahedra->count);
+    memset(b->centre_in, 0xff, b->tetrahedra->count * sizeof *b->centre_in);
     for (size_t t = 0; t < b->tetrahedra->count; t++)
         if (inside[t])
             memcpy(c->corners[b->node_of[t]], b->tetrahedra->tetrahedra[t], sizeof *c->corners);
-    for (size_t t = 0; t < b->tetrahedra->count; t++)
-        for (int k = 0; inside[t] && k < 4; k++) {
-            uint32_t next = b->tetrahedra->neighbours[t][k];
-            if (next == DELAUNAY_NONE || !inside[next])
-                b->borders[b->node_of[t]] |= (uint8_t)(1 << k);
-        }
     return STARG_OK;
 }
 
-/* Is p beyond a face of the tetrahedron that bounds the region? Rounded: it does not affect
- * topology. */
-static bool is_beyond_border(const builder *b, size_t node, const double *const v[4],
-                             const double p[3]) {
-    for (int k = 0; k < 4; k++) {
-        if (!(b->borders[node] >> k & 1))
+static void get_corners(const builder *b, uint32_t t, const double *v[4]) {
+    for (int k = 0; k < 4; k++)
+        v[k] = b->points + 3 * (size_t)b->tetrahedra->tetrahedra[t][k];
+}
+
+/* The first face of a tetrahedron with p beyond it, other than that to `from`; 4 if there is none.
+ * Rounded: it does not affect topology. */
+static int face_towards(const builder *b, uint32_t t, uint32_t from, const double p[3]) {
+    const double *v[4];
+    get_corners(b, t, v);
+    int k = 0;
+    for (; k < 4; k++) {
+        double normal[3], to_p[3];
+        if (from != DELAUNAY_NONE && b->tetrahedra->neighbours[t][k] == from)
             continue;
-        const double *const w[3] = {v[(k + 1) % 4], v[(k + 2) % 4], v[(k + 3) % 4]};
-        double normal[3], to_p[3], to_corner[3];
-        vec3_triangle_normal(w[0], w[1], w[2], normal);
-        vec3_subtract(p, w[0], to_p);
-        vec3_subtract(v[k], w[0], to_corner);
-        if (!(vec3_dot(normal, to_p) * vec3_dot(normal, to_corner) > 0))
-            return true;
+        vec3_triangle_normal(v[(k + 1) % 4], v[(k + 2) % 4], v[(k + 3) % 4], normal);
+        vec3_subtract(p, v[(k + 1) % 4], to_p);
+        if (vec3_dot(normal, to_p) * (k % 2 == 0 ? 1 : -1) < 0)
+            break;
     }
-    return false;
+    return k;
+}
+
+/* Is the centre of the ball of a tetrahedron in the region? Walks there, from where the walk of a
+ * neighbour ended. */
+static bool is_in_region(builder *b, uint32_t t, const double p[3]) {
+    uint32_t at = t, from = DELAUNAY_NONE;
+    for (int k = 0; k < 4; k++) {
+        uint32_t next = b->tetrahedra->neighbours[t][k];
+        if (next != DELAUNAY_NONE && b->centre_in[next] != EDGE_NONE)
+            at = b->centre_in[next];
+    }
+    for (int step = 0; step < MOST_STEPS; step++) {
+        int k = face_towards(b, at, from, p);
+        if (k == 4) {
+            b->centre_in[t] = at;
+            return b->node_of[at] != EDGE_NONE;
+        }
+        from = at;
+        at = b->tetrahedra->neighbours[at][k];
+        if (at == DELAUNAY_NONE)
+            return false;
+    }
+    return starg_solid_contains(b->solid, p);
 }
 
 /* Flat: four nearly concyclic points, whose circumsphere is ill-conditioned. */
@@ -114,15 +136,15 @@ static double distance_from_faces(const double *const v[4], const double p[3]) {
     return least;
 }
 
-static void place_node(const builder *b, size_t node) {
+static void place_node(builder *b, uint32_t t) {
     medial_complex *c = b->complex;
+    uint32_t node = b->node_of[t];
     const double *v[4];
-    for (int k = 0; k < 4; k++)
-        v[k] = b->points + 3 * (size_t)c->corners[node][k];
+    get_corners(b, t, v);
     medial_ball ball;
     b->poor[node] = is_flat(v);
     if (b->poor[node] || !medial_circumscribe(v, &ball) || ball.radius > b->limit ||
-        is_beyond_border(b, node, v, ball.centre) || !starg_solid_contains(b->solid, ball.centre)) {
+        !is_in_region(b, t, ball.centre)) {
         for (int j = 0; j < 3; j++)
             ball.centre[j] = 0.25 * v[0][j] + 0.25 * v[1][j] + 0.25 * v[2][j] + 0.25 * v[3][j];
         ball.radius = distance_from_faces(v, ball.centre);
@@ -197,15 +219,6 @@ static starg_status place_flat_nodes(builder *b) {
             vec3_copy(c->centres[giver[n]], c->centres[n]);
             c->radii[n] = c->radii[giver[n]];
         }
-    return STARG_OK;
-}
-
-static starg_status place_block(starg_context *context, void *shared, void *scratch, size_t item) {
-    const builder *b = shared;
-    (void)context;
-    (void)scratch;
-    for (size_t n = item * BLOCK; n < (item + 1) * BLOCK && n < b->complex->node_count; n++)
-        place_node(b, n);
     return STARG_OK;
 }
 
@@ -309,11 +322,9 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
     complex->point_count = point_count;
     b.complex = complex;
     STARG_TRY(take_nodes(&b, inside));
-    starg_parallel_loop loop = {.stage = STAGE,
-                                .count = (complex->node_count + BLOCK - 1) / BLOCK,
-                                .shared = &b,
-                                .item = place_block};
-    STARG_TRY(starg_parallel_for(context, &loop));
+    for (uint32_t t = 0; t < tetrahedra->count; t++)
+        if (inside[t])
+            place_node(&b, t);
     STARG_TRY(take_links(&b));
     STARG_TRY(place_flat_nodes(&b));
     STARG_TRY(take_edges(&b));
@@ -321,7 +332,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
     *out = complex;
     complex = NULL;
 done:
-    RELEASE(b.node_of, b.borders, b.poor);
+    RELEASE(b.node_of, b.centre_in, b.poor);
     edge_table_free(context, &b.edges);
     complex_free(complex);
     return status;

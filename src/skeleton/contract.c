@@ -8,11 +8,11 @@
  * the cuts and not their geometry. Shaken a little, the nodes lie close together instead.
  *
  * Stages: nodes joined by links are gathered about the largest ball whose centre is within a small
- * share of its radius; not farther, so that a finely sampled axis stays an axis. The links and
- * sheets within a cluster are then contracted: first a spanning tree, then again and again a sheet
- * of which one link is left, together with that link. Each is the contraction of a contractible
- * subcomplex, hence the homotopy type stays, whatever the coordinates are. A cluster of which links
- * or sheets remain (it holds a loop or a void) is given up.
+ * share of its radius; not farther, so that a finely sampled axis stays an axis. A cluster, with
+ * the links and sheets within, is then contracted to a point if it is contractible, hence the
+ * homotopy type stays, whatever the coordinates are. It is if it collapses to a tree: again and
+ * again a sheet and a link that bounds no other. In which order does not matter. A cluster that
+ * does not (it holds a loop or a void) is given up.
  *
  * Every sheet and link that remains is as before, but that its ends may be clusters: a sheet with a
  * free link still collapses. Between two clusters there may be several links.
@@ -40,12 +40,11 @@ typedef struct seed {
 typedef struct contractor {
     starg_context *context;
     medial_complex *complex;
-    uint32_t *leader;  /* per node: that of its cluster */
-    bool *given_up;    /* per leader */
-    bool *contracted;  /* per link */
-    uint32_t *pending; /* per edge: links of its sheet that are not contracted */
-    bool *within;      /* per edge: are all links of its sheet in one cluster, and is it a sheet? */
-    bool *paired;      /* per edge: contracted with its last link */
+    uint32_t *leader; /* per node: that of its cluster */
+    bool *given_up;   /* per leader */
+    uint8_t *pending; /* per link: sheets within its cluster that are not collapsed */
+    bool *within;     /* per edge: are all links of its sheet in one cluster, and is it a sheet? */
+    bool *collapsed;  /* per edge */
     STARG_ARRAY(uint32_t) queue;
 } contractor;
 
@@ -120,73 +119,58 @@ static bool is_within(const contractor *k, size_t link) {
     return k->leader[ends[0]] == k->leader[ends[1]];
 }
 
-static starg_status contract_link(contractor *k, size_t link) {
-    k->contracted[link] = true;
-    for (int j = 0; j < 3; j++) {
-        uint32_t edge = k->complex->link_edges[link][j];
-        if (--k->pending[edge] == 1 && k->within[edge])
-            PUSH(k->context, STAGE, &k->queue, edge);
-    }
-    return STARG_OK;
-}
-
-static void count_pending(contractor *k) {
+static void find_sheets(contractor *k) {
     const medial_complex *c = k->complex;
     memcpy(k->within, c->sheet, c->edge_count * sizeof *k->within);
     for (size_t l = 0; l < c->link_count; l++)
-        for (int j = 0; j < 3; j++) {
-            k->pending[c->link_edges[l][j]]++;
-            if (!is_within(k, l))
-                k->within[c->link_edges[l][j]] = false;
-        }
+        for (int j = 0; j < 3 && !is_within(k, l); j++)
+            k->within[c->link_edges[l][j]] = false;
 }
 
-static starg_status contract_trees(contractor *k) {
+/* Collapses the sheets of all clusters. */
+static starg_status collapse(contractor *k) {
     const medial_complex *c = k->complex;
-    SCOPED uint32_t *sets = NULL;
-    NEW(k->context, STAGE, sets, c->node_count);
-    sets_make(sets, c->node_count);
     k->queue.count = 0;
-    for (size_t l = 0; l < c->link_count; l++) {
-        uint32_t a = sets_find(sets, c->links[l][0]), b = sets_find(sets, c->links[l][1]);
-        if (!is_within(k, l) || a == b)
-            continue;
-        sets_join(sets, a, b);
-        TRY(contract_link(k, l));
+    for (uint32_t l = 0; l < c->link_count; l++) {
+        for (int j = 0; j < 3; j++)
+            k->pending[l] += k->within[c->link_edges[l][j]];
+        if (k->pending[l] == 1)
+            PUSH(k->context, STAGE, &k->queue, l);
     }
-    return STARG_OK;
-}
-
-/* Contracts sheets with their last links, which leaves others with one. */
-static starg_status contract_sheets(contractor *k) {
-    const medial_complex *c = k->complex;
-    while (k->queue.count > 0) {
-        uint32_t edge = k->queue.data[--k->queue.count];
-        if (k->pending[edge] != 1)
-            continue;
-        k->paired[edge] = true;
-        for (uint32_t i = c->first_link[edge]; i < c->first_link[edge + 1]; i++)
-            if (!k->contracted[c->edge_links[i]])
-                TRY(contract_link(k, c->edge_links[i]));
-    }
-    return STARG_OK;
-}
-
-/* Clusters of which something is left. */
-static void give_up(contractor *k) {
-    const medial_complex *c = k->complex;
-    for (size_t l = 0; l < c->link_count; l++) {
-        uint32_t leader = k->leader[c->links[l][0]];
-        if (!is_within(k, l))
-            continue;
-        if (!k->contracted[l])
-            k->given_up[leader] = true;
-        for (int j = 0; j < 3; j++) {
-            uint32_t edge = c->link_edges[l][j];
-            if (k->within[edge] && !k->paired[edge])
-                k->given_up[leader] = true;
+    for (size_t i = 0; i < k->queue.count; i++) {
+        uint32_t link = k->queue.data[i];
+        for (int j = 0; j < 3 && k->pending[link] == 1; j++) {
+            uint32_t edge = c->link_edges[link][j];
+            if (!k->within[edge] || k->collapsed[edge])
+                continue;
+            k->collapsed[edge] = true;
+            for (uint32_t n = c->first_link[edge]; n < c->first_link[edge + 1]; n++)
+                if (--k->pending[c->edge_links[n]] == 1)
+                    PUSH(k->context, STAGE, &k->queue, c->edge_links[n]);
         }
     }
+    return STARG_OK;
+}
+
+/* Clusters that have not collapsed to a tree: to a graph with one more node than links, since they
+ * are connected. */
+static starg_status give_up(contractor *k) {
+    const medial_complex *c = k->complex;
+    SCOPED uint32_t *links = NULL; /* of a cluster, less its nodes and sheets, modulo 2^32 */
+    NEW_ZERO(k->context, STAGE, links, c->node_count);
+    for (size_t v = 0; v < c->node_count; v++)
+        links[k->leader[v]]--;
+    for (size_t l = 0; l < c->link_count; l++)
+        links[k->leader[c->links[l][0]]] += is_within(k, l);
+    for (uint32_t edge = 0; edge < c->edge_count; edge++)
+        if (k->within[edge]) {
+            uint32_t leader = k->leader[c->links[c->edge_links[c->first_link[edge]]][0]];
+            links[leader]--;
+            k->given_up[leader] = k->given_up[leader] || !k->collapsed[edge];
+        }
+    for (size_t v = 0; v < c->node_count; v++)
+        k->given_up[v] = k->given_up[v] || links[v] + 1 != 0;
+    return STARG_OK;
 }
 
 /* Numbers clusters by their first nodes. */
@@ -225,7 +209,7 @@ static void take_links(contractor *k) {
         uint32_t a = c->links[l][0], b = c->links[l][1];
         bool kept = !is_within(k, l) || k->given_up[k->leader[a]];
         for (int j = 0; !kept && j < 3; j++)
-            if (k->paired[c->link_edges[l][j]])
+            if (k->within[c->link_edges[l][j]])
                 c->sheet[c->link_edges[l][j]] = false;
         if (!kept)
             continue;
@@ -241,18 +225,16 @@ starg_status contract_complex(starg_context *context, medial_complex *complex) {
     contractor k = {.context = context, .complex = complex};
     STARG_TRY(find_clusters(&k));
     STARG_NEW_ZERO(context, STAGE, k.given_up, complex->node_count);
-    STARG_NEW_ZERO(context, STAGE, k.contracted, complex->link_count);
-    STARG_NEW_ZERO(context, STAGE, k.pending, complex->edge_count);
+    STARG_NEW_ZERO(context, STAGE, k.pending, complex->link_count);
     STARG_NEW(context, STAGE, k.within, complex->edge_count);
-    STARG_NEW_ZERO(context, STAGE, k.paired, complex->edge_count);
-    count_pending(&k);
-    STARG_TRY(contract_trees(&k));
-    STARG_TRY(contract_sheets(&k));
-    give_up(&k);
+    STARG_NEW_ZERO(context, STAGE, k.collapsed, complex->edge_count);
+    find_sheets(&k);
+    STARG_TRY(collapse(&k));
+    STARG_TRY(give_up(&k));
     STARG_TRY(take_nodes(&k));
     take_links(&k);
     complex_invert(complex);
 done:
-    RELEASE(k.leader, k.given_up, k.contracted, k.pending, k.within, k.paired, k.queue.data);
+    RELEASE(k.leader, k.given_up, k.pending, k.within, k.collapsed, k.queue.data);
     return status;
 }

@@ -174,21 +174,32 @@ static starg_status find_branches(curve *c) {
     return STARG_OK;
 }
 
-/* Repeatedly moves the inner points of a trail halfway to the midpoint of their neighbours. */
+/* Repeatedly moves the inner points of a trail halfway to the midpoint of their neighbours. On a
+ * loop without joints all are inner points. */
 static void smooth_trail(curve *c, const branch *b) {
     double(*p)[3] = c->smooth + b->first;
+    size_t end = b->count - 1;
+    uint32_t v = c->trails.data[b->first];
+    bool loop = v == c->trails.data[b->first + end] && kept_degree(c, v) == 2;
     for (size_t i = 0; i < b->count; i++)
         vec3_copy(c->places[c->trails.data[b->first + i]], p[i]);
     for (int pass = 0; pass < TRAIL_PASSES; pass++) {
-        double last[3];
-        vec3_copy(p[0], last);
-        for (size_t i = 1; i + 1 < b->count; i++)
+        double last[3], start[3];
+        vec3_copy(p[loop ? end - 1 : 0], last);
+        vec3_copy(p[!loop], start);
+        for (size_t i = !loop; i < end; i++) {
+            const double *next = loop && i + 1 == end ? start : p[i + 1];
             for (int k = 0; k < 3; k++) {
                 double here = p[i][k];
-                p[i][k] = 0.5 * here + 0.25 * last[k] + 0.25 * p[i + 1][k];
+                p[i][k] = 0.5 * here + 0.25 * last[k] + 0.25 * next[k];
                 last[k] = here;
             }
+        }
+        if (loop)
+            vec3_copy(p[0], p[end]);
     }
+    if (loop && starg_solid_contains(c->solid, p[0]))
+        vec3_copy(p[0], c->places[v]);
 }
 
 static void measure_trail(curve *c, branch *b) {

@@ -28,7 +28,7 @@ static const char STAGE[] = "erosion";
 
 typedef struct free_link {
     double value;
-    uint32_t link;
+    uint32_t link, key; /* by the key where values are the same: of samples, not links */
 } free_link;
 
 typedef struct eroder {
@@ -42,7 +42,9 @@ typedef struct eroder {
 } eroder;
 
 static bool before(free_link a, free_link b) {
-    return a.value < b.value || (a.value == b.value && a.link < b.link);
+    if (a.value != b.value)
+        return a.value < b.value;
+    return a.key < b.key || (a.key == b.key && a.link < b.link);
 }
 
 static starg_status push(eroder *e, free_link item) {
@@ -73,16 +75,27 @@ static free_link pop(eroder *e) {
     return first;
 }
 
+/* To half of its digits: one path is the sum of the same lengths in different orders. */
+static double rounded(double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits = (bits + (UINT64_C(1) << 25)) >> 26 << 26;
+    memcpy(&value, &bits, sizeof bits);
+    return value;
+}
+
 /* A link with one sheet left is queued by the sum of the values of its other two edges. */
 static starg_status push_if_free(eroder *e, uint32_t link) {
     if (e->remaining[link] != 1 || !e->link_left[link])
         return STARG_OK;
-    free_link item = {0, link};
+    free_link item = {0, link, 0};
     for (int k = 0; k < 3; k++) {
         uint32_t edge = e->complex->link_edges[link][k];
+        item.key += e->complex->ends[edge][0] + e->complex->ends[edge][1];
         if (!e->sheet[edge])
             item.value += e->values[edge];
     }
+    item.value = rounded(item.value);
     return push(e, item);
 }
 

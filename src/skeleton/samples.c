@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Surface samples by subdivision: edges are split at their midpoints, each independently, and a
  * face is cut into two, three or four according to its split edges. So the result is a closed mesh
- * of the same topology, whatever is split.
+ * of the same topology, whatever is split. In the end ties are broken: what is cocircular in a
+ * drawn solid is not in a turned copy, whose coordinates are rounded.
  *
  * Cost: linear in the result for each round; a round halves long edges. */
 #include "skeleton/samples.h"
 
+#include "core/rng.h"
+#include "core/streams.h"
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
 
@@ -13,6 +16,9 @@ static const char STAGE[] = "surface samples";
 
 /* Long thin faces would need far more points than wanted. */
 enum { MAX_ROUNDS = 24, MOST_ADDED = 2 };
+
+/* How far points move, of the edges at them. */
+static const double MOVE = 1e-5;
 
 /* Numbers the edges to split, those longer than `longest`; each occurs in two faces and is tested
  * once. */
@@ -148,8 +154,34 @@ static starg_status copy_mesh(starg_context *context, const starg_mesh *mesh,
     return STARG_OK;
 }
 
+/* Moves the points a little along the edges and normals of faces, so that no four are cocircular
+ * and no five cospherical: copies that are turned, or shaken by far less, then have the same
+ * Delaunay tetrahedra. */
+static void move_points(surface_samples *samples) {
+    for (size_t f = 0; f < samples->face_count; f++) {
+        double *p = samples->points + 3 * (size_t)samples->faces[3 * f];
+        double *q = samples->points + 3 * (size_t)samples->faces[3 * f + 1];
+        double *r = samples->points + 3 * (size_t)samples->faces[3 * f + 2];
+        double n[3], d[3];
+        vec3_triangle_normal(p, q, r, n);
+        double length = sqrt(vec3_length(n));
+        starg_rng rng = starg_rng_make(0, STREAM_SAMPLES, f);
+        for (int j = 0; j < 3; j++) {
+            double along = MOVE * starg_rng_unit(&rng);
+            double up = MOVE * (starg_rng_unit(&rng) - 0.5) / length;
+            vec3_subtract(q, p, d);
+            for (int k = 0; k < 3 && length > 0 && length < INFINITY; k++)
+                p[k] += along * d[k] + up * n[k];
+            double *first = p;
+            p = q;
+            q = r;
+            r = first;
+        }
+    }
+}
+
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
-                            surface_samples *samples) {
+                            bool moved, surface_samples *samples) {
     starg_status status = STARG_OK;
     *samples = (surface_samples){0};
     STARG_TRY(copy_mesh(context, solid->mesh, samples));
@@ -161,6 +193,8 @@ starg_status samples_create(starg_context *context, const starg_solid *solid, si
         STARG_TRY(starg_check_cancel(context, STAGE));
         STARG_TRY(refine(context, samples, longest, &splits));
     }
+    if (moved)
+        move_points(samples);
 done:
     if (status != STARG_OK)
         samples_free(samples);

@@ -12,7 +12,8 @@ typedef struct surface_samples {
 } surface_samples;
 
 /* Subdivides until no edge is much longer than with at least `wanted` points evenly on the surface.
- * Errors: MEMORY, CANCELLED. */
+ * If `moved`, they are a little off the surface, so that no five are cospherical. Errors: MEMORY,
+ * CANCELLED. */
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
-                            surface_samples *samples);
+                            bool moved, surface_samples *samples);
 void samples_free(surface_samples *samples);

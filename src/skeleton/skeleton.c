@@ -114,14 +114,17 @@ static size_t count_faults(const starg_check *check, const attempt *a) {
            (a->loops < loops ? MISSING * (loops - a->loops) : a->loops - loops);
 }
 
-static starg_status find_best(starg_context *context, const starg_solid *solid, attempt *best) {
+static starg_status find_best(starg_context *context, const starg_solid *solid, bool moved,
+                              attempt *best) {
     starg_status status = STARG_OK;
     attempt a = {0};
     surface_samples samples = {0};
     conformed results[CONFORM_RESULTS] = {0};
     size_t count;
-    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
+    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, moved, &samples));
     STARG_TRY(conform_samples(context, &samples, results, &count));
+    if (moved && results[0].lost > 0)
+        goto done;
     /* Counts decide between strategies that lose faces. If the surface intersects itself, none is
      * right. */
     size_t judged = results[0].lost > 0 && solid->check->embedded ? count : 1;
@@ -164,7 +167,13 @@ static starg_status repair_topology(starg_context *context, const starg_solid *s
 }
 
 static starg_status find_graph(starg_context *context, const starg_solid *solid, attempt *a) {
-    TRY(find_best(context, solid, a));
+    if (solid->check->embedded)
+        TRY(find_best(context, solid, true, a));
+    if (a->complex == NULL || count_faults(solid->check, a) > 0 ||
+        a->eroded.cut_count > solid->check->cavities) { /* too thin for samples that are moved */
+        attempt_free(a);
+        TRY(find_best(context, solid, false, a));
+    }
     if (a->complex->node_count == 0)
         TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
                        "the solid is too flat for interior tetrahedra"));

@@ -70,7 +70,7 @@ static size_t conform(const shape *s, size_t wanted, size_t *lost) {
     surface_samples samples = {0};
     conformed results[CONFORM_RESULTS];
     size_t count;
-    test_ok(context, samples_create(context, solid, wanted, &samples));
+    test_ok(context, samples_create(context, solid, wanted, false, &samples));
     size_t first = samples.point_count, faces = samples.face_count;
     double *points = malloc(3 * first * sizeof *points);
     assert_non_null(points);
