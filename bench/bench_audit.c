@@ -190,24 +190,11 @@ static size_t list_rays(const hall *h, size_t camera, uint8_t *wanted, ray *rays
 
 static size_t cast_rays(const hall *h, RTCScene scene, size_t camera, const ray *rays,
                         size_t count) {
-    struct RTCIntersectContext context;
     size_t open = 0;
     const double *p = h->places + 3 * camera;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     for (size_t i = 0; i < count; i++) {
         const double *q = h->points + 3 * (size_t)rays[i].vertex;
-        struct RTCRay own = {.org_x = (float)p[0],
-                             .org_y = (float)p[1],
-                             .org_z = (float)p[2],
-                             .dir_x = (float)(q[0] - p[0]),
-                             .dir_y = (float)(q[1] - p[1]),
-                             .dir_z = (float)(q[2] - p[2]),
-                             .tnear = 0,
-                             .tfar = 0.9999F,
-                             .mask = UINT32_MAX};
-        rtcOccluded1(scene, &context, &own);
-        open += own.tfar > 0;
+        open += embree_is_free(scene, p, q);
     }
     return open;
 }
