@@ -218,9 +218,10 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     if (starg_solid_contains(all->scene->solid, p)) {
         /* directions at the same point are consecutive */
         const scene_view view = aim(all, w, item);
-        if (w->last == NULL || !vec3_equal(w->last, p))
+        if (w->last == NULL || !vec3_equal(w->last, p)) {
             find_visible(all, w, p, &view);
-        w->last = p;
+            w->last = view.count == 0 ? p : NULL;
+        }
         if (sensor_is_directed(all->options)) {
             narrow(all, w, p);
             visible = w->within;

@@ -129,6 +129,39 @@ static void test_one_view(void **state) {
     test_context_free(context);
 }
 
+/* Places that return after others have been looked at, or left out: what one view was asked for is
+ * not taken for what the place sees all around. */
+static void test_views_apart(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "gallery", 3000);
+    double points[3 * POINTS], directions[3 * POINTS];
+    size_t seen = 0;
+    pick_views(solid, points, directions);
+    starg_visibility_options options;
+    starg_visibility_options_default(&options);
+    options.cone = 60;
+    for (size_t i = 0; i < POINTS; i++) {
+        const double *p = points + 3 * i, *d = directions + 3 * i;
+        const double places[9] = {p[0], p[1], p[2], 1e6, 1e6, 1e6, p[0], p[1], p[2]};
+        const double ways[9] = {-d[0], -d[1], -d[2], 1, 0, 0, d[0], d[1], d[2]};
+        starg_bits *one = NULL, *three = NULL;
+        options.directions = d;
+        test_ok(context, starg_visibility(context, solid, p, 1, &options, &one));
+        options.directions = ways;
+        test_ok(context, starg_visibility(context, solid, places, 3, &options, &three));
+        for (size_t j = 0; j < starg_bits_columns(one); j++) {
+            assert_int_equal(starg_bits_test(three, 2, j), starg_bits_test(one, 0, j));
+            seen += starg_bits_test(one, 0, j);
+        }
+        starg_bits_free(one);
+        starg_bits_free(three);
+    }
+    assert_true(seen > 0);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
 static void test_bad_cones(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -279,7 +312,7 @@ int main(void) {
         cmocka_unit_test(test_rows),       cmocka_unit_test(test_bad_cones),
         cmocka_unit_test(test_bad_limits), cmocka_unit_test(test_frustum),
         cmocka_unit_test(test_baseline),   cmocka_unit_test(test_guards_with_cones),
-        cmocka_unit_test(test_one_view),
+        cmocka_unit_test(test_one_view),   cmocka_unit_test(test_views_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
