@@ -38,6 +38,21 @@ static bool is_curve(FILE *file) {
     return !faces;
 }
 
+/* Has a binary glTF morph targets, as animations have? Its words lie in a first chunk of JSON. */
+static bool is_animation(const char *head, FILE *file) {
+    char *word = NULL;
+    size_t capacity = 0;
+    bool targets = false;
+    const uint8_t *size =
+        (const uint8_t *)head + 12; /* little endian, after magic, version and size */
+    long end = 20 + (long)(size[0] | size[1] << 8 | size[2] << 16 | (uint32_t)size[3] << 24);
+    rewind(file);
+    while (!targets && ftell(file) < end && getdelim(&word, &capacity, '"', file) > 0)
+        targets = strcmp(word, "targets\"") == 0;
+    free(word);
+    return targets;
+}
+
 static kind kind_of_content(const char *name, const char *head, size_t size, FILE *file) {
     static const char database[] = "SQLite format 3", vtk[] = "# vtk",
                       curve[] = "# D:", certificate[] = "starguard-certificate";
@@ -45,7 +60,7 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
     if (size >= sizeof database && memcmp(head, database, sizeof database) == 0)
         return KIND_DATABASE;
     if (memcmp(head, "glTF", 4) == 0)
-        return KIND_ANIMATION;
+        return is_animation(head, file) ? KIND_ANIMATION : KIND_MODEL;
     if (strncmp(head, vtk, sizeof vtk - 1) == 0)
         return strstr(head, "DATASET POLYDATA") == NULL ? KIND_RESULT
                : is_curve(file)                         ? KIND_SKELETON
@@ -53,6 +68,9 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
     if (strncmp(head, curve, sizeof curve - 1) == 0 || cli_has_extension(name, ".swc"))
         return KIND_SKELETON;
     if (strstr(head, "<VTKFile") != NULL && strstr(head, "PolyData") != NULL)
+        return KIND_MODEL;
+    if (cli_has_extension(name, ".gltf") || cli_has_extension(name, ".dae") ||
+        cli_has_extension(name, ".x3d"))
         return KIND_MODEL;
     if (*first == '{' || strncmp(first, "<?xml", 5) == 0 || strncmp(first, "<VTKFile", 8) == 0 ||
         strncmp(head, certificate, sizeof certificate - 1) == 0)

@@ -43,6 +43,9 @@ static const double FIRST_FINEST = 1.0 / 16;
 /* Most work of cells for better guards, and the number of columns above which it is less. */
 static const double MOST_CELL_WORK = 5e6, EASY_COLUMNS = 1e4;
 
+/* The share of the best effort that proofs get even if nothing is left of it. */
+static const double LEAST_PROOF = 0.1;
+
 typedef enum search_phase { PHASE_IMPROVE = 0, PHASE_PROVE = 1 } search_phase;
 
 static bool is_met(const search *s) {
@@ -113,9 +116,9 @@ static double most_cell_work(const search *s) {
     return most * fmax(1, MANY_GUARDS / (double)s->best.guards.count);
 }
 
-/* All phases. Where local search gives up early and the effort is to be the best, cells show where
- * else guards may stand: a proof begins, with what is left of the budget. *improving: the work for
- * better guards. */
+/* All phases. If the effort is to be the best, a proof begins with what is left of the budget, and
+ * at least with a tenth of it: cells also show where else guards may stand. *improving: the work
+ * for better guards. */
 static starg_status run(search *s, bool improves, uint64_t *improving) {
     const starg_guard_options *o = s->problem->options;
     s->effort.nodes = FEW_NODES;
@@ -125,10 +128,11 @@ static starg_status run(search *s, bool improves, uint64_t *improving) {
         bool better;
         TRY(run_phase(s, PHASE_IMPROVE, work));
         const double left = (double)work - (double)(s->effort.work - begun);
-        if (o->prove || guard_is_brief(o) || is_met(s) || !(left > 0))
+        if (o->prove || guard_is_brief(o) || is_met(s))
             TRY(search_close(s, &better));
         else
-            TRY(run_phase(s, PHASE_PROVE, (uint64_t)fmin(left, most)));
+            TRY(run_phase(s, PHASE_PROVE,
+                          (uint64_t)fmax(fmin(left, most), LEAST_PROOF * (double)work)));
     }
     *improving = s->effort.work;
     s->effort.nodes = MANY_NODES;
