@@ -35,7 +35,7 @@ enum { ABOVE = 1500 }; /* work of a face that is looked at from points above it 
 typedef struct unseen_box {
     bvh_box box;
     uint64_t *open; /* bits of the list: superset of what points of the box see */
-    uint32_t count; /* number of open faces at the last count */
+    uint32_t count; /* number of open faces at the last count; 0: not counted yet */
 } unseen_box;
 
 typedef struct unseen_search {
@@ -48,6 +48,7 @@ typedef struct unseen_search {
     STARG_ARRAY(uint32_t) list;   /* faces that no candidate sees */
     STARG_ARRAY(uint32_t) buried; /* those within matter, which are not in the list */
     uint64_t *open;               /* bits of the list: not seen yet */
+    bool changed;                 /* some were seen since the last count */
     STARG_ARRAY(unseen_box) leaves;
     unseen_box *parts;        /* of a batch: two for each leaf that is cut */
     uint32_t *cut;            /* the leaves being cut */
@@ -217,18 +218,20 @@ static uint32_t count_open(const unseen_search *s, const unseen_box *leaf) {
     return (uint32_t)count;
 }
 
-/* Removes the leaves with nothing open. */
+/* Counts what has changed, and removes the leaves with nothing open. */
 static void drop_leaves(unseen_search *s) {
     size_t kept = 0;
     for (size_t i = 0; i < s->leaves.count; i++) {
         unseen_box *leaf = &s->leaves.data[i];
-        leaf->count = count_open(s, leaf);
+        if (s->changed || leaf->count == 0)
+            leaf->count = count_open(s, leaf);
         if (leaf->count > 0)
             s->leaves.data[kept++] = *leaf;
         else
             starg_release(s->context, leaf->open);
     }
     s->leaves.count = kept;
+    s->changed = false;
 }
 
 static double volume_of(const bvh_box *box) {
@@ -277,6 +280,7 @@ static starg_status take_parts(unseen_search *s, size_t count) {
             is_new |= (s->open[w] & seen[w]) != 0;
             s->open[w] &= ~seen[w];
         }
+        s->changed = s->changed || is_new;
         middle_of(&s->parts[i].box, p);
         if (is_new && s->places != NULL)
             TRY(candidates_push(s->context, s->places, p, NULL));
@@ -360,17 +364,23 @@ static void end(unseen_search *s) {
             s->looks);
 }
 
-/* Is it unknown whether some place sees a face of the list that none was found for? */
-static bool is_left_open(const unseen_search *s, size_t index) {
-    bool open = false;
-    for (size_t k = 0; k < s->leaves.count && !open; k++)
-        open = starg_bit_test(s->leaves.data[k].open, index);
-    return open;
+/* *unseen: bits of the list, of faces that no place was found for and that no leaf leaves open. */
+static starg_status conclude(const unseen_search *s, uint64_t **unseen) {
+    NEW_ZERO(s->context, STAGE, *unseen, words_of(s) + 1);
+    for (size_t w = 0; s->open != NULL && w < words_of(s); w++) {
+        uint64_t left = 0;
+        for (size_t k = 0; k < s->leaves.count; k++)
+            left |= s->leaves.data[k].open[w];
+        (*unseen)[w] = s->open[w] & ~left;
+    }
+    return STARG_OK;
 }
 
 /* Reports the faces that some leaf leaves open. */
 static starg_status report(const unseen_search *s, uint8_t **out) {
     size_t faces = starg_space_model_faces(s->solid);
+    SCOPED uint64_t *unseen = NULL;
+    TRY(conclude(s, &unseen));
     NEW_ZERO(s->context, STAGE, *out, faces);
     for (size_t f = 0; f < faces; f++)
         (*out)[f] = solid_is_target(s->solid, false, f) ? STARG_FACE_SEEN : STARG_FACE_IGNORED;
@@ -378,7 +388,8 @@ static starg_status report(const unseen_search *s, uint8_t **out) {
         (*out)[s->buried.data[i]] = STARG_FACE_UNSEEN;
     for (size_t i = 0; i < s->list.count; i++)
         if (starg_bit_test(s->open, i))
-            (*out)[s->list.data[i]] = is_left_open(s, i) ? STARG_FACE_UNDECIDED : STARG_FACE_UNSEEN;
+            (*out)[s->list.data[i]] =
+                starg_bit_test(unseen, i) ? STARG_FACE_UNSEEN : STARG_FACE_UNDECIDED;
     return STARG_OK;
 }
 
@@ -448,6 +459,7 @@ starg_status unseen_prove(starg_context *context, const starg_solid *solid,
     starg_status status = STARG_OK;
     starg_visibility_options around;
     uint8_t *proven = NULL;
+    SCOPED uint64_t *unseen = NULL;
     unseen_search s = {.context = context,
                        .solid = solid,
                        .view = options->visibility,
@@ -465,11 +477,10 @@ starg_status unseen_prove(starg_context *context, const starg_solid *solid,
     STARG_TRY(begin(&s));
     if (s.list.count > 0)
         STARG_TRY(cut_boxes(&s, work));
+    STARG_TRY(conclude(&s, &unseen));
     for (size_t i = 0, k = 0; i < count && k < s.list.count; i++)
-        if (s.list.data[k] == patches[i]) {
-            proven[i] = starg_bit_test(s.open, k) && !is_left_open(&s, k);
-            k++;
-        }
+        if (s.list.data[k] == patches[i])
+            proven[i] = starg_bit_test(unseen, k++);
     *faces = count_faces(solid, patches, proven, count);
 done:
     context->work += s.spent;
