@@ -54,9 +54,11 @@ starg_status candidates_check(starg_context *context, starg_candidates source, s
 starg_status near_candidates(starg_context *context, const candidate_shape *shape, size_t wanted,
                              candidate_points *points);
 
-/* There, places nearest to faces that no candidate sees; at most two for each. */
+/* There, places nearest to patches that no candidate sees, at most two for each, if they see it in
+ * some direction. */
 starg_status near_candidates_before(starg_context *context, const candidate_shape *shape,
-                                    const uint32_t *faces, size_t count, candidate_points *points);
+                                    const starg_visibility_options *view, const uint32_t *patches,
+                                    size_t count, candidate_points *points);
 
 /* Adds about `wanted` points of a source, all allowed. Errors: MEMORY, CANCELLED, TIME. */
 starg_status candidates_find(starg_context *context, const candidate_shape *shape,

@@ -241,7 +241,8 @@ static starg_status look_everywhere(const guard_problem *problem, guard_pool *po
         return STARG_OK;
     TRY(list_missing(problem, pool, &missing));
     const candidate_shape shape = {problem->solid, problem->solid, options->clearance};
-    TRY(near_candidates_before(problem->context, &shape, missing.data, missing.count, &places));
+    TRY(near_candidates_before(problem->context, &shape, &options->visibility, missing.data,
+                               missing.count, &places));
     if (candidates_count(&places) > 0) {
         TRY(pool_add(pool, &places));
         TRY(list_missing(problem, pool, &missing));

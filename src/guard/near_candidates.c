@@ -11,6 +11,7 @@
 
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
+#include "visibility/scene.h"
 
 enum { ROUNDS = 4 };
 
@@ -89,22 +90,39 @@ static starg_status sample(starg_context *context, const candidate_shape *shape,
     return STARG_OK;
 }
 
-starg_status near_candidates_before(starg_context *context, const candidate_shape *shape,
-                                    const uint32_t *patches, size_t count,
-                                    candidate_points *points) {
+/* The nearest place, on either side where guards hang. */
+static starg_status stand_before(starg_context *context, const candidate_shape *shape,
+                                 uint32_t patch, size_t index, candidate_points *out) {
     const starg_solid *solid = shape->solid;
     const near_faces *bound = solid->mount.count > 0 ? &solid->mount : &solid->over;
-    for (size_t i = 0; i < count && bound->count > 0; i++) {
-        const double *t[3];
-        double middle[3] = {0}, at[3];
-        for (size_t k = 0; k < 3; k++)
-            vec3_along(middle, 1.0 / 3, solid_patch_corner(solid, patches[i], k), middle);
-        uint32_t nearest = bvh_nearest_triangle(bound->tree, middle);
-        bvh_nearest(bound->tree, middle, at);
-        for (size_t k = 0; k < 3; k++)
-            t[k] = bound->tree->vertices + 3 * (size_t)bound->corners[3 * nearest + k];
-        TRY(solid->mount.count > 0 ? hang(context, shape, t, at, points)
-                                   : stand(context, shape, i, at, points));
+    const double *t[3];
+    double middle[3] = {0}, at[3];
+    for (size_t k = 0; k < 3; k++)
+        vec3_along(middle, 1.0 / 3, solid_patch_corner(solid, patch, k), middle);
+    uint32_t nearest = bvh_nearest_triangle(bound->tree, middle);
+    bvh_nearest(bound->tree, middle, at);
+    for (size_t k = 0; k < 3; k++)
+        t[k] = bound->tree->vertices + 3 * (size_t)bound->corners[3 * nearest + k];
+    out->data.count = 0;
+    return solid->mount.count > 0 ? hang(context, shape, t, at, out)
+                                  : stand(context, shape, index, at, out);
+}
+
+starg_status near_candidates_before(starg_context *context, const candidate_shape *shape,
+                                    const starg_visibility_options *view, const uint32_t *patches,
+                                    size_t count, candidate_points *points) {
+    const starg_visibility_options around = sensor_around(view);
+    SCOPED_BY(candidates_free) candidate_points found = {0};
+    SCOPED_BY(scene_drop) visibility_scene *scene = NULL;
+    if (count == 0 || (shape->solid->mount.count == 0 && shape->solid->over.count == 0))
+        return STARG_OK;
+    TRY(scene_create(context, shape->solid, &scene));
+    TRY(scene_add_sights(scene));
+    for (size_t i = 0; i < count; i++) {
+        TRY(stand_before(context, shape, patches[i], i, &found));
+        for (const double *p = found.data.data; p < found.data.data + found.data.count; p += 3)
+            if (scene_sees_patch(scene, p, patches[i], &around))
+                TRY(candidates_push(context, points, p, NULL));
     }
     return STARG_OK;
 }

@@ -457,17 +457,13 @@ starg_status unseen_prove(starg_context *context, const starg_solid *solid,
                           const starg_guard_options *options, const uint32_t *patches, size_t count,
                           uint64_t work, size_t *faces, candidate_points *places) {
     starg_status status = STARG_OK;
-    starg_visibility_options around;
     uint8_t *proven = NULL;
     SCOPED uint64_t *unseen = NULL;
     unseen_search s = {.context = context,
                        .solid = solid,
-                       .view = options->visibility,
+                       .view = sensor_around(&options->visibility),
                        .clearance = options->clearance,
                        .places = places};
-    starg_visibility_options_default(&around);
-    s.view.cone = around.cone;
-    memcpy(s.view.fov, around.fov, sizeof s.view.fov);
     STARG_NEW(context, STAGE, proven, count);
     for (size_t i = 0; i < count; i++) {
         proven[i] = is_hidden(solid, patches[i]);

@@ -114,6 +114,7 @@ typedef struct visibility_scene {
 /* Errors: MEMORY. */
 starg_status scene_create(starg_context *context, const starg_solid *solid, visibility_scene **out);
 void scene_free(visibility_scene *scene);
+STARG_DROP(scene, visibility_scene)
 
 /* Adds the adjacency, if the boundary is embedded. Errors: MEMORY. */
 starg_status scene_add_adjacency(visibility_scene *scene);

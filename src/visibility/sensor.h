@@ -29,6 +29,14 @@ static inline bool sensor_is_directed(const starg_visibility_options *o) {
     return o->cone < 360 || o->fov[0] > 0;
 }
 
+/* The same in all directions. */
+static inline starg_visibility_options sensor_around(const starg_visibility_options *o) {
+    starg_visibility_options out = *o;
+    out.cone = 360;
+    out.fov[0] = out.fov[1] = 0;
+    return out;
+}
+
 /* The sensor of some options, which must outlive it; not aimed. */
 sensor sensor_of(const starg_visibility_options *options);
 

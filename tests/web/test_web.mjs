@@ -103,7 +103,7 @@ test("guards and bounds are those of this machine's program", async () => {
         [sample("star"), []],
         [sample("plate", "--vertices", "500"), []],
         [sample("horse", "--vertices", "900"), []],
-        [sample("dog", "--vertices", "600"), ["--seed", "7"]],
+        [sample("dog", "--vertices", "600"), ["--seed", "3"]],
     ];
     await look(async (page) => {
         for (const [file, options] of models) {
