@@ -77,7 +77,7 @@ static starg_status measure_curve(const guard_problem *problem, const starg_bits
         bool all = faces == problem->weights.faces;
         result->curve_faces[i] = (double)faces / (double)problem->weights.faces;
         result->curve_area[i] =
-            all || !(problem->weights.area > 0) ? 1 : area / problem->weights.area;
+            all || !(problem->weights.area > 0) ? 1 : fmin(area / problem->weights.area, 1);
     }
     return STARG_OK;
 }
@@ -442,7 +442,7 @@ static starg_status measure_points(const guard_problem *problem, const point_cov
         }
         result->curve_faces[g] = (double)whole / (double)weights->faces;
         result->curve_area[g] =
-            whole == weights->faces || !(weights->area > 0) ? 1 : area / weights->area;
+            whole == weights->faces || !(weights->area > 0) ? 1 : fmin(area / weights->area, 1);
     }
     for (size_t f = 0; f < faces; f++) {
         if (!solid_is_target(solid, false, f) || share[f] == 1)
@@ -459,7 +459,7 @@ static starg_status measure_points(const guard_problem *problem, const point_cov
     result->points_complete = result->uncovered_count == 0;
     result->points_seen = result->coverage_area;
     result->points_open =
-        result->points_complete || !(weights->area > 0) ? 0 : open / weights->area;
+        result->points_complete || !(weights->area > 0) ? 0 : fmin(open / weights->area, 1);
     return STARG_OK;
 }
 
