@@ -103,6 +103,11 @@ int orient3d(const double a[3], const double b[3], const double c[3], const doub
 
 static __attribute__((noinline)) int orient2d_exact(const double a[3], const double b[3],
                                                     const double c[3], int u, int v) {
+    /* differences of doubles have exact signs, and axis-aligned edges a zero in each product */
+    int left = sign_of(a[u] - c[u]) * sign_of(b[v] - c[v]);
+    int right = sign_of(a[v] - c[v]) * sign_of(b[u] - c[u]);
+    if (left != right || left == 0)
+        return (left > right) - (left < right);
     const double values[6] = {a[u], a[v], b[u], b[v], c[u], c[v]};
     int bits, scale = exact_scale(values, 6, &bits);
     exact x[6], acu, acv, bcu, bcv, determinant;
