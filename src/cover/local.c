@@ -130,7 +130,7 @@ static size_t choose_open(local_search *search) {
     uint64_t left = starg_rng_below(&search->rng, starg_bit_count(open, words));
     search->work += words;
     for (;; w++) {
-        uint64_t here = (uint64_t)__builtin_popcountll(open[w]);
+        uint64_t here = starg_bits_in(open[w]);
         if (left < here)
             break;
         left -= here;

@@ -193,7 +193,7 @@ static void serve_columns(cover_instance *instance, const uint64_t *taken, uint6
     for (size_t j = 0; j < instance->columns; j++) {
         uint32_t given = 0;
         for (size_t w = 0; w < instance->column_words; w++)
-            given += (uint32_t)__builtin_popcountll(cover_column(instance, j)[w] & taken[w]);
+            given += (uint32_t)starg_bits_in(cover_column(instance, j)[w] & taken[w]);
         if (given >= instance->demands[j])
             starg_bit_clear(columns, j);
         else

@@ -40,7 +40,7 @@ static bool take_host(const guard_pool *pool, uint64_t *lacking, size_t *host) {
     for (size_t i = 0; i < pool_count(pool); i++) {
         size_t seen = 0;
         for (size_t w = 0; w < pool->rows->words; w++)
-            seen += (size_t)__builtin_popcountll(starg_bits_row(pool->rows, i)[w] & lacking[w]);
+            seen += starg_bits_in(starg_bits_row(pool->rows, i)[w] & lacking[w]);
         if (seen > most) {
             most = seen;
             *host = i;

@@ -152,7 +152,7 @@ static size_t count_entries(const program *p, const witness_row *wanted) {
     size_t entries = 0;
     for (size_t i = 0; i < p->n; i++) {
         for (size_t k = 0; k < WITNESS_WORDS; k++)
-            entries += (size_t)__builtin_popcountll(p->rows[i]->bits[k] & wanted->bits[k]);
+            entries += starg_bits_in(p->rows[i]->bits[k] & wanted->bits[k]);
         odd_sets_halves(p->sets, p->rows[i], halves);
         for (size_t k = 0; k < p->sets->count; k++)
             entries += halves[k] > 0;

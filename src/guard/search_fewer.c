@@ -131,7 +131,7 @@ static double gain_of(const local_search *l, const witness_row *row) {
 static size_t count_left(const local_search *l, uint32_t point) {
     size_t left = 0;
     for (size_t w = 0; w < WITNESS_WORDS; w++)
-        left += (size_t)__builtin_popcountll(l->open.bits[w] & ~row_of(l, point)->bits[w]);
+        left += starg_bits_in(l->open.bits[w] & ~row_of(l, point)->bits[w]);
     return left;
 }
 

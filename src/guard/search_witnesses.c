@@ -181,7 +181,7 @@ static bool see_most(const starg_bits *rows, uint64_t *missing, uint32_t *candid
     for (size_t i = 0; i < rows->rows; i++) {
         size_t seen = 0;
         for (size_t w = 0; w < rows->words; w++)
-            seen += (size_t)__builtin_popcountll(starg_bits_row(rows, i)[w] & missing[w]);
+            seen += starg_bits_in(starg_bits_row(rows, i)[w] & missing[w]);
         if (seen > most) {
             most = seen;
             *candidate = (uint32_t)i;

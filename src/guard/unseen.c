@@ -214,7 +214,7 @@ static bool halve(const bvh_box *box, bvh_box parts[2]) {
 static uint32_t count_open(const unseen_search *s, const unseen_box *leaf) {
     size_t count = 0;
     for (size_t w = 0; w < words_of(s); w++)
-        count += (size_t)__builtin_popcountll(leaf->open[w] & s->open[w]);
+        count += starg_bits_in(leaf->open[w] & s->open[w]);
     return (uint32_t)count;
 }
 

@@ -184,10 +184,6 @@ static void look(const searcher *s, view *out, const uint64_t *others, size_t mo
     out->looked = others == NULL && lost <= most;
 }
 
-static size_t count_bits(uint64_t word) {
-    return (size_t)__builtin_popcountll(word);
-}
-
 /* Corners that some of the views see. */
 static size_t count_all(const searcher *s, view *const *views, size_t count) {
     size_t sum = 0;
@@ -195,7 +191,7 @@ static size_t count_all(const searcher *s, view *const *views, size_t count) {
         uint64_t seen = 0;
         for (size_t i = 0; i < count; i++)
             seen |= views[i]->seen[w];
-        sum += count_bits(seen);
+        sum += starg_bits_in(seen);
     }
     return sum;
 }
