@@ -135,7 +135,8 @@ class Scenes(Case):
         self.assertEqual(sorted(row[1] for row in rows), ["ceil & ing"] * 2 + ["floor"] * 2)
         for row in rows:
             self.assertAlmostEqual(float(row[2]), 24, 4)
-        self.run_text("export", "g.json", "-o", "back.glb")
+        self.run_text("view", "room.glb", "g.json", "-o", "page.html")
+        self.run_text("export", "room.glb", "g.json", "-o", "back.glb")
         data = self.read("back.glb")
         nodes = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["nodes"]
         found = [node["name"] for node in nodes]
