@@ -33,8 +33,9 @@ typedef enum starg_guard_method {
  * for each guard of the candidates, 10 for each face, but at least 200,000. */
 #define STARG_DEFAULT_LINES UINT64_MAX
 
-/* Candidates to begin with: 1,000, or 200 where a search for better guards follows that moves them
- * (PILP with refinement and less than the best effort). */
+/* Candidates to begin with: 1,000. With less than the best effort 200 where a search for better
+ * guards follows that moves them (PILP with refinement), and, for a part of the area by directed
+ * views, 300 (quick) or 600 (normal). */
 #define STARG_DEFAULT_COUNT SIZE_MAX
 
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000

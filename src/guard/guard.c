@@ -39,8 +39,10 @@ static bool chooses_exactly(const starg_guard_options *o) {
 static size_t usual_count(const starg_guard_options *o) {
     if (guard_is_brief(o))
         return 200;
-    if (guard_wants_part(o) && sensor_is_directed(&o->visibility) && o->effort != STARG_EFFORT_BEST)
-        return 300;
+    if (guard_wants_part(o) && sensor_is_directed(&o->visibility))
+        return o->effort == STARG_EFFORT_QUICK    ? 300
+               : o->effort == STARG_EFFORT_NORMAL ? 600
+                                                  : 1000;
     return 1000;
 }
 
@@ -404,6 +406,25 @@ static starg_status begin_bound(const guard_problem *problem, guard_outcome *out
     return STARG_OK;
 }
 
+/* Guards that moved see parts that no candidate saw. Where several guards must see each part, they
+ * get companions, and guards are chosen again. */
+static starg_status see_again(const guard_problem *problem, guard_outcome *out) {
+    SCOPED_BY(selection_free) guard_selection again = {0};
+    const size_t before = pool_count(&out->pool);
+    if (problem->options->redundancy == 1 || problem->options->candidates == STARG_CANDIDATES_GIVEN)
+        return STARG_OK;
+    TRY(pool_add_companions(&out->pool));
+    if (pool_count(&out->pool) == before)
+        return STARG_OK;
+    TRY(choose_at_once(problem, &out->pool, out->selection.time_limited, &again));
+    if (again.lower_bound < out->search.bound)
+        again.lower_bound = out->search.bound; /* it holds for candidates, too */
+    selection_free(&out->selection);
+    out->selection = again;
+    again = (guard_selection){0};
+    return STARG_OK;
+}
+
 starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
     starg_status status = STARG_OK;
     guard_detail detail = {0};
@@ -426,6 +447,7 @@ starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
         STARG_TRY(begin_bound(problem, out));
         STARG_TRY(search_guards(problem, &detail, guard_refines(problem->options), &out->pool,
                                 &out->selection, &out->search));
+        STARG_TRY(see_again(problem, out));
     } else if (problem->options->prove)
         STARG_TRY(search_area(problem, &out->pool, &out->selection, &out->search));
 done:

@@ -438,6 +438,21 @@ static bool is_hidden(const starg_solid *solid, uint32_t patch) {
     return buried;
 }
 
+/* Patches that are asked about, and which of them matter hides. */
+typedef struct hidden_job {
+    const starg_solid *solid;
+    const uint32_t *patches;
+    uint8_t *hidden;
+} hidden_job;
+
+static starg_status test_hidden(starg_context *context, void *shared, void *scratch, size_t item) {
+    const hidden_job *job = shared;
+    (void)context;
+    (void)scratch;
+    job->hidden[item] = is_hidden(job->solid, job->patches[item]);
+    return STARG_OK;
+}
+
 /* The number of faces all of whose listed patches, which are ascending, are proven to be unseen. */
 static size_t count_faces(const starg_solid *solid, const uint32_t *patches, const uint8_t *proven,
                           size_t count) {
@@ -465,11 +480,13 @@ starg_status unseen_prove(starg_context *context, const starg_solid *solid,
                        .clearance = options->clearance,
                        .places = places};
     STARG_NEW(context, STAGE, proven, count);
-    for (size_t i = 0; i < count; i++) {
-        proven[i] = is_hidden(solid, patches[i]);
+    hidden_job job = {solid, patches, proven};
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = count, .shared = &job, .item = test_hidden, .silent = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    for (size_t i = 0; i < count; i++)
         if (!proven[i])
             STARG_PUSH(context, STAGE, &s.list, patches[i]);
-    }
     STARG_TRY(begin(&s));
     if (s.list.count > 0)
         STARG_TRY(cut_boxes(&s, work));
