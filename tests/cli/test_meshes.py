@@ -135,6 +135,8 @@ class Scenes(Case):
         self.assertEqual(sorted(row[1] for row in rows), ["ceil & ing"] * 2 + ["floor"] * 2)
         for row in rows:
             self.assertAlmostEqual(float(row[2]), 24, 4)
+        told = subprocess.run([os.path.join(BUILD, "starguard"), "check", self.path("room.glb")], capture_output=True, text=True)
+        self.assertIn("y is up in glTF", told.stderr)
         self.run_text("view", "room.glb", "g.json", "-o", "page.html")
         self.run_text("export", "room.glb", "g.json", "-o", "back.glb")
         data = self.read("back.glb")
