@@ -90,6 +90,16 @@ static void test_rows(void **state) {
     test_context_free(context);
 }
 
+/* Is the only row of `one` equal to a row of `others`? Returns how much it holds. */
+static size_t check_row(const starg_bits *one, const starg_bits *others, size_t row) {
+    size_t seen = 0;
+    for (size_t j = 0; j < starg_bits_columns(one); j++) {
+        assert_int_equal(starg_bits_test(others, row, j), starg_bits_test(one, 0, j));
+        seen += starg_bits_test(one, 0, j);
+    }
+    return seen;
+}
+
 /* A place that looks in one direction only is asked for no more than that view; where another
  * stands there too, both look among what is seen all around. */
 static void test_one_view(void **state) {
@@ -116,10 +126,7 @@ static void test_one_view(void **state) {
             test_ok(context, starg_visibility(context, solid, points + 3 * i, 1, &options, &one));
             options.directions = ways + 6 * i;
             test_ok(context, starg_visibility(context, solid, twice + 6 * i, 2, &options, &both));
-            for (size_t j = 0; j < starg_bits_columns(one); j++) {
-                assert_int_equal(starg_bits_test(one, 0, j), starg_bits_test(both, 0, j));
-                seen += starg_bits_test(one, 0, j);
-            }
+            seen += check_row(one, both, 0);
             starg_bits_free(one);
             starg_bits_free(both);
         }
@@ -150,10 +157,7 @@ static void test_views_apart(void **state) {
         test_ok(context, starg_visibility(context, solid, p, 1, &options, &one));
         options.directions = ways;
         test_ok(context, starg_visibility(context, solid, places, 3, &options, &three));
-        for (size_t j = 0; j < starg_bits_columns(one); j++) {
-            assert_int_equal(starg_bits_test(three, 2, j), starg_bits_test(one, 0, j));
-            seen += starg_bits_test(one, 0, j);
-        }
+        seen += check_row(one, three, 2);
         starg_bits_free(one);
         starg_bits_free(three);
     }
