@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Resampling. The kept nodes form branches between joints and ends (a loop without either is one
  * branch from a node to itself). Each branch is smoothed and sampled at equal steps of arc length
- * over radius, so that thin parts have as many nodes for their width as thick ones. Joints and ends
- * stay, and branches get extra nodes where two edges would otherwise join the same pair.
+ * over radius, so that thin parts have as many nodes for their width as thick ones. Joints stay,
+ * ends move on to their last balls (ends.c), and branches get extra nodes where two edges would
+ * otherwise join the same pair.
  *
  * Every position is tested exactly: one outside the solid is replaced by the nearest unsmoothed
  * one, which is known to be inside.
@@ -12,6 +13,7 @@
 
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
+#include "skeleton/ends.h"
 
 static const char STAGE[] = "curve skeleton";
 
@@ -202,6 +204,18 @@ static void smooth_trail(curve *c, const branch *b) {
         vec3_copy(p[0], c->places[v]);
 }
 
+/* The ends of a smooth trail move on to their last balls. */
+static void advance_ends(curve *c, const branch *b) {
+    for (int side = 0; side < 2; side++) {
+        size_t last = b->first + (side == 0 ? 0 : b->count - 1);
+        uint32_t v = c->trails.data[last];
+        if (kept_degree(c, v) == 1) {
+            ends_advance(c->solid, c->smooth, last, side == 0 ? 1 : -1, b->count);
+            vec3_copy(c->smooth[last], c->places[v]);
+        }
+    }
+}
+
 static void measure_trail(curve *c, branch *b) {
     c->arcs[b->first] = 0;
     for (size_t i = b->first + 1; i < b->first + b->count; i++) {
@@ -231,6 +245,7 @@ static starg_status prepare_trails(curve *c) {
     c->radius_floor = 0.05 * mean_radius(c);
     for (size_t i = 0; i < c->branches.count; i++) {
         smooth_trail(c, &c->branches.data[i]);
+        advance_ends(c, &c->branches.data[i]);
         measure_trail(c, &c->branches.data[i]);
     }
     return STARG_OK;

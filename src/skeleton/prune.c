@@ -20,6 +20,7 @@
 
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
+#include "skeleton/ends.h"
 
 static const char STAGE[] = "pruning";
 
@@ -30,7 +31,7 @@ static const double SLENDER = 0.75;
 static const double OBLONG = 0.55;
 static const double SEPARATION = 2.8; /* in radii; pi on a tube */
 static const double HOOK = 2;         /* in radii: how far a hook reaches */
-static const double SHORT = 0.08;     /* of a radius, by which a limb may end early */
+static const double SHORT = 0.16;     /* of a radius, by which a limb may end early */
 static const double TINY = 0.3;       /* in sample spacings: no ball of a limb */
 enum { SPACINGS = 3 };                /* lengths within the unevenness of the samples */
 
@@ -232,12 +233,11 @@ static bool is_end(const pruner *p, size_t i, size_t count) {
     const double *at = p->complex->centres[path[i]];
     double radius = exact_radius(p, i), reach = (1 + SHORT) * radius;
     size_t back = entry_before(p, i, radius), before = entry_before(p, back, radius);
-    double along[3], last[3], way[3];
-    vec3_subtract(at, p->complex->centres[path[back]], along);
-    vec3_subtract(p->complex->centres[path[back]], p->complex->centres[path[before]], last);
-    if (before < back) /* as the curve will run beyond, if it bends on */
-        for (int k = 0; k < 3; k++)
-            along[k] = 2 * along[k] - last[k];
+    double along[3], way[3];
+    if (distance(p, path[0], path[before]) < HOOK * exact_radius(p, before))
+        before = back; /* the other end may hook, too */
+    ends_direction(p->complex->centres[path[before]], p->complex->centres[path[back]], at,
+                   0.5 * radius, along);
     double length = vec3_length(along);
     for (size_t k = i + 1; k < count; k++) {
         vec3_subtract(p->complex->centres[path[k]], at, way);

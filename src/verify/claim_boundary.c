@@ -121,48 +121,73 @@ static void claim_volume(const verify_context *own) {
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
 }
 
+/* What is so near to the model's surface that rounding decides. */
+static double skin_of(const verify_context *own) {
+    return TOLERANCE * verify_diagonal(own->model) + verify_rounding(own->model);
+}
+
 /* Beyond `near` of the model's surface the two are the same. If that is more than rounding, what
  * was measured may be less than what there is: then a hundredth of the points may be wrong. */
-static starg_status claim_enclosed(const verify_context *own, double near) {
-    verify_enclosed found;
-    double skin = TOLERANCE * verify_diagonal(own->model) + verify_rounding(own->model);
-    if (own->solid == NULL) {
+static void claim_enclosed(const verify_context *own, const verify_enclosed *found, double near) {
+    size_t wrong = found->missing + found->excess;
+    size_t most = near > skin_of(own) ? found->inside / 100 : 0;
+    if (own->solid == NULL)
         verify_leave(own->verdict, "the volume: the model is not closed");
-        return STARG_OK;
-    }
-    TRY(verify_compare_enclosed(own->pieces, own->solid, near + skin, &found));
-    size_t wrong = found.missing + found.excess, most = near > skin ? found.inside / 100 : 0;
-    if (wrong <= most)
+    else if (wrong <= most)
         verify_claim(own->verdict, true,
                      "the pieces fill what the model encloses, once (%zu points, %zu inside)",
-                     found.points, found.inside);
+                     found->points, found->inside);
     else
         verify_claim(own->verdict, false,
                      "the pieces fill what the model encloses, once: of %zu points %zu inside the "
                      "model are in no piece, %zu others are in a piece or in several, for instance "
                      "(%g, %g, %g)",
-                     found.points, found.missing, found.excess, found.place[0], found.place[1],
-                     found.place[2]);
-    return STARG_OK;
+                     found->points, found->missing, found->excess, found->place[0], found->place[1],
+                     found->place[2]);
+}
+
+static starg_status compare_enclosed(const verify_context *own, double near,
+                                     verify_enclosed *found) {
+    *found = (verify_enclosed){0};
+    return own->solid == NULL
+               ? STARG_OK
+               : verify_compare_enclosed(own->pieces, own->solid, near + skin_of(own), found);
 }
 
 /* ---- public function ---- */
 
 static starg_status claim_nearness(const verify_context *own) {
     verify_nearness nearness;
+    verify_enclosed enclosed;
     TRY(verify_measure_boundary(own->pieces, own->model, &nearness));
+    const double near = fmin(own->report->distance, MUCH * nearness.to.farthest);
+    TRY(compare_enclosed(own, near, &enclosed));
     claim_near(own, &nearness);
     claim_simple(own, &nearness);
-    return claim_enclosed(own, fmin(own->report->distance, MUCH * nearness.to.farthest));
+    claim_enclosed(own, &enclosed, near);
+    return STARG_OK;
 }
 
+/* Where solids overlap or share a wall, not all of the surface is boundary. Without a report, which
+ * would tell, the pieces must have the volume, or, where the model winds more than once about some
+ * points, fill what it encloses. */
 static starg_status claim_match(const verify_context *own) {
     verify_match match;
+    verify_enclosed enclosed;
     TRY(verify_match_surfaces(own->pieces->outer, own->model, &match));
+    TRY(compare_enclosed(own, 0, &enclosed));
     claim_on_model(own, &match);
-    claim_covered(own, &match);
-    claim_volume(own);
-    return claim_enclosed(own, 0);
+    const bool all = own->report != NULL || match.uneven == 0;
+    if (all) {
+        claim_covered(own, &match);
+    } else {
+        verify_leave(own->verdict, "what of the model's surface is not boundary");
+        TRY(verify_claim_once(own));
+    }
+    if (all || enclosed.overlapping == 0)
+        claim_volume(own);
+    claim_enclosed(own, &enclosed, 0);
+    return STARG_OK;
 }
 
 starg_status verify_claim_once(const verify_context *own) {

@@ -33,6 +33,7 @@ static void look_at(const survey *own, const double p[3]) {
         return;
     own->found->points++;
     own->found->inside += within >= 1;
+    own->found->overlapping += within > 1;
     if (!wrong)
         return;
     if (own->found->missing + own->found->excess == 0)

@@ -141,6 +141,7 @@ typedef struct verify_enclosed {
     size_t points, inside; /* those in the model                                  */
     size_t missing;        /* that the model encloses and the pieces do not       */
     size_t excess;         /* the other way round, or that pieces enclose twice   */
+    size_t overlapping;    /* about which the model winds more than once          */
     double place[3];       /* the first of either                                 */
 } verify_enclosed;
 

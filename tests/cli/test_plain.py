@@ -100,6 +100,19 @@ class Kinds(Case):
                 self.run_text("guard", model, "-o", "g.json")
                 self.run_text("verify", model, "g.json")
 
+    def test_overlapping(self):
+        """Cubes that share an eighth, a half, all, or a wall: pieces fill what they enclose, report or not."""
+        for shift in ((.5, .5, .5), (.5, 0, 0), (0, 0, 0), (1, 0, 0)):
+            model = self.boxes(((0, 0, 0), self.UNIT), (shift, self.UNIT))
+            self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", "--quiet")
+            self.run_text("verify", model, "p.vtk", "p.json")
+            self.run_text("verify", model, "p.vtk")
+        model = self.boxes(((0, 0, 0), self.UNIT))
+        self.run_text("decompose", model, "-o", "one.vtk", "--quiet")
+        two = self.boxes(((0, 0, 0), self.UNIT), ((.5, .5, .5), self.UNIT))
+        out, _ = self.run_text("verify", two, "one.vtk", status=4)
+        self.assertIn("inside the model are in no piece", out)
+
     def test_walls(self):
         """Three boxes in a row: four triangles for each wall; a small one on a large one: its two."""
         model = self.boxes(*[((i, 0, 0), self.UNIT) for i in range(3)])

@@ -14,7 +14,7 @@ Reads nothing but the written files. STARGUARD_LONG takes these 231 and 500 soli
 
 Loops, ends, coincident nodes and the axis must be right in all. The rest is counted, and fewer right ones than
 there were is a failure: copies of bars that meet in a joint, where the medial axis is a plate, are up to half a
-sample apart, and ends of a few round solids lie outside of the tenth.
+sample apart.
 """
 import argparse
 import math
@@ -31,7 +31,7 @@ from plain_solids import add, dot
 PROGRAM = os.environ.get("STARGUARD", "build/starguard")
 LONG = 500
 AXIS, END, COPY = 0.05, 0.1, 0.02
-LEAST = {65: 58, 231: 211}  # of so many results, right in all
+LEAST = {65: 64, 231: 228, 1731: 1700}  # of so many results, right in all
 
 
 class Skeleton:

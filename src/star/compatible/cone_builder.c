@@ -260,9 +260,9 @@ static cut_step step_through(const uint32_t corners[3], const double *heights) {
     for (int k = 0; k < 3; k++) {
         uint32_t u = corners[k], v = corners[(k + 1) % 3], w = corners[(k + 2) % 3];
         double p = heights[u], q = heights[v];
-        if (p * q < 0)
+        if (cones_are_opposite(p, q))
             step.nodes[p < 0] = (cut_node){u, v, p / (p - q)};
-        else if (q == 0 && p * heights[w] < 0)
+        else if (q == 0 && cones_are_opposite(p, heights[w]))
             step.nodes[p < 0] = (cut_node){v, NOWHERE, 0};
     }
     return step;

@@ -118,6 +118,10 @@ starg_status cones_list_edges(const cone_builder *b, uint32_t which, edge_list *
     STARG_PRIVATE(cones_list_edges);
 /* The triangle across an edge, or NOWHERE. */
 uint32_t cones_across(const edge_list *edges, uint32_t u, uint32_t v) STARG_PRIVATE(cones_across);
+/* Do two heights lie on different sides of the cut, neither on it? Their product may underflow. */
+static inline bool cones_are_opposite(double p, double q) {
+    return (p < 0 && q > 0) || (p > 0 && q < 0);
+}
 /* Follows the cut at height 0. *simple: there is one, and no node is passed twice. */
 starg_status cones_find_loops(const cone_builder *b, uint32_t which, const edge_list *edges,
                               const double *heights, cut_loops *out, bool *simple)

@@ -487,7 +487,7 @@ static starg_status part_leaf(peeling *m, bool *done) {
     for (size_t i = 0; i < m->faces.count; i++) {
         uint32_t u = m->faces.data[i], v = m->faces.data[i % 3 == 2 ? i - 2 : i + 1];
         double p = heights[u], q = heights[v];
-        if (u < v && p * q < 0) {
+        if (u < v && cones_are_opposite(p, q)) {
             TRY(cones_split_edge(b, u, v, p / (p - q)));
             heights = b->heights.data;
         }
