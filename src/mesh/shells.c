@@ -9,11 +9,17 @@
  * other shell: just beside a corner, within a face (bvh_crossing_beside), unless a face of another
  * shell overlaps this one there (bvh_covers_beside). Shells without contacts are asked at one
  * point, others also at all corners of faces in contact: there a shell that crosses another along
- * edges has points on both sides. A shell that others cover lies in none.
+ * edges has points on both sides. A shell that others cover lies in none. Which way a shell faces
+ * is the sign of its volume, in integers if doubles do not tell.
  *
  * Cost: O(log n) a shell and a contact, if few shells lie around one. */
 #include "mesh/examine.h"
 
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+
+#include "geometry/exact.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 
@@ -30,6 +36,7 @@ typedef struct nesting {
     const starg_mesh *mesh;
     const mesh_topology *topology;
     const bvh *tree;
+    int exponent;        /* starg_mesh_exponent */
     other_shell *others; /* by shell; all zero but for those in `list` */
     uint32_t *list;
     size_t count;
@@ -124,18 +131,6 @@ static void find_innermost(const nesting *n, mesh_shell *shells) {
     }
 }
 
-static void sum_volumes(const starg_mesh *mesh, const mesh_topology *topology, mesh_shell *shells) {
-    int exponent = starg_mesh_exponent(mesh);
-    for (size_t f = mesh->face_count; f-- > 0;) {
-        mesh_shell *own = &shells[topology->component[f]];
-        double p[3][3];
-        for (size_t k = 0; k < 3; k++)
-            starg_mesh_scaled_corner(mesh, f, k, exponent, p[k]);
-        own->volume += vec3_triple(p[0], p[1], p[2]) / 6;
-        own->first_face = (uint32_t)f;
-    }
-}
-
 /* The faces shell by shell; those of shell c start at start[c]. */
 static void sort_faces(const mesh_topology *topology, size_t *start, uint32_t *sorted) {
     for (size_t f = 0; f < topology->face_count; f++)
@@ -146,22 +141,65 @@ static void sort_faces(const mesh_topology *topology, size_t *start, uint32_t *s
         sorted[--start[topology->component[f] + 1]] = (uint32_t)f;
 }
 
+static void place_face(const nesting *n, uint32_t face, double p[9]) {
+    for (size_t k = 0; k < 3; k++)
+        vec3_copy(corner(n, face, k), p + 3 * k);
+}
+
+/* The exact sign of the volume within some faces. */
+static int sign_of_volume(const nesting *n, const uint32_t *faces, size_t count) {
+    exact sums[2] = {{0}}, part, x[9];
+    double p[9];
+    int bits, scale = INT_MAX;
+    for (size_t i = 0; i < count; i++) {
+        place_face(n, faces[i], p);
+        int own = exact_scale(p, 9, &bits);
+        scale = own < scale ? own : scale;
+    }
+    for (size_t i = 0; i < count; i++) {
+        place_face(n, faces[i], p);
+        for (int k = 0; k < 9; k++)
+            exact_set(&x[k], p[k], scale);
+        exact_determinant(&part, x, x + 3, x + 6);
+        exact_add(&sums[(i + 1) % 2], &sums[i % 2], &part);
+    }
+    return sums[count % 2].sign;
+}
+
+/* The volume of a shell, about its first corner. The sign is exact: a flat shell has none. */
+static void sum_volume(const nesting *n, const uint32_t *faces, size_t count, mesh_shell *own) {
+    const double *base = corner(n, faces[0], 0);
+    double sum = 0, size = 0, p[9];
+    for (size_t i = 0; i < count; i++) {
+        place_face(n, faces[i], p);
+        for (int k = 0; k < 9; k++)
+            p[k] = ldexp(p[k] - base[k % 3], -n->exponent);
+        sum += vec3_triple(p, p + 3, p + 6);
+        size += vec3_length(p) * vec3_length(p + 3) * vec3_length(p + 6);
+    }
+    if (!(fabs(sum) > ((double)count + 32) * DBL_EPSILON * size))
+        sum = sign_of_volume(n, faces, count) * fmax(fabs(sum), DBL_MIN);
+    own->volume = sum / 6;
+    own->first_face = faces[0];
+}
+
 starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
                              const mesh_topology *topology, const bvh *tree,
                              const uint8_t *touching, mesh_shell *shells) {
     starg_status status = STARG_OK;
-    nesting n = {.mesh = mesh, .topology = topology, .tree = tree};
+    nesting n = {
+        .mesh = mesh, .topology = topology, .tree = tree, .exponent = starg_mesh_exponent(mesh)};
     size_t count = topology->component_count, *start = NULL;
     uint32_t *sorted = NULL;
     STARG_NEW_ZERO(context, STAGE, n.others, count);
     STARG_NEW(context, STAGE, n.list, count);
     STARG_NEW_ZERO(context, STAGE, start, count + 2);
     STARG_NEW(context, STAGE, sorted, mesh->face_count);
-    sum_volumes(mesh, topology, shells);
     sort_faces(topology, start, sorted);
     for (size_t c = 0; c < count; c++) {
         n.own = (uint32_t)c;
         size_t end = c + 1 < count ? start[c + 2] : mesh->face_count;
+        sum_volume(&n, sorted + start[c + 1], end - start[c + 1], &shells[c]);
         STARG_TRY(nest(context, &n, sorted + start[c + 1], end - start[c + 1], touching, shells));
         STARG_TRY(starg_check_cancel(context, STAGE));
     }

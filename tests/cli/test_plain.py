@@ -2,7 +2,9 @@
 """The plain cases of ../shared/data/plain, with the answers of its README, and others of their kinds."""
 import json
 import os
+import random
 import unittest
+from fractions import Fraction
 
 from support import Case, main
 from test_coordinates import boxes, off
@@ -112,6 +114,25 @@ class Kinds(Case):
         two = self.boxes(((0, 0, 0), self.UNIT), ((.5, .5, .5), self.UNIT))
         out, _ = self.run_text("verify", two, "one.vtk", status=4)
         self.assertIn("inside the model are in no piece", out)
+
+    def test_flat(self):
+        """Tetrahedra as flat as rounding makes them: which way they face is the exact sign of their volume."""
+        rng, signs = random.Random(55), set()
+        for number in range(36):
+            step = (.1, .25)[number % 2]
+            a, b, c = ([rng.randrange(64) + step * rng.randrange(9) for _ in range(3)]
+                       for _ in range(3))
+            d = [a[k] / 2 + b[k] / 4 + c[k] / 4 for k in range(3)]
+            u, v, w = ([Fraction(x) - Fraction(y) for x, y in zip(p, a)] for p in (b, c, d))
+            volume = sum(u[i] * (v[i - 2] * w[i - 1] - v[i - 1] * w[i - 2]) for i in range(3))
+            sign = (volume > 0) - (volume < 0)
+            faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+            self.write("m.off", off([a, b, c, d], faces))
+            found = json.loads(self.run_bytes("check", "m.off", "--json", status=None)[0])
+            turned = found["findings"].get("inward_components", {"count": 0})["count"]
+            self.assertEqual((found["usable"], turned), (sign != 0, int(sign < 0)), number)
+            signs.add(sign)
+        self.assertEqual(signs, {-1, 0, 1})
 
     def test_walls(self):
         """Three boxes in a row: four triangles for each wall; a small one on a large one: its two."""
