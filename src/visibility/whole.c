@@ -12,8 +12,9 @@
  * before the plane, or an edge of t properly crosses a lateral triangle, such as (p, a, b), off the
  * line a b. (An edge within a lateral plane has an end in K or crosses one of the rays.)
  *
- * The BVH finds the triangles: boxes outside one of the planes of K are skipped, with a margin
- * above rounding. Cost O(log n) per face, times the triangles near its cone. */
+ * The BVH finds the triangles. Boxes outside one of the planes of K are skipped, and triangles that
+ * such a plane, or one through p and an edge of theirs, parts from K, with margins above rounding.
+ * Cost O(log n) per face, times the triangles near its cone. */
 #include <math.h>
 
 #include "geometry/predicates.h"
@@ -31,17 +32,48 @@ typedef struct cone {
     /* Planes with the cone on their positive side, relative to p: three lateral ones, and that of
      * the face (positive at p). */
     double normal[4][3], offset[4], slack[4];
+    uint32_t on[4][3]; /* slots of the face's vertices on them, or SCENE_NONE */
+    double ray[3][3];  /* from p to the corners, rounded */
+    double blur;       /* of the corners: how far off they may be */
+    double range;      /* from p to anything, but for a factor below 2 */
 } cone;
 
+static void add_vertex(uint32_t slot, uint32_t on[3], int *count) {
+    bool known = slot == SCENE_NONE;
+    for (int i = 0; i < *count; i++)
+        known = known || on[i] == slot;
+    if (!known)
+        on[(*count)++] = slot;
+}
+
+/* Lateral plane i holds both ends of an edge of the face that has corners i and i + 1; else those
+ * corners that are vertices. */
+static void find_vertices_on(cone *k, int i) {
+    const uint32_t *pair[2] = {k->corner[i].support, k->corner[(i + 1) % 3].support};
+    uint32_t *on = k->on[i], all[3];
+    int count = 0, single = 0;
+    on[0] = on[1] = on[2] = SCENE_NONE;
+    for (int c = 0; c < 2; c++)
+        for (int j = 0; j < 3; j++)
+            add_vertex(pair[c][j], all, &count);
+    for (int c = 0; c < 2 && count > 2; c++)
+        if (pair[c][1] == SCENE_NONE)
+            on[single++] = pair[c][0];
+    for (int j = 0; j < count && count <= 2; j++)
+        on[j] = all[j];
+}
+
 static void make_cone(cone *k) {
-    double r[3][3], size = 0, blur = 0, range = k->scene->extent;
+    double(*r)[3] = k->ray, size = 0;
+    k->blur = 0;
     for (int i = 0; i < 3; i++) {
         vec3_subtract(k->corner[i].place.at, k->p, r[i]);
-        blur = fmax(blur, k->corner[i].place.blur);
+        k->blur = fmax(k->blur, k->corner[i].place.blur);
         for (int j = 0; j < 3; j++)
             size = fmax(size, fabs(r[i][j]));
     }
-    double blurred = 32 * blur * (size + blur) * range;
+    const double range = k->range = k->scene->extent + size;
+    double blurred = 32 * k->blur * (size + k->blur) * range;
     for (int i = 0; i < 3; i++) {
         /* a face seen from inside is clockwise */
         vec3_cross(r[i], r[(i + 1) % 3], k->normal[i]);
@@ -53,6 +85,10 @@ static void make_cone(cone *k) {
     vec3_subtract(r[2], r[0], v);
     vec3_cross(v, u, k->normal[3]);
     k->offset[3] = -vec3_dot(k->normal[3], r[0]);
+    for (int i = 0; i < 3; i++) {
+        find_vertices_on(k, i);
+        k->on[3][i] = k->scene->corners[3 * k->rank + (size_t)i];
+    }
     k->slack[3] = 512 * 0x1p-53 * size * size * range + 4 * blurred + 0x1p-1000;
 }
 
@@ -71,75 +107,107 @@ static bool box_may_meet(void *user, const bvh_box *box) {
     return true;
 }
 
-/* orient3d of p, two corners of the triangle and a vertex. */
-static int lateral(const cone *k, int i, int j, const dyadic_point *q) {
-    return dyadic_orient3d(&k->apex, &k->corner[i].place, &k->corner[j].place, q);
+/* The distance of a vertex beyond plane i, times the length of its normal, up to slack[i]. */
+static double reach_of(const cone *k, int i, uint32_t slot) {
+    return k->offset[i] + k->normal[i][0] * (k->scene->x[slot] - k->p[0]) +
+           k->normal[i][1] * (k->scene->y[slot] - k->p[1]) +
+           k->normal[i][2] * (k->scene->z[slot] - k->p[2]);
 }
 
-/* Is the vertex q in the closed cone, strictly before the plane of the face? */
-static bool before_face(const cone *k, const dyadic_point *q) {
-    const visibility_scene *scene = k->scene;
-    return orient3d(scene_corner(scene, k->rank, 0), scene_corner(scene, k->rank, 1),
-                    scene_corner(scene, k->rank, 2), q->at) > 0 &&
-           lateral(k, 1, 0, q) >= 0 && lateral(k, 2, 1, q) >= 0 && lateral(k, 0, 2, q) >= 0;
+static bool is_on(const cone *k, int i, uint32_t slot) {
+    const uint32_t *on = k->on[i];
+    return slot == on[0] || slot == on[1] || slot == on[2];
 }
 
-/* Does the segment s t pass through the triangle of p and corners i and j, off the line of these?
+/* Does the triangle, except vertices that lie on it as part of the face, lie beyond one of the
+ * planes? Its part on that plane is then a corner or an edge of the face, which is not before it.
  */
-static bool crosses_lateral(const cone *k, int i, int j, const dyadic_point *s,
-                            const dyadic_point *t) {
-    const dyadic_point *a = &k->corner[i].place, *b = &k->corner[j].place;
-    if (lateral(k, i, j, s) * lateral(k, i, j, t) >= 0)
-        return false;
-    int ab = dyadic_orient3d(s, t, a, b), pa = dyadic_orient3d(s, t, &k->apex, a);
-    int bp = dyadic_orient3d(s, t, b, &k->apex);
-    return ab != 0 && pa * ab >= 0 && bp * ab >= 0;
-}
-
-/* Is the vertex in `slot` corner i of the triangle? */
-static bool is_corner(const cone *k, int i, uint32_t slot) {
-    const uint32_t *support = k->corner[i % 3].support;
-    return support[0] == slot && support[1] == SCENE_NONE;
-}
-
-/* Does the triangle, except corners shared with the face, lie beyond one of the planes? Its part on
- * that plane is then a corner or an edge of the face, which is not before it. */
-static bool is_plainly_outside(const cone *k, size_t rank) {
-    const uint32_t *other = k->scene->corners + 3 * rank;
+static bool is_plainly_outside(const cone *k, const uint32_t slots[3]) {
     for (int i = 0; i < 4; i++) {
         int outside = 0;
-        for (int j = 0; j < 3; j++) {
-            uint32_t slot = other[j];
-            bool shared = is_corner(k, i, slot) || (i < 3 && is_corner(k, i + 1, slot)) ||
-                          (i == 3 && (is_corner(k, 1, slot) || is_corner(k, 2, slot)));
-            double reach = k->offset[i] + k->normal[i][0] * (k->scene->x[slot] - k->p[0]) +
-                           k->normal[i][1] * (k->scene->y[slot] - k->p[1]) +
-                           k->normal[i][2] * (k->scene->z[slot] - k->p[2]);
-            outside += shared || reach < -k->slack[i];
-        }
+        for (int j = 0; j < 3; j++)
+            outside += is_on(k, i, slots[j]) || reach_of(k, i, slots[j]) < -k->slack[i];
         if (outside == 3)
             return true;
     }
     return false;
 }
 
+/* Does a plane through p and an edge of the triangle part it from the cone? Then they meet in p
+ * alone. This leaves out the rest of a wall whose faces are flat but for rounding. */
+static bool is_apart(const cone *k, const uint32_t slots[3]) {
+    double r[3][3], size = 0;
+    for (int j = 0; j < 3; j++) {
+        r[j][0] = k->scene->x[slots[j]] - k->p[0];
+        r[j][1] = k->scene->y[slots[j]] - k->p[1];
+        r[j][2] = k->scene->z[slots[j]] - k->p[2];
+        size = fmax(size, fmax(fabs(r[j][0]), fmax(fabs(r[j][1]), fabs(r[j][2]))));
+    }
+    const double slack = size * size * (128 * 0x1p-53 * k->range + 32 * k->blur) + 0x1p-1000;
+    for (int j = 0; j < 3; j++) {
+        double normal[3];
+        vec3_cross(r[j], r[(j + 1) % 3], normal);
+        const double own = vec3_dot(normal, r[(j + 2) % 3]), sign = own > 0 ? 1 : -1;
+        bool apart = fabs(own) > slack;
+        for (int i = 0; i < 3 && apart; i++)
+            apart = sign * vec3_dot(normal, k->ray[i]) < -slack;
+        if (apart)
+            return true;
+    }
+    return false;
+}
+
+/* On which side of plane i is a vertex: 1 is that of the cone. */
+static int side_of(const cone *k, int i, uint32_t slot, const dyadic_point *q) {
+    const visibility_scene *scene = k->scene;
+    if (is_on(k, i, slot))
+        return 0;
+    const double reach = reach_of(k, i, slot);
+    if (fabs(reach) > k->slack[i])
+        return reach > 0 ? 1 : -1;
+    if (i < 3)
+        return dyadic_orient3d(&k->apex, &k->corner[(i + 1) % 3].place, &k->corner[i].place, q);
+    return orient3d(scene_corner(scene, k->rank, 0), scene_corner(scene, k->rank, 1),
+                    scene_corner(scene, k->rank, 2), q->at);
+}
+
+/* Does the segment s t, whose ends are on different sides of lateral plane i, pass through the
+ * triangle of p and two corners, off the line of these? */
+static bool crosses_lateral(const cone *k, int i, const dyadic_point *s, const dyadic_point *t) {
+    const dyadic_point *a = &k->corner[i].place, *b = &k->corner[(i + 1) % 3].place;
+    int ab = dyadic_orient3d(s, t, a, b), pa = dyadic_orient3d(s, t, &k->apex, a);
+    int bp = dyadic_orient3d(s, t, b, &k->apex);
+    return ab != 0 && pa * ab >= 0 && bp * ab >= 0;
+}
+
 static bool is_clear_of(const cone *k, size_t rank) {
+    const uint32_t *slots = k->scene->corners + 3 * rank;
     if (scene_is_clear(k->scene, rank))
         return true;
     if (k->side != NULL && !scene_may_block(k->scene, rank, k->side[rank]))
         return true; /* by the proof in scene.h another face blocks the same view first */
-    if (rank == k->rank || is_plainly_outside(k, rank))
+    if (rank == k->rank || is_plainly_outside(k, slots) || is_apart(k, slots))
         return true;
     dyadic_point t[3];
-    for (int i = 0; i < 3; i++) {
-        t[i] = dyadic_of(scene_corner(k->scene, rank, i));
-        if (before_face(k, &t[i]))
-            return false;
+    int side[4][3];
+    for (int i = 3; i >= 0; i--) {
+        for (int j = 0; j < 3; j++) {
+            t[j] = dyadic_of(scene_corner(k->scene, rank, j));
+            side[i][j] = side_of(k, i, slots[j], &t[j]);
+        }
+        if (i == 3 && side[3][0] <= 0 && side[3][1] <= 0 && side[3][2] <= 0)
+            return true; /* no part is before the face */
     }
+    for (int j = 0; j < 3; j++)
+        if (side[0][j] >= 0 && side[1][j] >= 0 && side[2][j] >= 0 && side[3][j] > 0)
+            return false;
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            if (crosses_lateral(k, i, (i + 1) % 3, &t[j], &t[(j + 1) % 3]))
+        for (int j = 0; j < 3; j++) {
+            int next = (j + 1) % 3;
+            if (side[i][j] * side[i][next] < 0 && (side[3][j] > 0 || side[3][next] > 0) &&
+                crosses_lateral(k, i, &t[j], &t[next]))
                 return false;
+        }
     return true;
 }
 
