@@ -183,11 +183,12 @@ starg_status starg_faces_named(starg_context *context, const char *model_file, c
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     char *bytes = NULL;
+    const char *up;
     size_t size = 0;
     starg_face_values values = {0};
     *weights = NULL;
     STARG_TRY(take_pattern(context, name, &values));
-    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size));
+    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size, &up));
     STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
     if (!values.found)
         status = fail_unknown(context, &values, model_file);
@@ -255,10 +256,11 @@ starg_status starg_face_groups_read(starg_context *context, const char *model_fi
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     char *bytes = NULL;
+    const char *up;
     size_t size = 0;
     starg_face_values values = {.collects = true, .pattern = ""};
     *out = (starg_face_groups){0};
-    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size));
+    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size, &up));
     STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
     STARG_TRY(take_groups(context, &values, out));
 done:

@@ -81,20 +81,20 @@ starg_status starg_import_read(starg_context *context, const char *path, size_t 
 }
 
 /* glTF and 3MF define which axis is up; the others leave it to the file. */
-static void tell_up(starg_context *context, const char *bytes, size_t size, const char *path) {
-    bool gltf = begins_with(bytes, size, "glTF") || starg_has_extension(path, ".gltf");
-    if (gltf || begins_with(bytes, size, "PK\003\004"))
-        starg_log(context, STARG_LOG_NOTICE, "%c is up in %s ('" PROGRAM " --up-axis' turns it)",
-                  gltf ? 'y' : 'z', gltf ? "glTF" : "3MF");
+static const char *up_of(const char *bytes, size_t size, const char *path) {
+    if (begins_with(bytes, size, "glTF") || starg_has_extension(path, ".gltf"))
+        return "y is up in glTF";
+    return begins_with(bytes, size, "PK\003\004") ? "z is up in 3MF" : NULL;
 }
 
-starg_status starg_mesh_bytes(starg_context *context, const char *path, char **bytes,
-                              size_t *size) {
+starg_status starg_mesh_bytes(starg_context *context, const char *path, char **bytes, size_t *size,
+                              const char **up) {
     TRY(starg_file_read(context, STARG_MESH_FILE, path, bytes, size));
+    *up = NULL;
     if (!starg_import_recognized(*bytes, *size, path))
         return STARG_OK;
     size_t file_size = *size;
-    tell_up(context, *bytes, *size, path);
+    *up = up_of(*bytes, *size, path);
     starg_release(context, *bytes);
     *bytes = NULL;
     return starg_import_read(context, path, file_size, bytes, size);

@@ -97,9 +97,12 @@ starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, s
 
 starg_status starg_mesh_read(starg_context *context, const char *path, starg_mesh **out) {
     SCOPED char *bytes = NULL;
+    const char *up;
     size_t size = 0;
     *out = NULL;
-    TRY(starg_mesh_bytes(context, path, &bytes, &size));
+    TRY(starg_mesh_bytes(context, path, &bytes, &size, &up));
+    if (up != NULL)
+        starg_log(context, STARG_LOG_NOTICE, "%s ('starguard-import --up-axis' turns it)", up);
     const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
     return read_source((starg_source){context, name, bytes, size}, &bytes, NULL, out);
 }
