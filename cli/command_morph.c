@@ -17,7 +17,7 @@ typedef struct values {
     const char *output, *map, *landmarks, *glb, *picture, *certificate;
     starg_morph_options wanted;
     uint64_t frames;
-    int up, connectivity;
+    int up, connectivity, format;
     bool guards, pieces, overlay, report;
 } values;
 
@@ -29,6 +29,9 @@ static const double SECONDS = 2; /* of an animation */
 /* In the order of starg_picture_options.up. */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
+/* Words of --frames-format. */
+static const char *const formats[] = {"off", "ply", NULL};
+
 /* Words of --connectivity. */
 static const char *const connectivities[] = {"both", "a", NULL};
 
@@ -38,6 +41,10 @@ static const cli_option options[] = {
     CLI_COUNT_OPTION("frames", frames, "N", 2, 10000, 21, NULL,
                      "Number of frames, evenly spaced in time, including both ends.",
                      .group = "output", .brief = "how many"),
+    CLI_CHOICE_OPTION("frames-format", format, formats, 0, "off|ply",
+                      "Frames as OFF, which has places and faces only, or as PLY, with the colours "
+                      "and texture coordinates of A.",
+                      .group = "output"),
     CLI_INPUT_OPTION("map", map, "FILE",
                      "Map from 'starguard map'. Default: computed as by that command.",
                      .group = "input", .brief = "a map that was made before"),
@@ -61,7 +68,7 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION(
         "glb", glb, "FILE.glb",
         "Frames as one animation of two seconds (glTF, morph targets), with the colours of A's "
-        "vertices.",
+        "vertices and its texture coordinates.",
         .group = "output", .brief = "an animation for Blender"),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Picture of five time steps, one row each for star, arap and linear.",
@@ -101,7 +108,7 @@ static char *in_folder(const values *v, const char *name) {
 
 static char *frame_in_folder(const values *v, uint64_t index) {
     char name[32];
-    snprintf(name, sizeof name, "frame_%04llu.off", (unsigned long long)index);
+    snprintf(name, sizeof name, "frame_%04llu.%s", (unsigned long long)index, formats[v->format]);
     return in_folder(v, name);
 }
 
@@ -209,29 +216,6 @@ static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
            memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
 }
 
-/* A's colours at the vertices of the overlay, as if they were places. */
-static starg_status color_overlay(cli_session *session, const starg_overlay *overlay,
-                                  starg_mesh *refined) {
-    const uint8_t *colors = starg_mesh_colors(session->mesh);
-    size_t count = starg_mesh_vertex_count(session->mesh);
-    SCOPED_BY(starg_mesh_drop) starg_mesh *tinted = NULL;
-    if (colors == NULL)
-        return STARG_OK;
-    SCOPED double *own = malloc((3 * count + 1) * sizeof *own);
-    SCOPED double *parts = malloc((3 * overlay->vertex_count + 1) * sizeof *parts);
-    SCOPED uint8_t *rounded = malloc(3 * overlay->vertex_count + 1);
-    if (own == NULL || parts == NULL || rounded == NULL)
-        return cli_fail_memory(session);
-    for (size_t i = 0; i < 3 * count; i++)
-        own[i] = colors[i];
-    TRY(starg_mesh_create(session->context, own, count, starg_mesh_faces(session->mesh),
-                          starg_mesh_face_count(session->mesh), &tinted));
-    starg_overlay_positions(overlay, tinted, 0, parts);
-    for (size_t i = 0; i < 3 * overlay->vertex_count; i++)
-        rounded[i] = (uint8_t)(parts[i] + 0.5);
-    return starg_mesh_set_colors(refined, rounded);
-}
-
 /* Both ends with the faces of the overlay. */
 static starg_status refine(cli_session *session, subject *s) {
     const starg_overlay *overlay = &s->map->overlay;
@@ -246,7 +230,7 @@ static starg_status refine(cli_session *session, subject *s) {
     starg_overlay_positions(overlay, s->target, 1, s->images);
     TRY(starg_mesh_create(session->context, positions, overlay->vertex_count, overlay->faces,
                           overlay->face_count, &s->refined));
-    return color_overlay(session, overlay, s->refined);
+    return starg_overlay_look(session->context, overlay, session->mesh, s->refined);
 }
 
 /* How far the last frame is from B. */
@@ -322,7 +306,7 @@ static json_t *frame_json(cli_session *session, double t, const starg_frame_meas
 }
 
 /* Frees `name`. */
-static starg_status write_frame(cli_session *session, const starg_mesh *source,
+static starg_status write_frame(cli_session *session, const values *v, const starg_mesh *source,
                                 const double *positions, char *name) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
@@ -330,7 +314,10 @@ static starg_status write_frame(cli_session *session, const starg_mesh *source,
         return cli_fail_memory(session);
     CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(source),
                               starg_mesh_faces(source), starg_mesh_face_count(source), &mesh));
-    CLI_TRY(cli_mesh_write(session, mesh, STARG_MESH_OFF, name));
+    CLI_TRY(starg_mesh_set_colors(mesh, starg_mesh_colors(source)));
+    CLI_TRY(starg_mesh_set_texture(mesh, starg_mesh_texture(source)));
+    CLI_TRY(cli_mesh_write(session, mesh, v->format == 0 ? STARG_MESH_OFF : STARG_MESH_PLY_BINARY,
+                           name));
 done:
     starg_mesh_free(mesh);
     free(name);
@@ -349,7 +336,7 @@ static starg_status write_frames(cli_session *session, const values *v, const su
         starg_frame_measures measures;
         TRY(starg_morph_frame(morph, t, positions));
         TRY(starg_morph_measure(morph, t, positions, &measures));
-        TRY(write_frame(session, source, positions, frame_in_folder(v, i)));
+        TRY(write_frame(session, v, source, positions, frame_in_folder(v, i)));
         cli_append(session, list, frame_json(session, t, &measures));
         sum->intersections += measures.intersections;
         sum->ends[i > 0] = measures.intersections;
@@ -598,16 +585,22 @@ static starg_status write_report(cli_session *session, const values *v, const su
     return status;
 }
 
-/* Frames have places and faces only; the animation has the vertices' colours. */
+/* Frames as OFF have places and faces only. */
 static void warn_of_look(cli_session *session, const values *v) {
     unsigned look = starg_mesh_left_out(session->mesh);
-    if (v->glb == NULL && starg_mesh_colors(session->mesh) != NULL)
+    bool kept = v->glb != NULL || v->format > 0;
+    if (!kept && starg_mesh_colors(session->mesh) != NULL)
         look |= STARG_MESH_COLORS;
+    if (!kept && starg_mesh_texture(session->mesh) != NULL)
+        look |= STARG_MESH_TEXTURE;
     if (look != 0)
-        cli_warn(session, "the frames leave out the %s of A",
+        cli_warn(session, "the frames leave out the %s of A%s",
                  look == STARG_MESH_COLORS    ? "colours"
                  : look == STARG_MESH_TEXTURE ? "texture coordinates"
-                                              : "colours and texture coordinates");
+                                              : "colours and texture coordinates",
+                 starg_mesh_left_out(session->mesh) == 0
+                     ? " (--frames-format ply and --glb keep them)"
+                     : "");
 }
 
 static void say_morph(cli_session *session, const values *v, const subject *s,

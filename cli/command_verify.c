@@ -223,18 +223,21 @@ static starg_status read_frame(cli_session *session, const char *name, folder *o
     return status;
 }
 
-/* frame_0000.off and so on, and morph.json. */
+/* frame_0000.off and so on, or .ply, and morph.json. */
 static starg_status read_folder(cli_session *session, const char *name, folder *out) {
     starg_status status = STARG_OK;
+    const char *format = "off";
     bool found = true;
     char *path = NULL;
     while (found) {
         char file[32];
-        snprintf(file, sizeof file, "frame_%04zu.off", out->count);
+        snprintf(file, sizeof file, "frame_%04zu.%s", out->count, format);
         free(path);
         path = name_in(name, file);
         if (path == NULL)
             return cli_fail_memory(session);
+        if (out->count == 0 && !exists(path))
+            memcpy(strrchr(path, '.') + 1, format = "ply", 3);
         CLI_TRY(read_frame(session, path, out, &found));
     }
     free(path);

@@ -9,12 +9,12 @@
 #include "show.h"
 #include "starguard/animation.h"
 
-/* frame_0000.off and so on. */
+/* frame_0000.off and so on, or .ply. */
 static bool is_frame(const char *name) {
-    static const char begin[] = "frame_", end[] = ".off";
-    size_t size = strlen(name), head = sizeof begin - 1, tail = sizeof end - 1;
+    static const char begin[] = "frame_";
+    size_t size = strlen(name), head = sizeof begin - 1, tail = 4;
     return size > head + tail && strncmp(name, begin, head) == 0 &&
-           strcmp(name + size - tail, end) == 0 &&
+           (strcmp(name + size - tail, ".off") == 0 || strcmp(name + size - tail, ".ply") == 0) &&
            strspn(name + head, "0123456789") == size - head - tail;
 }
 

@@ -4,9 +4,9 @@
  *
  * starguard runs it as a child with limits of memory and time, so that a file that crashes an
  * importer hurts nobody. Transforms of nodes are applied in double precision; corners at equal
- * positions become one vertex, as told below; polygons stay as they are. Names of nodes and
- * materials stand in comments of the header, `group` and `material` of each face give their
- * numbers. */
+ * positions become one vertex, as told below; polygons stay as they are, and have their corners'
+ * texture coordinates if any mesh has some. Names of nodes and materials stand in comments of the
+ * header, `group` and `material` of each face give their numbers. */
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -31,6 +31,7 @@ typedef struct scene {
     size_t count, capacity;
     const struct aiNode **groups; /* by number */
     size_t group_count, group_capacity;
+    int textured;
     int up; /* axis that becomes z, or -1 */
 } scene;
 
@@ -89,6 +90,7 @@ static int collect(scene *s, const struct aiNode *node, double above[3][4], int 
         s->instances = grow(s->instances, s->count, &s->capacity, sizeof *s->instances);
         instance *item = &s->instances[s->count++];
         item->mesh = s->file->mMeshes[node->mMeshes[i]];
+        s->textured |= item->mesh->mTextureCoords[0] != NULL;
         item->group = (uint32_t)(s->group_count - 1);
         memcpy(item->transform, own, sizeof own);
     }
@@ -313,7 +315,20 @@ static face_types find_types(const scene *s) {
                         type_for(s->file->mNumMaterials)};
 }
 
-static void write_faces(const instance *item, const uint32_t *number, face_types types) {
+/* None, if the mesh has no texture coordinates. */
+static void write_texture(const struct aiMesh *mesh, const struct aiFace *face, int turned) {
+    unsigned corners = mesh->mTextureCoords[0] != NULL ? face->mNumIndices : 0;
+    write_number(2 * corners, (number_type){"ushort", 2});
+    for (unsigned k = 0; k < corners; k++) {
+        const struct aiVector3D *uv =
+            &mesh->mTextureCoords[0][face->mIndices[turned ? corners - 1 - k : k]];
+        const float pair[2] = {(float)uv->x, (float)uv->y};
+        fwrite(pair, sizeof pair, 1, stdout);
+    }
+}
+
+static void write_faces(const instance *item, const uint32_t *number, face_types types,
+                        int textured) {
     double(*t)[4] = ((instance *)(uintptr_t)item)->transform;
     double turn = t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) -
                   t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0]) +
@@ -330,6 +345,8 @@ static void write_faces(const instance *item, const uint32_t *number, face_types
         }
         write_number(item->group, types.group);
         write_number(item->mesh->mMaterialIndex, types.material);
+        if (textured)
+            write_texture(item->mesh, face, turn < 0);
     }
 }
 
@@ -339,8 +356,9 @@ static void write_map(const scene *s, corner_map *map, size_t vertices, size_t f
     print_names(s);
     printf("element vertex %zu\nproperty double x\nproperty double y\nproperty double z\n"
            "element face %zu\nproperty list %s uint vertex_indices\nproperty %s group\n"
-           "property %s material\nend_header\n",
-           vertices, faces, types.corners.name, types.group.name, types.material.name);
+           "property %s material\n%send_header\n",
+           vertices, faces, types.corners.name, types.group.name, types.material.name,
+           s->textured ? "property list ushort float texcoord\n" : "");
     for (uint32_t i = 0, number = 0; i < map->count; i++) {
         if (map->vertex[i] == i) {
             fwrite(map->place[i], sizeof map->place[i], 1, stdout);
@@ -350,7 +368,7 @@ static void write_map(const scene *s, corner_map *map, size_t vertices, size_t f
         }
     }
     for (size_t i = 0; i < s->count; i++)
-        write_faces(&s->instances[i], map->vertex, types);
+        write_faces(&s->instances[i], map->vertex, types, s->textured);
 }
 
 static int write_scene(scene *s) {
@@ -376,9 +394,9 @@ static const struct aiScene *read_file(const char *path) {
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     aiSetImportPropertyInteger(store, AI_CONFIG_PP_RVC_FLAGS,
                                aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                   aiComponent_COLORS | aiComponent_TEXCOORDS |
-                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
+                                   aiComponent_COLORS | aiComponent_BONEWEIGHTS |
+                                   aiComponent_ANIMATIONS | aiComponent_TEXTURES |
+                                   aiComponent_LIGHTS | aiComponent_CAMERAS);
     const struct aiScene *file = aiImportFileExWithProperties(
         path, aiProcess_RemoveComponent | aiProcess_SortByPType, NULL, store);
     aiReleasePropertyStore(store);

@@ -38,10 +38,16 @@ STARG_API const uint32_t *starg_mesh_faces(const starg_mesh *mesh);
 STARG_API const uint8_t *starg_mesh_colors(const starg_mesh *mesh);
 STARG_API starg_status starg_mesh_set_colors(starg_mesh *mesh, const uint8_t *colors);
 
+/* Texture coordinates u, v of the corners, v upward, face_count x 3 x 2, owned by the mesh; NULL:
+ * it has none. A mesh that is read has those of its file (OBJ, PLY, scenes). Setting copies them;
+ * NULL removes them. Errors: MEMORY. */
+STARG_API const float *starg_mesh_texture(const starg_mesh *mesh);
+STARG_API starg_status starg_mesh_set_texture(starg_mesh *mesh, const float *texture);
+
 /* What the file of the mesh has and the mesh has not: bits of starg_mesh_look. */
 typedef enum starg_mesh_look {
     STARG_MESH_COLORS = 1, /* of faces or materials */
-    STARG_MESH_TEXTURE = 2 /* texture coordinates */
+    STARG_MESH_TEXTURE = 2 /* texture coordinates, of some corners only */
 } starg_mesh_look;
 STARG_API unsigned starg_mesh_left_out(const starg_mesh *mesh);
 
@@ -66,7 +72,7 @@ typedef enum starg_mesh_format {
 /* Reads a mesh; path "-" is standard input. The format is recognized by content, else by the file
  * extension. Polygons are triangulated in place (faces keep the file's order): as a fan about the
  * first corner, or by ear clipping if that fan is invalid (at most 4,096 corners). STL corners at
- * exactly equal positions become one vertex. Faces with repeated corners are kept. Normals, colours
+ * exactly equal positions become one vertex. Faces with repeated corners are kept. Normals
  * and materials are ignored, and no other file is opened. A file without faces is an error. Errors:
  * READ, FORMAT (with the line of a text or the byte of a binary file), RANGE (with the vertex),
  * MEMORY, CANCELLED. Messages other than MEMORY and CANCELLED name the file. */
@@ -82,7 +88,7 @@ STARG_API starg_status starg_mesh_read_memory(starg_context *context, const void
 STARG_API void starg_mesh_origin(const starg_mesh *mesh, double origin[3]);
 
 /* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY, OFF and VTP store them,
- * and only VTP stores marks. */
+ * and only VTP stores marks. PLY also stores colours of vertices and texture coordinates. */
 typedef struct starg_mesh_write_options {
     starg_mesh_format format;
     const uint8_t *face_colors; /* face_count x 3, or NULL */

@@ -103,6 +103,11 @@ STARG_API starg_status starg_map_overlay(starg_context *context, const starg_mes
 STARG_API void starg_overlay_positions(const starg_overlay *overlay, const starg_mesh *mesh,
                                        int end, double *positions);
 
+/* Gives a mesh with the overlay's faces the colours and texture coordinates of A, as they are at
+ * its places on A. Errors: ARGUMENT (another number of vertices or faces), MEMORY. */
+STARG_API starg_status starg_overlay_look(starg_context *context, const starg_overlay *overlay,
+                                          const starg_mesh *a, starg_mesh *refined);
+
 /* Writes MAP.json; path "-" is standard output. Errors: WRITE, MEMORY. */
 STARG_API starg_status starg_map_write(starg_context *context, const starg_map *map,
                                        const char *path);

@@ -17,7 +17,7 @@ from typing import Any, Callable, Iterator, Mapping
 
 _PRIMITIVES: dict[str, Any] = {
     "bool": ctypes.c_bool, "char": ctypes.c_char, "int": ctypes.c_int, "unsigned": ctypes.c_uint,
-    "double": ctypes.c_double, "size_t": ctypes.c_size_t, "uintptr_t": ctypes.c_size_t,
+    "float": ctypes.c_float, "double": ctypes.c_double, "size_t": ctypes.c_size_t, "uintptr_t": ctypes.c_size_t,
     "int32_t": ctypes.c_int32, "int64_t": ctypes.c_int64, "uint8_t": ctypes.c_uint8,
     "uint32_t": ctypes.c_uint32, "uint64_t": ctypes.c_uint64}
 

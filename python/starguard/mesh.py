@@ -190,6 +190,15 @@ class Mesh:
         return np.frombuffer(ffi.buffer(held, 3 * count), dtype=np.uint8).reshape(count, 3).copy()
 
     @property
+    def texture(self) -> Array | None:
+        """Texture coordinates u, v of the corners, v upward, (m, 3, 2) of float32, if its file has them; a copy."""
+        held = lib.starg_mesh_texture(self._handle)
+        if held == ffi.NULL:
+            return None
+        count = lib.starg_mesh_face_count(self._handle)
+        return np.frombuffer(ffi.buffer(held, 24 * count), dtype=np.float32).reshape(count, 3, 2).copy()
+
+    @property
     def left_out(self) -> tuple[str, ...]:
         """What the file of the mesh has and the mesh has not: "colors", "texture"."""
         bits = lib.starg_mesh_left_out(self._handle)

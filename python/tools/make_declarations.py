@@ -19,7 +19,7 @@ import os
 import re
 import sys
 
-PRIMITIVES = {"void", "bool", "char", "int", "unsigned", "double", "size_t", "int32_t", "int64_t",
+PRIMITIVES = {"void", "bool", "char", "int", "unsigned", "float", "double", "size_t", "int32_t", "int64_t",
               "uint8_t", "uint32_t", "uint64_t"}
 TOKEN = re.compile(r"\s*([A-Za-z_]\w*|0[xX][0-9A-Fa-f]+|\d+|<<|.)", re.DOTALL)
 

@@ -73,6 +73,33 @@ starg_status starg_builder_color(starg_mesh_builder *builder, const double color
     return STARG_OK;
 }
 
+/* In single precision: what is beyond its range, or no number, is 0. */
+static float texture_part(double part) {
+    return fabs(part) < 1e30 ? (float)part : 0;
+}
+
+starg_status starg_builder_vertex_texture(starg_mesh_builder *builder, const double uv[2]) {
+    for (int k = 0; k < 2; k++)
+        PUSH(builder->source->context, STARG_MESH_FILE, &builder->vertex_texture,
+             texture_part(uv[k]));
+    return STARG_OK;
+}
+
+starg_status starg_builder_corner_texture(starg_mesh_builder *builder, const double uv[2]) {
+    for (int k = 0; k < 2; k++)
+        PUSH(builder->source->context, STARG_MESH_FILE, &builder->open_texture,
+             texture_part(uv[k]));
+    return STARG_OK;
+}
+
+void starg_builder_restart(starg_mesh_builder *builder) {
+    builder->vertices.count = builder->faces.count = builder->corners.count = 0;
+    builder->colors.count = builder->vertex_texture.count = builder->open_texture.count =
+        builder->texture.count = 0;
+    if (builder->values != NULL)
+        builder->values->data.count = 0;
+}
+
 starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, starg_place place) {
     size_t count = starg_builder_vertex_count(builder);
     if (vertex < 0 || (uint64_t)vertex >= count || vertex > UINT32_MAX)
@@ -94,6 +121,28 @@ static starg_status make_room(starg_mesh_builder *builder, size_t count) {
     return STARG_OK;
 }
 
+/* Gives the corners of the open face's triangles their texture coordinates, if all its corners have
+ * some: those of the first corner at the vertex. */
+static starg_status texture_triangles(starg_mesh_builder *builder, const uint32_t *triangles) {
+    const uint32_t *corners = builder->corners.data;
+    size_t count = builder->corners.count;
+    bool complete = builder->open_texture.count == 2 * count &&
+                    builder->texture.count == 2 * builder->faces.count &&
+                    count <= MAX_CONCAVE_CORNERS;
+    for (size_t i = 0; complete && i < 3 * (count - 2); i++) {
+        size_t at = 0;
+        while (corners[at] != triangles[i])
+            at++;
+        for (size_t k = 0; k < 2; k++)
+            PUSH(builder->source->context, STARG_MESH_FILE, &builder->texture,
+                 builder->open_texture.data[2 * at + k]);
+    }
+    if (builder->open_texture.count > 0)
+        builder->left_out |= complete ? 0 : STARG_MESH_TEXTURE;
+    builder->open_texture.count = 0;
+    return STARG_OK;
+}
+
 starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place) {
     const uint32_t *corners = builder->corners.data;
     size_t count = builder->corners.count;
@@ -112,6 +161,7 @@ starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place) 
         TRY(starg_polygon_clip(builder->source->context, builder->vertices.data, corners, count,
                                triangles));
     }
+    TRY(texture_triangles(builder, triangles));
     builder->faces.count += 3 * (count - 2);
     builder->corners.count = 0;
     while (builder->values != NULL && builder->values->data.count < builder->faces.count / 3)
@@ -127,17 +177,34 @@ starg_status starg_builder_tick(starg_mesh_builder *builder, size_t done) {
     return starg_check_cancel(builder->source->context, STARG_MESH_FILE);
 }
 
+/* Texture coordinates of vertices, at their corners. */
+static starg_status spread_texture(starg_mesh_builder *builder) {
+    if (builder->vertex_texture.count == 0 || builder->texture.count > 0)
+        return STARG_OK;
+    for (size_t i = 0; i < 2 * builder->faces.count; i++)
+        PUSH(builder->source->context, STARG_MESH_FILE, &builder->texture,
+             builder->vertex_texture.data[2 * (size_t)builder->faces.data[i / 2] + i % 2]);
+    return STARG_OK;
+}
+
 starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out) {
     if (builder->faces.count == 0)
         return starg_source_fail(builder->source, starg_at_file(),
                                  "the file has no faces; it must contain triangles or polygons");
+    TRY(spread_texture(builder));
     starg_status status = starg_mesh_adopt(builder->source->context, builder->vertices.data,
                                            builder->vertices.count / 3, builder->faces.data,
                                            builder->faces.count / 3, out);
     if (status == STARG_OK) {
         bool colored = builder->colors.count == builder->vertices.count;
-        (*out)->left_out =
-            builder->left_out | (builder->colors.count > 0 && !colored ? STARG_MESH_COLORS : 0);
+        bool textured = builder->texture.count == 2 * builder->faces.count;
+        (*out)->left_out = builder->left_out |
+                           (builder->colors.count > 0 && !colored ? STARG_MESH_COLORS : 0) |
+                           (builder->texture.count > 0 && !textured ? STARG_MESH_TEXTURE : 0);
+        if (textured) {
+            (*out)->texture = builder->texture.data;
+            builder->texture.data = NULL;
+        }
         if (colored) {
             (*out)->colors = builder->colors.data;
             builder->colors.data = NULL;
@@ -150,5 +217,6 @@ starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out)
 
 void starg_builder_free(starg_mesh_builder *builder) {
     RELEASE(builder->vertices.data, builder->faces.data, builder->corners.data,
-            builder->colors.data);
+            builder->colors.data, builder->vertex_texture.data, builder->open_texture.data,
+            builder->texture.data);
 }

@@ -78,7 +78,7 @@ done:
 void starg_mesh_free(starg_mesh *mesh) {
     if (mesh == NULL)
         return;
-    RELEASE(mesh->vertices, mesh->faces, mesh->colors, mesh);
+    RELEASE(mesh->vertices, mesh->faces, mesh->colors, mesh->texture, mesh);
 }
 
 size_t starg_mesh_vertex_count(const starg_mesh *mesh) {
@@ -101,6 +101,21 @@ starg_status starg_mesh_set_colors(starg_mesh *mesh, const uint8_t *colors) {
     }
     starg_release(mesh->context, mesh->colors);
     mesh->colors = own;
+    return STARG_OK;
+}
+
+const float *starg_mesh_texture(const starg_mesh *mesh) {
+    return mesh->texture;
+}
+
+starg_status starg_mesh_set_texture(starg_mesh *mesh, const float *texture) {
+    float *own = NULL;
+    if (texture != NULL) {
+        NEW(mesh->context, "mesh", own, 6 * mesh->face_count);
+        memcpy(own, texture, 6 * mesh->face_count * sizeof *own);
+    }
+    starg_release(mesh->context, mesh->texture);
+    mesh->texture = own;
     return STARG_OK;
 }
 

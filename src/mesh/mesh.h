@@ -11,6 +11,7 @@ struct starg_mesh {
     double *vertices;  /* vertex_count x 3 */
     uint32_t *faces;   /* face_count x 3 */
     uint8_t *colors;   /* vertex_count x 3, sRGB; NULL: none */
+    float *texture;    /* face_count x 3 x 2; NULL: none */
     unsigned left_out; /* starg_mesh_look: in its file only */
 };
 

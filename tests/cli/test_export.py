@@ -130,9 +130,10 @@ class Export(Case):
         wholes = {"all.glb": files, "guards.glb": ["g.json"], "pieces.glb": ["p.vtk"],
                   "skeleton.glb": ["s.vtk"], "model.glb": [self.model],
                   "more.glb": ["s.vtk", "--model", self.model]}
-        for name, words in wholes.items():
+        self.run_text("morph", self.model, self.model, "--frames", "3", "-o", "frames", "--glb", "morph.glb")
+        for name, words in (wholes | {"morph.glb": None}).items():
             with self.subTest(name=name):
-                path = self.export(*words, name=name)
+                path = self.export(*words, name=name) if words else self.path(name)
                 told = subprocess.run([NODE, "-e", VALIDATE, VALIDATOR, path], check=True,
                                       capture_output=True, text=True).stdout
                 issues = json.loads(told)["issues"]

@@ -23,7 +23,7 @@ WITHOUT = {
     "starg_space_admits": NUMBER, "starg_space_leak": NUMBER, "starg_field_count": NUMBER, "starg_field_set_count": "stores a number",
     "starg_field_set_real": "stores a number", "starg_field_set_word": "stores a number", "starg_field_word": TEXT, "starg_field_real_word": TEXT, "starg_fields_word": TEXT, "starg_check_advice": TEXT,
     "starg_check_describe_grid": "writes into the text of the caller",
-    "starg_mesh_colors": NUMBER, "starg_mesh_left_out": NUMBER, "starg_mesh_origin": ARITHMETIC,
+    "starg_mesh_colors": NUMBER, "starg_mesh_texture": NUMBER, "starg_mesh_left_out": NUMBER, "starg_mesh_origin": ARITHMETIC,
     "starg_field_expectation": TEXT, "starg_field_group": TEXT,
     "starg_field_default_text": "writes into the text of the caller",
     "starg_finding_name": TEXT, "starg_status_string": TEXT, "starg_version": TEXT,

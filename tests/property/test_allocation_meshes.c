@@ -65,6 +65,8 @@ static const char stl[] = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0
 
 static const char colored[] = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n";
 
+static const char textured[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+
 static const char vtp[] =
     "<VTKFile type=\"PolyData\" compressor=\"vtkZLibDataCompressor\"><PolyData>"
     "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\">"
@@ -73,14 +75,17 @@ static const char vtp[] =
     "<Polys><DataArray type=\"Int32\" Name=\"connectivity\">0 1 2</DataArray>"
     "<DataArray type=\"Int32\" Name=\"offsets\">3</DataArray></Polys></Piece></PolyData></VTKFile>";
 
-static starg_status color_mesh(starg_context *context) {
+static starg_status dress_mesh(starg_context *context) {
     static const uint8_t colors[3 * 8] = {255, 0, 7};
+    static const float texture[6 * 12] = {0.5F};
     starg_mesh *mesh;
     starg_status status =
         starg_mesh_create(context, starg_mesh_vertices(in.cube), 8, starg_mesh_faces(in.cube),
                           starg_mesh_face_count(in.cube), &mesh);
     if (status == STARG_OK)
         status = starg_mesh_set_colors(mesh, colors);
+    if (status == STARG_OK)
+        status = starg_mesh_set_texture(mesh, texture);
     starg_mesh_free(mesh);
     return status;
 }
@@ -89,13 +94,15 @@ static starg_status meshes(starg_context *context) {
     FAILING_BY(starg_context_create, "", context_create(context));
     MESH(starg_mesh_create, "", starg_mesh_vertices(in.cube), starg_mesh_vertex_count(in.cube),
          starg_mesh_faces(in.cube), starg_mesh_face_count(in.cube));
-    FAILING_BY(starg_mesh_set_colors, "", color_mesh(context));
+    FAILING_BY(starg_mesh_set_colors, "", dress_mesh(context));
+    FAILING_BY(starg_mesh_set_texture, "", dress_mesh(context));
     MESH(starg_mesh_read, "off", failing_input("room.off"));
     MESH(starg_mesh_read, "obj", failing_input("room.obj"));
     MESH(starg_mesh_read, "binary ply", failing_input("room.ply"));
     MESH(starg_mesh_read, "binary stl", failing_input("room.stl"));
     READ_TEXT(starg_mesh_read_memory, "polygon", polygon);
     READ_TEXT(starg_mesh_read_memory, "colours", colored);
+    READ_TEXT(starg_mesh_read_memory, "texture", textured);
     READ_TEXT(starg_mesh_read_memory, "ply", ply);
     READ_TEXT(starg_mesh_read_memory, "stl", stl);
     READ_TEXT(starg_mesh_read_memory, "vtp", vtp);

@@ -207,6 +207,37 @@ static starg_status map_overlay(starg_context *context) {
     return status;
 }
 
+/* A mesh with the overlay's faces gets colours and texture coordinates; memory fails then. */
+static starg_status overlay_look(starg_context *context) {
+    starg_map *map = NULL;
+    starg_mesh *a = NULL, *refined = NULL;
+    failing_pause();
+    test_ok(context, starg_map_create(context, in.blob, in.other_blob, NULL, &map));
+    test_ok(context, starg_map_overlay(context, in.blob, in.other_blob, map));
+    const starg_overlay *overlay = &map->overlay;
+    const size_t vertices = starg_mesh_vertex_count(in.blob);
+    const size_t faces = starg_mesh_face_count(in.blob);
+    double *places = malloc(3 * overlay->vertex_count * sizeof *places);
+    uint8_t *colors = calloc(3 * vertices, 1);
+    float *texture = calloc(6 * faces, sizeof *texture);
+    starg_overlay_positions(overlay, in.blob, 0, places);
+    test_ok(context, starg_mesh_create(context, places, overlay->vertex_count, overlay->faces,
+                                       overlay->face_count, &refined));
+    test_ok(context, starg_mesh_create(context, starg_mesh_vertices(in.blob), vertices,
+                                       starg_mesh_faces(in.blob), faces, &a));
+    test_ok(context, starg_mesh_set_colors(a, colors));
+    test_ok(context, starg_mesh_set_texture(a, texture));
+    failing_resume();
+    starg_status status = starg_overlay_look(context, overlay, a, refined);
+    free(places);
+    free(colors);
+    free(texture);
+    starg_mesh_free(a);
+    starg_mesh_free(refined);
+    starg_map_free(context, map);
+    return status;
+}
+
 #define VERDICT(NAME, VARIANT, ...)                                                                \
     FAILING_MAKES(NAME, VARIANT, starg_verdict, starg_verdict_free(context, out), __VA_ARGS__)
 
@@ -220,6 +251,7 @@ static starg_status maps(starg_context *context) {
     MAP(starg_map_create, "sphere, landmarks", in.blob, in.other_blob, &landmarks);
     MAP(starg_map_create, "stars", in.blob, in.other_blob, &solid);
     FAILING_BY(starg_map_overlay, "", map_overlay(context));
+    FAILING_BY(starg_overlay_look, "", overlay_look(context));
     FAILING(starg_map_write, "", in.map, failing_output("m.json"));
     FAILING_TEXT(starg_map_write_memory, "", in.map);
     MAP(starg_map_read, "", failing_input("map.json"), in.blob, in.other_blob);

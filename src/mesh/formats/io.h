@@ -70,6 +70,9 @@ typedef struct starg_mesh_builder {
     STARG_ARRAY(uint32_t) faces;   /* 3 indices per triangle */
     STARG_ARRAY(uint32_t) corners; /* of the open face */
     STARG_ARRAY(uint8_t) colors;   /* 3 numbers per vertex, or those of fewer: then none count */
+    /* Texture coordinates, 2 numbers each: of vertices, of the open face's corners, and of the
+     * corners of all triangles; those of fewer do not count. */
+    STARG_ARRAY(float) vertex_texture, open_texture, texture;
     starg_face_values *values;     /* NULL: not wanted */
     unsigned left_out;             /* starg_mesh_look: what the reader passes over */
     size_t ticks;
@@ -87,6 +90,13 @@ starg_status starg_builder_color(starg_mesh_builder *builder, const double color
 
 /* Appends a corner to the open face. Errors: FORMAT (no such vertex), MEMORY. */
 starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, starg_place place);
+
+/* Appends a texture coordinate of a vertex, or of a corner of the open face. Errors: MEMORY. */
+starg_status starg_builder_vertex_texture(starg_mesh_builder *builder, const double uv[2]);
+starg_status starg_builder_corner_texture(starg_mesh_builder *builder, const double uv[2]);
+
+/* Empties the builder, for another attempt. */
+void starg_builder_restart(starg_mesh_builder *builder);
 
 /* Closes the open face and triangulates it. Errors: FORMAT (fewer than 3 corners), MEMORY. */
 starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place);
@@ -165,9 +175,6 @@ typedef void starg_mesh_writer(FILE *stream, const starg_mesh *mesh,
                                const starg_mesh_extras *extras);
 starg_mesh_writer starg_off_write, starg_obj_write, starg_ply_write_ascii, starg_ply_write_binary,
     starg_stl_write_ascii, starg_stl_write_binary, starg_vtp_write;
-
-/* Writes vertices and faces as lines of text, as in OFF and PLY. */
-void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
 
 /* True if `name` ends with `extension`, ignoring case. */
 bool starg_has_extension(const char *name, const char *extension);

@@ -18,9 +18,20 @@ typedef enum ply_type {
     PLY_TYPES
 } ply_type;
 
-/* Meaning of a property. PLY_X, PLY_Y, PLY_Z are 0, 1, 2; the parts of a vertex's colour are
- * PLY_RED, PLY_RED + 1, PLY_RED + 2. */
-typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_OTHER, PLY_RED } ply_role;
+/* Meaning of a property. PLY_X, PLY_Y, PLY_Z are 0, 1, 2; a vertex has texture coordinates PLY_U and
+ * PLY_V, a face a list of them, PLY_TEXTURE; the parts of a vertex's colour are PLY_RED, PLY_RED +
+ * 1, PLY_RED + 2. */
+typedef enum ply_role {
+    PLY_X,
+    PLY_Y,
+    PLY_Z,
+    PLY_CORNERS,
+    PLY_OTHER,
+    PLY_TEXTURE,
+    PLY_U,
+    PLY_V,
+    PLY_RED
+} ply_role;
 
 /* What a number of a face names: "comment group 3 Floor" names faces with group 3. */
 typedef enum ply_naming { PLY_NAMELESS, PLY_GROUP, PLY_MATERIAL } ply_naming;

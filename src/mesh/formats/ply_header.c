@@ -96,6 +96,13 @@ static ply_role find_role(ply_kind kind, bool list, starg_word name) {
     if (kind == PLY_FACES && list &&
         (starg_word_is(name, "vertex_indices") || starg_word_is(name, "vertex_index")))
         return PLY_CORNERS;
+    if (kind == PLY_FACES && list && starg_word_is(name, "texcoord"))
+        return PLY_TEXTURE;
+    static const char *const texture[2][3] = {{"s", "u", "texture_u"}, {"t", "v", "texture_v"}};
+    for (int k = 0; k < 2 && kind == PLY_VERTICES && !list; k++)
+        for (int i = 0; i < 3; i++)
+            if (starg_word_is(name, texture[k][i]))
+                return (ply_role)(PLY_U + k);
     if (kind == PLY_VERTICES && !list && name.length == 1 && name.text[0] >= 'x' &&
         name.text[0] <= 'z')
         return (ply_role)(name.text[0] - 'x');
@@ -109,7 +116,8 @@ static ply_role find_role(ply_kind kind, bool list, starg_word name) {
     return PLY_OTHER;
 }
 
-/* A name that programs use for a part of a colour, or for texture coordinates. */
+/* A name that programs use for a part of a colour, or for texture coordinates, of other elements.
+ */
 static unsigned look_of(starg_word name) {
     static const char *const colors[] = {"red", "diffuse_red", "r"};
     static const char *const texture[] = {"s", "u", "texture_u", "texcoord", "texcoords"};
@@ -170,7 +178,7 @@ static starg_status read_property(ply_reader *ply) {
     TRY(read_type(ply, &property.type));
     TRY(header_word(ply, "the name of the property", &word));
     property.role = find_role(element->kind, property.list, word);
-    if ((element->kind == PLY_VERTICES || element->kind == PLY_FACES) && property.role < PLY_RED)
+    if ((element->kind == PLY_VERTICES || element->kind == PLY_FACES) && property.role == PLY_OTHER)
         ply->builder->left_out |= look_of(word);
     starg_face_values *values = element->kind == PLY_FACES ? ply->builder->values : NULL;
     if (values != NULL && !property.list) {
@@ -182,9 +190,9 @@ static starg_status read_property(ply_reader *ply) {
     for (size_t i = 0; i < element->properties; i++)
         if (property.role != PLY_OTHER &&
             ply->properties.data[element->first + i].role == property.role) {
-            if (property.role < PLY_RED)
+            if (property.role < PLY_OTHER)
                 return fail_header(ply, "the property is declared twice");
-            property.role = PLY_OTHER; /* a colour by another name */
+            property.role = PLY_OTHER; /* a colour, say, by another name */
         }
     PUSH(ply->source->context, STARG_MESH_FILE, &ply->properties, property);
     element->properties++;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Wavefront OBJ: lines of a keyword and values; only v and f matter, and for values of faces by a
- * name the groups, objects and materials that they are in. Faces may refer to later
+/* Wavefront OBJ: lines of a keyword and values; only v, vt and f matter, and for values of faces by
+ * a name the groups, objects and materials that they are in. Faces may refer to later
  * vertices, so a first pass reads vertices and a second one faces. Referenced files are never
  * opened. */
 #include <math.h>
@@ -48,9 +48,24 @@ static starg_status read_vertex(starg_scan *scan, starg_mesh_builder *builder) {
     return starg_scan_extra_numbers(scan, MOST_EXTRAS, "a weight or a colour");
 }
 
-/* Parses v, v/t, v//n or v/t/n; t and n must be numbers. */
-static bool parse_corner(starg_word word, int64_t *vertex) {
+typedef STARG_ARRAY(double) numbers;
+
+/* u v, optionally followed by w; what is no number is 0. */
+static starg_status read_texture(starg_scan *scan, numbers *texture) {
+    for (int k = 0; k < 2; k++) {
+        double number = 0;
+        starg_word word;
+        if (starg_scan_word_here(scan, &word))
+            (void)starg_parse_real(word.text, word.length, &number);
+        PUSH(scan->source->context, STARG_MESH_FILE, texture, number);
+    }
+    return STARG_OK;
+}
+
+/* Parses v, v/t, v//n or v/t/n; t and n must be numbers. *texture: t, 0 if there is none. */
+static bool parse_corner(starg_word word, int64_t *vertex, int64_t *texture) {
     size_t begin = 0;
+    *texture = 0;
     for (int part = 0; part < 3; part++) {
         size_t end = begin;
         while (end < word.length && word.text[end] != '/')
@@ -63,6 +78,8 @@ static bool parse_corner(starg_word word, int64_t *vertex) {
             return false;
         if (part == 0)
             *vertex = value;
+        if (part == 1)
+            *texture = value;
         if (end == word.length)
             return true;
         begin = end + 1;
@@ -87,31 +104,40 @@ static starg_status resolve(starg_scan *scan, int64_t given, size_t before,
     return STARG_OK;
 }
 
-/* Reads the corners of a face that follows `before` vertices. */
-static starg_status read_face(starg_scan *scan, size_t before, starg_mesh_builder *builder) {
+/* What precedes a line. */
+typedef struct counts {
+    size_t vertices, textures;
+} counts;
+
+/* Reads the corners of a face. A texture coordinate that is not there is none. */
+static starg_status read_face(starg_scan *scan, const counts *before, const numbers *texture,
+                              starg_mesh_builder *builder) {
     starg_place place = starg_at_line(scan->line);
     starg_word word;
     while (starg_scan_word_here(scan, &word)) {
-        int64_t vertex = 0;
-        if (!parse_corner(word, &vertex))
+        int64_t vertex = 0, uv = 0;
+        if (!parse_corner(word, &vertex, &uv))
             return starg_source_fail(scan->source, starg_at_line(word.line),
                                      "'%s' is not a corner of a face, which is v, v/t, v//n or "
                                      "v/t/n in whole numbers",
                                      starg_word_excerpt(word).text);
-        TRY(resolve(scan, vertex, before, builder, &vertex));
+        TRY(resolve(scan, vertex, before->vertices, builder, &vertex));
         TRY(starg_builder_corner(builder, vertex, starg_at_line(word.line)));
+        size_t at = (uv < 0 ? before->textures + (size_t)uv : (size_t)uv - 1);
+        if (uv != 0 && at < texture->count / 2)
+            TRY(starg_builder_corner_texture(builder, texture->data + 2 * at));
     }
     return starg_builder_face(builder, place);
 }
 
-static starg_status read_vertices(starg_mesh_builder *builder) {
+static starg_status read_vertices(starg_mesh_builder *builder, numbers *texture) {
     starg_scan scan = scan_lines(builder->source);
     starg_word word;
     while (starg_scan_word(&scan, &word)) {
         if (starg_word_is(word, "v"))
             TRY(read_vertex(&scan, builder));
         else if (starg_word_is(word, "vt"))
-            builder->left_out |= STARG_MESH_TEXTURE;
+            TRY(read_texture(&scan, texture));
         else if (starg_word_is(word, "usemtl"))
             builder->left_out |= STARG_MESH_COLORS;
         starg_scan_next_line(&scan);
@@ -175,20 +201,21 @@ done:
     return status;
 }
 
-static starg_status read_faces(starg_mesh_builder *builder) {
+static starg_status read_faces(starg_mesh_builder *builder, const numbers *texture) {
     starg_scan scan = scan_lines(builder->source);
     starg_word word;
-    size_t before = 0;
+    counts before = {0};
     bool held[KEYWORDS] = {false};
     double groups[KEYWORDS] = {0};
     while (starg_scan_word(&scan, &word)) {
-        before += starg_word_is(word, "v");
+        before.vertices += starg_word_is(word, "v");
+        before.textures += starg_word_is(word, "vt");
         if (builder->values != NULL && builder->values->collects)
             TRY(collect_names(&scan, word, builder->source->context, builder->values, groups));
         else if (builder->values != NULL)
             take_names(&scan, word, builder->values, held);
         if (starg_word_is(word, "f"))
-            TRY(read_face(&scan, before, builder));
+            TRY(read_face(&scan, &before, texture, builder));
         starg_scan_next_line(&scan);
         size_t done = (size_t)(scan.at - scan.source->bytes);
         TRY(starg_builder_tick(builder, (scan.source->size + done) / 2));
@@ -197,6 +224,12 @@ static starg_status read_faces(starg_mesh_builder *builder) {
 }
 
 starg_status starg_obj_read(starg_mesh_builder *builder) {
-    TRY(read_vertices(builder));
-    return read_faces(builder);
+    numbers texture = {0};
+    starg_status status = read_vertices(builder, &texture);
+    if (status == STARG_OK)
+        status = read_faces(builder, &texture);
+    if (texture.count > 0 && builder->texture.count == 0)
+        builder->left_out |= STARG_MESH_TEXTURE;
+    starg_release(builder->source->context, texture.data);
+    return status;
 }

@@ -144,8 +144,7 @@ static starg_status read_faces(starg_scan *scan, size_t count, starg_mesh_builde
 /* Reads what follows the counts into an empty builder. */
 static starg_status read_data(starg_scan *scan, const off_header *header, size_t vertices,
                               size_t faces, starg_mesh_builder *builder) {
-    builder->vertices.count = builder->faces.count = builder->corners.count = 0;
-    builder->colors.count = 0;
+    starg_builder_restart(builder);
     TRY(starg_builder_reserve(builder, vertices, faces));
     TRY(read_vertices(scan, header, vertices, builder));
     TRY(read_faces(scan, faces, builder));

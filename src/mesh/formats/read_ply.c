@@ -112,6 +112,17 @@ static starg_status skip_values(ply_reader *ply, ply_type type, uint64_t count) 
     return STARG_OK;
 }
 
+/* Reads texture coordinates of the corners of a face. */
+static starg_status read_texture(ply_reader *ply, const ply_property *property, uint64_t count) {
+    for (uint64_t i = 0; i < count / 2; i++) {
+        double uv[2];
+        for (int k = 0; k < 2; k++)
+            TRY(read_real(ply, property->type, "a texture coordinate", &uv[k]));
+        TRY(starg_builder_corner_texture(ply->builder, uv));
+    }
+    return skip_values(ply, property->type, count % 2);
+}
+
 static starg_status read_list(ply_reader *ply, const ply_property *property, bool skip) {
     int64_t count, vertex;
     starg_place before = place_of(ply);
@@ -119,6 +130,8 @@ static starg_status read_list(ply_reader *ply, const ply_property *property, boo
     if (count < 0)
         return starg_source_fail(ply->source, place_since(ply, before),
                                  "the size of a list is negative");
+    if (property->role == PLY_TEXTURE && !skip)
+        return read_texture(ply, property, (uint64_t)count);
     if (property->role != PLY_CORNERS || skip)
         return skip_values(ply, property->type, (uint64_t)count);
     for (int64_t i = 0; i < count; i++) {
@@ -171,8 +184,8 @@ static double largest_part(ply_type type) {
 /* Reads one item of an element; ignores its values if `skip`. */
 static starg_status read_item(ply_reader *ply, const ply_element *element, bool skip) {
     starg_place before = place_of(ply);
-    double point[3] = {0, 0, 0}, color[3], most = 1, value;
-    int colors = 0;
+    double point[3] = {0, 0, 0}, color[3], uv[2], most = 1, value;
+    int colors = 0, textures = 0;
     if (ply->builder->values != NULL)
         ply->builder->values->current = 0;
     for (size_t i = 0; i < element->properties; i++) {
@@ -183,7 +196,11 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
             TRY(read_list(ply, property, skip));
         else if (property->role <= PLY_Z)
             TRY(read_real(ply, property->type, "a coordinate of a vertex", &point[property->role]));
-        else if (property->role >= PLY_RED && !property->list) {
+        else if (property->role == PLY_U || property->role == PLY_V) {
+            TRY(read_real(ply, property->type, "a texture coordinate",
+                          &uv[property->role - PLY_U]));
+            textures++;
+        } else if (property->role >= PLY_RED) {
             TRY(read_real(ply, property->type, "a colour", &color[property->role - PLY_RED]));
             most = largest_part(property->type);
             colors++;
@@ -203,6 +220,8 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
         TRY(starg_builder_vertex(ply->builder, point, place));
     if (element->kind == PLY_VERTICES && colors == 3)
         TRY(starg_builder_color(ply->builder, color, most));
+    if (element->kind == PLY_VERTICES && textures == 2)
+        TRY(starg_builder_vertex_texture(ply->builder, uv));
     if (element->kind == PLY_FACES && !element->strips && !skip)
         TRY(starg_builder_face(ply->builder, place));
     return starg_builder_tick(ply->builder, bytes_read(ply));
@@ -290,10 +309,7 @@ static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_
     ply->scan = *begin;
     ply->by_lines = by_lines;
     ply->extra = 0;
-    ply->builder->vertices.count = ply->builder->faces.count = ply->builder->corners.count = 0;
-    ply->builder->colors.count = 0;
-    if (ply->builder->values != NULL)
-        ply->builder->values->data.count = 0;
+    starg_builder_restart(ply->builder);
     return read_data(ply);
 }
 

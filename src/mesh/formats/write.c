@@ -77,6 +77,8 @@ static starg_status move_to_origin(starg_context *context, const starg_mesh *mes
                               "the origin must be finite and below 1e100");
     TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
                           mesh->face_count, moved));
+    TRY(starg_mesh_set_colors(*moved, mesh->colors));
+    TRY(starg_mesh_set_texture(*moved, mesh->texture));
     NEW(context, STARG_MESH_FILE, back, 3 * mesh->vertex_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
         (*moved)->vertices[i] -= origin[i % 3];

@@ -4,7 +4,9 @@
 
 #include "mesh/formats/io.h"
 
-void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
+void starg_off_write(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
+    const uint8_t *colors = extras->colors;
+    fprintf(stream, "OFF\n%zu %zu 0\n", mesh->vertex_count, mesh->face_count);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         const double *p = mesh->vertices + 3 * i;
         fprintf(stream, "%.17g %.17g %.17g\n", p[0], p[1], p[2]);
@@ -16,9 +18,4 @@ void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colo
             fprintf(stream, " %d %d %d", colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]);
         fputc('\n', stream);
     }
-}
-
-void starg_off_write(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
-    fprintf(stream, "OFF\n%zu %zu 0\n", mesh->vertex_count, mesh->face_count);
-    starg_write_lines(stream, mesh, extras->colors);
 }
