@@ -73,8 +73,8 @@ typedef struct starg_mesh_builder {
     /* Texture coordinates, 2 numbers each: of vertices, of the open face's corners, and of the
      * corners of all triangles; those of fewer do not count. */
     STARG_ARRAY(float) vertex_texture, open_texture, texture;
-    starg_face_values *values;     /* NULL: not wanted */
-    unsigned left_out;             /* starg_mesh_look: what the reader passes over */
+    starg_face_values *values; /* NULL: not wanted */
+    unsigned left_out;         /* starg_mesh_look: what the reader passes over */
     size_t ticks;
 } starg_mesh_builder;
 

@@ -18,9 +18,9 @@ typedef enum ply_type {
     PLY_TYPES
 } ply_type;
 
-/* Meaning of a property. PLY_X, PLY_Y, PLY_Z are 0, 1, 2; a vertex has texture coordinates PLY_U and
- * PLY_V, a face a list of them, PLY_TEXTURE; the parts of a vertex's colour are PLY_RED, PLY_RED +
- * 1, PLY_RED + 2. */
+/* Meaning of a property. PLY_X, PLY_Y, PLY_Z are 0, 1, 2; a vertex has texture coordinates PLY_U
+ * and PLY_V, a face a list of them, PLY_TEXTURE; the parts of a vertex's colour are PLY_RED,
+ * PLY_RED + 1, PLY_RED + 2. */
 typedef enum ply_role {
     PLY_X,
     PLY_Y,
