@@ -17,7 +17,7 @@ static const char STAGE[] = "cones";
 enum { FAIR_FROM = 2, HALVE_FROM = 5, EFFORT = 1 };
 static const double MARGIN = 2e-5; /* of the extent, for guards of the plane search */
 static const double SHORT = 1e-7;  /* of a spoke: it ends on the surface */
-static const double SNAP = 0.02;   /* of an edge: a cut that near an end goes through it */
+static const double SNAP = 1e-4;   /* of an edge: a cut that near an end goes through it */
 
 void cones_free(cone_builder *b) {
     for (int end = 0; end < 2; end++)
@@ -28,6 +28,45 @@ void cones_free(cone_builder *b) {
         STARG_ARRAY_FREE(b->context, &b->pieces.data[p].triangles);
     RELEASE(b->about.data, b->corners.data, b->sides.data, b->pieces.data, b->heights.data);
     region_scratch_free(&b->scratch);
+}
+
+/* ---- states ---- */
+
+starg_status cones_save(const cone_builder *b, cone_state *out) {
+    *out = (cone_state){.vertices = b->about.count};
+    RESERVE(b->context, STAGE, &out->corners, b->corners.count);
+    RESERVE(b->context, STAGE, &out->sides, b->sides.count);
+    RESERVE(b->context, STAGE, &out->pieces, b->pieces.count);
+    out->corners.count = b->corners.count;
+    out->sides.count = b->sides.count;
+    out->pieces.count = b->pieces.count;
+    memcpy(out->corners.data, b->corners.data, b->corners.count * sizeof *b->corners.data);
+    memcpy(out->sides.data, b->sides.data, b->sides.count * sizeof *b->sides.data);
+    for (size_t p = 0; p < b->pieces.count; p++) {
+        out->pieces.data[p] = b->pieces.data[p];
+        out->pieces.data[p].triangles = (number_list){0};
+    }
+    return STARG_OK;
+}
+
+starg_status cones_restore(cone_builder *b, const cone_state *state) {
+    for (size_t v = 0; v < b->about.count; v++)
+        STARG_ARRAY_FREE(b->context, &b->about.data[v]);
+    for (size_t p = 0; p < b->pieces.count; p++)
+        STARG_ARRAY_FREE(b->context, &b->pieces.data[p].triangles);
+    b->about.count = b->heights.count = state->vertices;
+    b->places[0].count = b->places[1].count = 3 * state->vertices;
+    b->corners.count = b->sides.count = 0;
+    memset(b->about.data, 0, state->vertices * sizeof *b->about.data);
+    b->pieces.count = state->pieces.count;
+    memcpy(b->pieces.data, state->pieces.data, state->pieces.count * sizeof *b->pieces.data);
+    for (size_t t = 0; t < state->corners.count / 3; t++)
+        TRY(cones_add_triangle(b, state->corners.data + 3 * t, state->sides.data + 2 * t));
+    return STARG_OK;
+}
+
+void cones_free_state(cone_state *state) {
+    RELEASE(state->corners.data, state->sides.data, state->pieces.data);
 }
 
 const double *cones_place_of(const cone_builder *b, int end, uint32_t vertex) {

@@ -55,6 +55,14 @@ typedef struct cone_builder {
     size_t work;    /* faces of pieces for which cuts were sought */
 } cone_builder;
 
+/* A state of the builder. Vertices stay where they are, so that their number tells which there are;
+ * lists of triangles follow from the sides. */
+typedef struct cone_state {
+    size_t vertices;
+    number_list corners, sides;
+    STARG_ARRAY(cone_piece) pieces; /* without their triangles */
+} cone_state;
+
 /* A directed edge of a piece's boundary, and the triangle to its left. */
 typedef struct side_edge {
     uint64_t edge;
@@ -82,6 +90,10 @@ typedef struct loop_places {
 } loop_places;
 
 void cones_free(cone_builder *b) STARG_PRIVATE(cones_free);
+/* Remembers a state, and goes back to it; random numbers go on. Errors: MEMORY. */
+starg_status cones_save(const cone_builder *b, cone_state *out) STARG_PRIVATE(cones_save);
+starg_status cones_restore(cone_builder *b, const cone_state *state) STARG_PRIVATE(cones_restore);
+void cones_free_state(cone_state *state) STARG_PRIVATE(cones_free_state);
 /* Where a vertex is in one of both places. */
 const double *cones_place_of(const cone_builder *b, int end, uint32_t vertex)
     STARG_PRIVATE(cones_place_of);

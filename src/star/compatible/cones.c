@@ -10,7 +10,8 @@
  * where it has no kernel, so that the other place keeps its kernel (peel.c). Edges that cross the
  * plane are divided, in the other place in the same ratio, so that the plane meets the piece in
  * loops of edges; one of them is spanned in both places by a wall of the two pieces that it parts.
- * Where a piece resists, all is begun anew with other planes.
+ * Where a piece resists, it is begun anew with other planes, and if that fails, the piece that it
+ * is a part of.
  *
  * Invariants: triangles fit together, edge to edge, in all pieces: an edge is divided in all of its
  * triangles. Whether walls stay inside the solid is never asked: pieces with kernels on all sides
@@ -28,9 +29,10 @@
 
 static const char STAGE[] = "cones";
 
-enum { ROUNDS = 8, ROUNDS_BLIND = 4 };
-/* Of cuts of a piece; of triangles and of faces of cut pieces in a round, in times of the faces. */
-enum { ATTEMPTS_MOST = 3, GROWTH_MOST = 24, WORK_MOST = 30 };
+enum { ROUNDS = 8, ATTEMPTS_MOST = 3 }; /* of a piece; of a cut */
+/* Of triangles and of faces of cut pieces in a round, and of the latter in all, in times of the
+ * faces and EASY more. */
+enum { GROWTH_MOST = 8, WORK_MOST = 20, WORK_ALL = 100, EASY = 100 };
 
 static starg_status begin(cone_builder *b, const double *const places[2], size_t vertices,
                           const uint32_t *faces, size_t count) {
@@ -75,39 +77,83 @@ static starg_status prove(cone_builder *b, uint32_t which, number_list *faces) {
     return STARG_OK;
 }
 
-/* Cuts until all are done (*left is 0) or one resists. */
-static starg_status cut_all(cone_builder *b, size_t *left) {
+/* How many triangles there may be, and how many faces of pieces may have been looked at. */
+typedef struct limits {
+    size_t triangles, work;
+} limits;
+
+static size_t least(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/* Within those of a larger piece. */
+static limits limits_of(const cone_builder *b, size_t faces, const limits *outer) {
+    return (limits){least(outer->triangles, b->corners.count / 3 + GROWTH_MOST * (faces + EASY)),
+                    least(outer->work, b->work + WORK_MOST * (faces + EASY))};
+}
+
+/* Cuts off leaves until the piece has a kernel in both places, or resists. */
+static starg_status cut_piece(cone_builder *b, uint32_t which, const limits *most, bool *done) {
     SCOPED number_list faces = {0};
-    size_t count = b->corners.count / 3, most = GROWTH_MOST * count;
-    size_t work_most = b->work + WORK_MOST * count;
-    bool again = true;
-    while (again) {
-        again = false;
-        for (uint32_t p = 0; p < b->pieces.count; p++)
-            while (!b->pieces.data[p].done) {
-                int blind;
-                *left = 1;
-                if (b->pieces.data[p].attempts == ATTEMPTS_MOST || b->corners.count / 3 > most ||
-                    b->work > work_most)
-                    return STARG_OK;
-                TRY(starg_check_cancel(b->context, STAGE));
-                TRY(cones_list_faces(b, p, &faces));
-                TRY(find_centers(b, p, &faces, &blind));
-                peel_verdict peeled = PEEL_NOTHING;
-                if (blind >= 0)
-                    TRY(cones_peel(b, p, blind, &peeled));
-                if (peeled == PEEL_BROKEN)
-                    return STARG_OK;
-                b->pieces.data[p].attempts += blind >= 0 && peeled == PEEL_NOTHING;
-            }
-        *left = 0;
-        for (uint32_t p = 0; p < b->pieces.count; p++) {
-            bool before = b->pieces.data[p].done;
-            TRY(prove(b, p, &faces));
-            again = again || (before && !b->pieces.data[p].done);
-            *left += !b->pieces.data[p].done;
-        }
+    int attempts = 0;
+    for (;;) {
+        int blind;
+        TRY(starg_check_cancel(b->context, STAGE));
+        TRY(cones_list_faces(b, which, &faces));
+        TRY(find_centers(b, which, &faces, &blind));
+        *done = b->pieces.data[which].done;
+        if (*done || attempts == ATTEMPTS_MOST || b->corners.count / 3 > most->triangles ||
+            b->work > most->work)
+            return STARG_OK;
+        peel_verdict peeled;
+        TRY(cones_peel(b, which, blind, &peeled));
+        if (peeled == PEEL_BROKEN)
+            return STARG_OK;
+        attempts += peeled == PEEL_NOTHING;
+        b->pieces.data[which].attempts = attempts;
     }
+}
+
+/* Divides a piece into pieces that have kernels in both places. Where a part of it resists, that is
+ * begun anew with other planes, and if it still resists, the whole. */
+static starg_status divide(cone_builder *b, uint32_t which, const limits *outer, bool *done) {
+    SCOPED_BY(cones_free_state) cone_state before = {0};
+    const size_t faces = b->pieces.data[which].triangles.count;
+    *done = false;
+    TRY(cones_save(b, &before));
+    for (int i = 0; i < ROUNDS && !*done; i++) {
+        if (i > 0)
+            TRY(cones_restore(b, &before));
+        const limits own = limits_of(b, faces, outer);
+        const uint32_t first = (uint32_t)b->pieces.count;
+        b->balance = i % 2;
+        TRY(cut_piece(b, which, &own, done));
+        const uint32_t end = (uint32_t)b->pieces.count;
+        for (uint32_t leaf = first; leaf < end && *done; leaf++)
+            TRY(divide(b, leaf, &own, done));
+        if (b->work > outer->work)
+            break;
+    }
+    return STARG_OK;
+}
+
+/* Until all are done, or one resists: *left is 1. */
+static starg_status divide_all(cone_builder *b, size_t *left) {
+    SCOPED number_list faces = {0};
+    const size_t count = b->corners.count / 3;
+    const limits most = {SIZE_MAX, WORK_ALL * (count + EASY)};
+    bool done = false;
+    *left = 1;
+    for (uint32_t p = 0; p < b->pieces.count; p++) {
+        TRY(prove(b, p, &faces));
+        if (b->pieces.data[p].done)
+            continue;
+        TRY(divide(b, p, &most, &done));
+        if (!done)
+            return STARG_OK;
+        p = UINT32_MAX; /* from the first one on: later cuts divide faces of others */
+    }
+    *left = 0;
     return STARG_OK;
 }
 
@@ -177,38 +223,16 @@ void compatible_cones_free(starg_context *context, compatible_cones *cones) {
     *cones = (compatible_cones){0};
 }
 
-/* More for a solid that is seen from a point in one place: what resists there does so by chance. */
-static starg_status count_rounds(starg_context *context, const double *const places[2],
-                                 const uint32_t *faces, size_t count, uint64_t *rounds) {
-    *rounds = ROUNDS_BLIND;
-    for (int end = 0; end < 2; end++) {
-        const kernel_faces surface = {places[end], faces, count};
-        starg_kernel_result kernel;
-        TRY(kernel_find(context, &surface, &kernel));
-        if (kernel.verdict == STARG_KERNEL_INTERIOR)
-            *rounds = ROUNDS;
-    }
-    return STARG_OK;
-}
-
 starg_status compatible_fill(starg_context *context, const double *const places[2], size_t vertices,
                              const uint32_t *faces, size_t count, compatible_cones *out,
                              size_t *left) {
     starg_status status = STARG_OK;
-    cone_builder b = {.context = context};
+    cone_builder b = {.context = context,
+                      .scratch = {.context = context},
+                      .rng = starg_rng_make(context->seed, 3, 0)};
     *out = (compatible_cones){0};
-    *left = 1;
-    uint64_t rounds = 0;
-    STARG_TRY(count_rounds(context, places, faces, count, &rounds));
-    for (uint64_t round = 0; round<rounds && * left> 0; round++) {
-        cones_free(&b);
-        b = (cone_builder){.context = context,
-                           .balance = (double)(round % 2),
-                           .scratch = {.context = context},
-                           .rng = starg_rng_make(context->seed, 3, round)};
-        STARG_TRY(begin(&b, places, vertices, faces, count));
-        STARG_TRY(cut_all(&b, left));
-    }
+    STARG_TRY(begin(&b, places, vertices, faces, count));
+    STARG_TRY(divide_all(&b, left));
     if (*left == 0)
         STARG_TRY(finish(&b, out));
 done:

@@ -7,15 +7,14 @@
  *
  * Method: a plane cuts off a leaf, the part D of the surface and a flat wall. Planes of faces at
  * notches are tried in a blind place, since they leave no ledges, planes by which two guards miss
- * little, and random ones; in a place that g sees, planes through g. In the other place the rim of
- * the wall is any loop. There
+ * little, and random ones. In the other place the rim of the wall is any loop. There
  *   - the wall is a fan about a point h on the way from g to D, if the rim goes round some
  *     direction from g: what is left is seen from g, and D from points beyond h;
  *   - else it is a web about g (web.c);
  *   - in a blind place it is a fan about a point that sees the rim, flat or not, or one side.
  * That cut is taken after which most of both sides is seen from a point of each in blind places,
- * and, in every other round, that cuts off most; webs come last, for leaves that are star-shaped in
- * the plane's place.
+ * and, in every other round, that cuts off most; triangles of the wall count against it. Webs are
+ * for leaves that are star-shaped in the plane's place.
  *
  * Invariants: those of cones.c. What rounding makes of the pieces is checked by exact signs, as of
  * all others.
@@ -35,6 +34,7 @@ static const double ROOMY = 0.02;  /* of feet, over the extent of walls */
 static const double MARGIN = 1e-3; /* of points that see a leaf, over its size */
 static const double TURN = 1e-3;   /* the sine of an angle at a notch, at least */
 static const double DEPTH = 0.4;   /* of the way from g to where D is not seen: there walls turn */
+static const double CUT = 10;      /* any cut is better than none */
 static const double LEVEL = 1e-9;  /* of the heights: those of vertices in a face's plane */
 
 /* The wall of a cut in the place where it is not flat. */
@@ -353,7 +353,7 @@ static starg_status see_sides(peeling *m, uint32_t part, double *share, double *
     return STARG_OK;
 }
 
-/* Walls that are fans come first, then cuts with a point for each side, then cuts in the middle. */
+/* Cuts with a point for each side come first, but not those whose walls have many triangles. */
 static starg_status weigh_leaf(peeling *m, uint32_t part) {
     const cut_node *loop = m->rim.nodes.data;
     size_t count = m->rim.nodes.count;
@@ -367,7 +367,8 @@ static starg_status weigh_leaf(peeling *m, uint32_t part) {
     if (wall.kind == WALL_NONE)
         return STARG_OK;
     TRY(see_sides(m, part, &share, &room));
-    double score = (wall.kind == WALL_FAN ? 2 : 0) + share;
+    const double triangles = (double)(wall.kind == WALL_WEB ? 3 * count : count);
+    double score = CUT + share - triangles / (double)(m->faces.count / 3);
     if ((wall.kind == WALL_WEB && !(room > MARGIN)) || !(score > m->score))
         return STARG_OK;
     m->score = score;
@@ -441,14 +442,6 @@ static void draw_notch(peeling *m, bool *found) {
             m->heights[m->faces.data[i]] = 0;
 }
 
-/* Heights over a plane through g, in its place: both sides are seen from near it. */
-static void draw_middle(peeling *m) {
-    double normal[3];
-    m->end = 1 - m->end;
-    starg_rng_direction(&m->b->rng, normal);
-    cones_find_heights(m->b, m->end, &m->faces, normal, m->g, m->heights);
-}
-
 static starg_status choose_leaf(peeling *m, bool *found) {
     cone_builder *b = m->b;
     TRY(cones_list_edges(b, m->which, &m->edges));
@@ -459,12 +452,10 @@ static starg_status choose_leaf(peeling *m, bool *found) {
     for (int end = 0; end < 2; end++)
         TRY(bvh_create(b->context, b->places[end].data, m->faces.data, m->faces.count / 3,
                        &m->trees[end]));
-    for (int i = 0; i < PLANES || (i < PLANES_MOST && m->best.kind != WALL_FAN); i++) {
+    for (int i = 0; i < PLANES || (i < PLANES_MOST && m->best.kind == WALL_NONE); i++) {
         bool drawn = true;
         m->end = m->blind[0] && m->blind[1] ? (i / 2 + i / SEARCHED) % 2 : m->blind[1];
-        if (m->star && i % 4 == 2)
-            draw_middle(m);
-        else if (i % 2 == 1)
+        if (i % 2 == 1)
             draw_notch(m, &drawn);
         else if (i % SEARCHED == 0)
             TRY(cones_search_plane(b, m->which, m->end, &m->faces, m->heights, &drawn));
