@@ -226,9 +226,16 @@ static starg_status read_frame(cli_session *session, const char *name, folder *o
 /* frame_0000.off and so on, or .ply, and morph.json. */
 static starg_status read_folder(cli_session *session, const char *name, folder *out) {
     starg_status status = STARG_OK;
-    const char *format = "off";
     bool found = true;
     char *path = NULL;
+    SCOPED char *off = name_in(name, "frame_0000.off");
+    SCOPED char *ply = name_in(name, "frame_0000.ply");
+    if (off == NULL || ply == NULL)
+        return cli_fail_memory(session);
+    if (exists(off) && exists(ply))
+        return cli_fail(session, STARG_ERROR_READ,
+                        "'%.200s' has frames of two morphs, as OFF and as PLY: remove one's", name);
+    const char *format = exists(ply) ? "ply" : "off";
     while (found) {
         char file[32];
         snprintf(file, sizeof file, "frame_%04zu.%s", out->count, format);
@@ -236,8 +243,6 @@ static starg_status read_folder(cli_session *session, const char *name, folder *
         path = name_in(name, file);
         if (path == NULL)
             return cli_fail_memory(session);
-        if (out->count == 0 && !exists(path))
-            memcpy(strrchr(path, '.') + 1, format = "ply", 3);
         CLI_TRY(read_frame(session, path, out, &found));
     }
     free(path);

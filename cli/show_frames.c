@@ -65,6 +65,11 @@ static starg_status list_frames(cli_session *session, const char *folder, name_l
                         "'%.300s' has %zu frames (frame_0000.off and so on); a morph has 2 to %d",
                         folder, list->count, STARG_ANIMATION_FRAMES);
     qsort(list->items, list->count, sizeof *list->items, compare_names);
+    for (size_t i = 1; i < list->count; i++)
+        if (strcmp(strrchr(list->items[i], '.'), strrchr(list->items[0], '.')) != 0)
+            return cli_fail(session, STARG_ERROR_FORMAT,
+                            "'%.300s' has frames of two morphs, as OFF and as PLY: remove one's",
+                            folder);
     return STARG_OK;
 }
 

@@ -110,7 +110,7 @@ static starg_status check(starg_context *context, animation *a) {
     return STARG_OK;
 }
 
-/* Of coordinate i of the mesh's vertices. */
+/* Of coordinate i of the mesh's vertices, as the next one. */
 static float first_position(const animation *a, size_t i) {
     return (float)(a->frames[0][i] - a->center[i % 3]);
 }
@@ -138,7 +138,7 @@ static starg_status check_frame(starg_context *context, const animation *a, size
     return single_compare(context, surface, drawn, &place);
 }
 
-/* Of the mesh's vertices, from that of the vertices as written. */
+/* The coordinate of the mesh's vertices that is number i of the vertices as written. */
 static size_t coordinate(const animation *a, size_t i) {
     return 3 * a->vertex[i / 3] + i % 3;
 }

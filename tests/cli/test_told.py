@@ -158,6 +158,11 @@ class Told(Case):
             self.write("c.ply", self.read("frames/frame_0000.ply"))
             self.write("c.glb", self.read("m.glb"))
         self.run_text("verify", "a.obj", "b.off", "frames")
+        self.run_text("view", "frames", "-o", "p.html")
+        self.run_text("morph", "a.obj", *words[:-2])
+        for *command, status in (("verify", "a.obj", "b.off", "frames", 2), ("view", "frames", "-o", "p.html", 2)):
+            _, err = self.run_text(*command, status=status)
+            self.assertIn("as OFF and as PLY", err)
         self.sample("sphere", 520, "s.off")
         self.run_text("morph", "a.obj", "s.off", *words[1:], "--overlay")
         found = self.faces_of_glb("m.glb")

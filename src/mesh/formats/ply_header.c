@@ -116,8 +116,7 @@ static ply_role find_role(ply_kind kind, bool list, starg_word name) {
     return PLY_OTHER;
 }
 
-/* A name that programs use for a part of a colour, or for texture coordinates, of other elements.
- */
+/* What is left out with a property of this name, a part of a colour or of a texture's place. */
 static unsigned look_of(starg_word name) {
     static const char *const colors[] = {"red", "diffuse_red", "r"};
     static const char *const texture[] = {"s", "u", "texture_u", "texcoord", "texcoords"};

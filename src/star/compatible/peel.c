@@ -313,9 +313,9 @@ static starg_status find_wall(peeling *m, const cut_node *loop, size_t count, ui
                               cut_wall *out) {
     SCOPED double *ways = NULL;
     double direction[3];
-    bool found, about_g = m->star && m->blind[m->end];
+    bool found;
     *out = (cut_wall){.kind = WALL_FAN, .end = m->end};
-    if (!about_g) {
+    if (!m->star) {
         TRY(find_hub(m, loop, count, part, out->hub, &found));
     } else {
         NEW(m->b->context, STAGE, ways, 3 * count);
@@ -324,7 +324,7 @@ static starg_status find_wall(peeling *m, const cut_node *loop, size_t count, ui
         TRY(list_side(m, false));
         found = found && go_from_g(m, direction, out->hub);
     }
-    if (found || !about_g) {
+    if (found || !m->star) {
         out->kind = found ? WALL_FAN : WALL_NONE;
         return STARG_OK;
     }
