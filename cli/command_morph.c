@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "starguard/animation.h"
@@ -110,6 +111,16 @@ static char *frame_in_folder(const values *v, uint64_t index) {
     char name[32];
     snprintf(name, sizeof name, "frame_%04llu.%s", (unsigned long long)index, formats[v->format]);
     return in_folder(v, name);
+}
+
+/* A longer morph before has left frames behind, which would be read as if they were of this one. */
+static void warn_of_former_frames(cli_session *session, const values *v) {
+    SCOPED char *next = frame_in_folder(v, v->frames);
+    if (next != NULL && access(next, F_OK) == 0)
+        cli_warn(session,
+                 "%s and what follows are of an earlier morph; remove them, or 'view' and "
+                 "'verify' read them as frames of this one",
+                 next);
 }
 
 /* Announces `path` and frees it. */
@@ -655,6 +666,7 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(
         starg_morph_create(session->context, source_of(session, &s), s.images, &wanted, &morph));
     CLI_TRY(write_frames(session, v, &s, morph, frames, &sum));
+    warn_of_former_frames(session, v);
     if (v->guards)
         CLI_TRY(write_guards(session, v, &s, morph, &found.alone));
     if (v->pieces)

@@ -293,8 +293,8 @@ void starg_check_describe_grid(const starg_check *check, char *text, size_t size
         snprintf(
             text, size,
             "coordinates have steps of %.3g, %.3g and %.3g (x, y, z), and the shortest edge is "
-            "%.3g: the file has lost finer parts; take one in double precision, or about an "
-            "origin near the model",
+            "%.3g: finer parts, if there were any, are lost in the file; take one in double "
+            "precision, or about an origin near the model",
             g[0], g[1], g[2], check->shortest_edge);
 }
 

@@ -212,8 +212,8 @@ static void tell(starg_context *context, const starg_solid *solid, const starg_s
         return;
     if (skeleton->mends > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "removed %zu components and loops from the skeleton that the solid does not "
-                  "have; its surface is too thin in places or intersects itself",
+                  "the surface is too thin in places or intersects itself: the skeleton had %zu "
+                  "components and loops that the solid does not have, and they were removed",
                   skeleton->mends);
     if (!is_as_expected(check, skeleton->components, skeleton->loops))
         starg_log(context, STARG_LOG_WARNING,

@@ -89,6 +89,13 @@ class Morph(Case):
             self.assertEqual(len(report["guards"]), len(report["counterparts"]))
             self.assertEqual(len(report["guards"]) > 0, method in ("star", "spherical"))
 
+    def test_former_frames(self):
+        """Frames that a longer morph left in the folder are named."""
+        command = "morph", "cat0.off", "cat1.off", "-o", "used", "--method", "linear", "--frames"
+        for frames, left in ("3", False), ("3", False), ("2", True):
+            warned = self.run_text(*command, frames)[1]
+            self.assertEqual("frame_0002.off and what follows are of an earlier morph" in warned, left)
+
     def test_guards(self):
         """Both files verify, and no fewer guards see both shapes than one alone."""
         for target, last in ("cat1.off", "cat1.off"), ("ball.off", "out/frame_0001.off"):
