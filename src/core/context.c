@@ -99,6 +99,7 @@ starg_status starg_context_create(const starg_context_options *options, starg_co
         .log = options->log,
         .log_user = options->log_user,
         .progress = {.report = options->progress, .user = options->progress_user, .pause = 0.05}};
+    atomic_flag_clear(&context->recording);
     context->error.stage = "";
     context->error.message = context->message;
     *out = context;
@@ -193,8 +194,11 @@ const starg_error *starg_context_error(const starg_context *context) {
 
 static void record(starg_context *context, starg_status status, const char *stage,
                    const char *format, va_list arguments) {
+    while (atomic_flag_test_and_set(&context->recording)) {
+    }
     context->error = (starg_error){.status = status, .stage = stage, .message = context->message};
     vsnprintf(context->message, sizeof context->message, format, arguments);
+    atomic_flag_clear(&context->recording);
 }
 
 starg_status starg_fail(starg_context *context, starg_status status, const char *stage,

@@ -63,6 +63,7 @@ struct starg_context {
 
     starg_progress progress;
 
+    atomic_flag recording; /* an error; threads may fail side by side */
     starg_error error;
     char message[512];
 };

@@ -460,8 +460,10 @@ static starg_status run(growing *c, const grown_regions *former, const uint8_t *
     starg_context *context = c->context;
     size_t count = c->mesh->count;
     void *scratch = NULL;
+    const bool tells = former == NULL; /* of its progress: what is grown again is small */
     *out = (grown_regions){.count = 0};
-    starg_progress_begin(context, STAGE);
+    if (tells)
+        starg_progress_begin(context, STAGE);
     STARG_NEW(context, STAGE, c->volumes, count);
     STARG_NEW(context, STAGE, c->running, count);
     STARG_NEW_ZERO(context, STAGE, c->region, count);
@@ -477,13 +479,15 @@ static starg_status run(growing *c, const grown_regions *former, const uint8_t *
     for (uint32_t t = 0; t < count; t++)
         while (c->labels[t] == UNASSIGNED) {
             STARG_TRY(starg_check_cancel(context, STAGE));
-            starg_progress_step(context, c->assigned, count);
+            if (tells)
+                starg_progress_step(context, c->assigned, count);
             STARG_TRY(grow_from(c, t, scratch, out));
         }
     out->labels = c->labels;
     c->labels = NULL;
 done:
-    starg_progress_end(context);
+    if (tells)
+        starg_progress_end(context);
     free_grower(context, scratch);
     RELEASE(c->volumes, c->running, c->region, c->hint_at, c->labels, c->members.data);
     if (status != STARG_OK)

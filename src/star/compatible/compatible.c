@@ -21,6 +21,7 @@
  * and that of the joins. */
 #include "star/compatible/compatible.h"
 
+#include "core/parallel.h"
 #include "star/compatible/twin_pieces.h"
 #include "star/decomposition.h"
 
@@ -35,21 +36,44 @@ static starg_status join_start(twin_pieces *w) {
     return twin_pieces_join(w);
 }
 
-/* Parts between planes, of several rounds the fewest. */
+/* Divisions by planes, side by side. */
+typedef struct plane_starts {
+    const twin_pieces *from;
+    twin_pieces found[PLANE_STARTS];
+} plane_starts;
+
+static starg_status divide_by_planes(starg_context *context, void *shared, void *scratch,
+                                     size_t item) {
+    plane_starts *all = shared;
+    const starg_tetmesh *const *meshes = all->from->meshes;
+    twin_pieces *next = &all->found[item];
+    (void)scratch;
+    *next = (twin_pieces){.context = context, .meshes = {meshes[0], meshes[1]}};
+    TRY(compatible_planes(context, meshes, item, next->own, &next->pieces));
+    for (int i = 0; i < 2; i++)
+        if (next->own[i] != NULL)
+            next->meshes[i] = next->own[i];
+    return join_start(next);
+}
+
+static void free_starts(plane_starts *all) {
+    for (size_t i = 0; i < PLANE_STARTS; i++)
+        if (all->found[i].context != NULL)
+            twin_pieces_free(&all->found[i]);
+}
+
+/* Parts between planes, of several divisions the one of the fewest. */
 static starg_status start_by_planes(const twin_pieces *from, twin_pieces *best) {
-    SCOPED_BY(twin_pieces_free) twin_pieces next = {.context = from->context};
-    for (uint64_t round = 0; round < PLANE_STARTS; round++) {
-        twin_pieces_free(&next);
-        next =
-            (twin_pieces){.context = from->context, .meshes = {from->meshes[0], from->meshes[1]}};
-        TRY(compatible_planes(from->context, from->meshes, round, next.own, &next.pieces));
-        for (int i = 0; i < 2; i++)
-            if (next.own[i] != NULL)
-                next.meshes[i] = next.own[i];
-        TRY(join_start(&next));
-        if (round == 0 || next.pieces.count < best->pieces.count)
-            twin_pieces_swap(best, &next);
-    }
+    SCOPED_BY(free_starts) plane_starts all = {.from = from};
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = PLANE_STARTS,
+                                      .shared = &all,
+                                      .item = divide_by_planes,
+                                      .silent = true};
+    TRY(starg_parallel_for(from->context, &loop));
+    for (size_t i = 0; i < PLANE_STARTS; i++)
+        if (i == 0 || all.found[i].pieces.count < best->pieces.count)
+            twin_pieces_swap(best, &all.found[i]);
     return STARG_OK;
 }
 

@@ -7,16 +7,18 @@
  * when that has long saved nothing, or after a number of tetrahedra in proportion to all. */
 #include "star/compatible/twin_pieces.h"
 
+#include "core/parallel.h"
 #include "core/streams.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "join";
 
 enum {
-    CUT_MOST = 7,   /* pieces that become two at a time, from 3 on                     */
-    CUT_TRIES = 8,  /* planes for a group                                              */
-    CUT_IDLE = 250, /* groups in a row that no plane divided: then no more             */
-    CUT_WORK = 1500 /* tetrahedra of all planes, for each that there is                */
+    CUT_MOST = 7,     /* pieces that become two at a time, from 3 on                     */
+    CUT_TRIES = 8,    /* planes for a group                                              */
+    CUT_IDLE = 250,   /* groups in a row that no plane divided: then no more             */
+    CUT_WORK = 1500,  /* tetrahedra of all planes, for each that there is                */
+    AT_ONCE_MOST = 16 /* groups                                                        */
 };
 
 /* A plane about across from one piece of the group to another. */
@@ -100,48 +102,76 @@ static starg_status divide_group(const twin_pieces *w, const uint8_t *dropped, s
     return STARG_OK;
 }
 
-/* One group: *saved says whether it has become two pieces. */
-static starg_status cut_group(twin_pieces *w, uint64_t round, size_t *work, bool *saved) {
-    starg_status status = STARG_OK;
+/* A group: *next has no pieces if it has not become two. */
+static starg_status cut_group(const twin_pieces *w, uint64_t round, size_t *work,
+                              twin_pieces *next) {
     starg_context *context = w->context;
     starg_rng rng = starg_rng_make(context->seed, STREAM_TWIN_CUTS, round);
+    SCOPED_BY(through_free)
     through_cut cut = {.context = context, .meshes = {w->meshes[0], w->meshes[1]}};
-    twin_pieces next = {.context = context};
-    uint8_t *dropped = NULL, *inside = NULL;
+    SCOPED uint8_t *dropped = NULL, *inside = NULL;
+    SCOPED double *levels = NULL;
     size_t tetrahedra = 0, group = 0;
-    *saved = false;
-    STARG_NEW(context, STAGE, dropped, w->pieces.count);
-    STARG_NEW(context, STAGE, inside, w->meshes[0]->count);
-    STARG_NEW(context, STAGE, cut.levels, w->meshes[0]->vertex_count);
-    STARG_TRY(
-        twin_pieces_drop(w, 3 + starg_rng_below(&rng, CUT_MOST - 2), &rng, dropped, &tetrahedra));
+    NEW(context, STAGE, dropped, w->pieces.count);
+    NEW(context, STAGE, inside, w->meshes[0]->count);
+    NEW(context, STAGE, levels, w->meshes[0]->vertex_count);
+    TRY(twin_pieces_drop(w, 3 + starg_rng_below(&rng, CUT_MOST - 2), &rng, dropped, &tetrahedra));
     for (size_t p = 0; p < w->pieces.count; p++)
         group += dropped[p];
     for (size_t t = 0; t < w->meshes[0]->count; t++)
         inside[t] = dropped[w->pieces.labels[t]];
     cut.inside = inside;
-    if (group > 2)
-        STARG_TRY(divide_group(w, dropped, &rng, &cut, &next));
-    *work += CUT_TRIES * tetrahedra + w->meshes[0]->count / 10;
-    if (next.pieces.count > 0) {
-        twin_pieces_swap(w, &next);
-        *saved = true;
+    cut.levels = levels;
+    *work = CUT_TRIES * tetrahedra + w->meshes[0]->count / 10;
+    return group > 2 ? divide_group(w, dropped, &rng, &cut, next) : STARG_OK;
+}
+
+/* Groups that threads try at once, each for the pieces as they are: few become two, so that most
+ * are what they would be one after the other. */
+typedef struct cut_trials {
+    const twin_pieces *w;
+    uint64_t first;
+    size_t work[AT_ONCE_MOST];
+    twin_pieces next[AT_ONCE_MOST];
+} cut_trials;
+
+static starg_status try_group(starg_context *context, void *shared, void *scratch, size_t item) {
+    cut_trials *all = shared;
+    (void)scratch;
+    all->next[item] = (twin_pieces){.context = context};
+    return cut_group(all->w, all->first + item, &all->work[item], &all->next[item]);
+}
+
+static void free_trials(cut_trials *all) {
+    for (size_t i = 0; i < AT_ONCE_MOST; i++) {
+        twin_pieces_free(&all->next[i]);
+        all->next[i] = (twin_pieces){.context = all->w->context};
     }
-done:
-    through_free(&cut);
-    RELEASE(cut.levels, dropped, inside);
-    twin_pieces_free(&next);
-    return status;
 }
 
 starg_status compatible_cut(twin_pieces *w) {
-    size_t idle = 0, work = 0, most = CUT_WORK * w->meshes[0]->count;
+    const size_t threads = (size_t)w->context->threads, most = CUT_WORK * w->meshes[0]->count;
+    SCOPED_BY(free_trials) cut_trials all = {.w = w, .first = 1};
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = threads < AT_ONCE_MOST ? threads : AT_ONCE_MOST,
+                                      .shared = &all,
+                                      .item = try_group,
+                                      .silent = true};
+    size_t idle = 0, work = 0;
     IN_STAGE(w->context, STAGE);
-    for (uint64_t round = 1; idle < CUT_IDLE && work < most && w->pieces.count > 2; round++) {
-        bool saved;
-        TRY(starg_check_cancel(w->context, STAGE));
-        TRY(cut_group(w, round, &work, &saved));
-        idle = saved ? 0 : idle + 1;
+    free_trials(&all);
+    while (idle < CUT_IDLE && work < most && w->pieces.count > 2) {
+        bool saved = false;
+        TRY(starg_parallel_for(w->context, &loop));
+        for (size_t i = 0; i < loop.count && !saved && idle < CUT_IDLE && work < most; i++) {
+            all.first++;
+            work += all.work[i];
+            saved = all.next[i].pieces.count > 0;
+            idle = saved ? 0 : idle + 1;
+            if (saved)
+                twin_pieces_swap(w, &all.next[i]);
+        }
+        free_trials(&all);
         starg_progress_step(w->context, work, most);
     }
     return STARG_OK;

@@ -3,14 +3,18 @@
  *
  * Invariant: a join is made only if a guard in either place is proven, by exact signs. Cost: two
  * linear programs for each pair of neighbours that is tried; a pair is tried again only when one of
- * the two has changed. */
+ * the two has changed. Threads try the next few pairs at once, and what they find is taken in
+ * order, so that it is the same for any number of them. */
 #include "star/compatible/twin_pieces.h"
 
 #include <stdlib.h>
 
+#include "core/parallel.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "join";
+
+enum { AT_ONCE = 4 }; /* pairs that each of several threads may try, before any is joined */
 
 /* Two pieces that share faces, and how much. */
 typedef struct contact {
@@ -21,7 +25,7 @@ typedef struct contact {
 typedef STARG_ARRAY(contact) contact_list;
 
 void twin_pieces_free(twin_pieces *w) {
-    void *const blocks[] = {w->next, w->heads, w->tails, w->fresh, w->joined, w->faces.data};
+    void *const blocks[] = {w->next, w->heads, w->tails, w->fresh, w->joined};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(w->context, blocks[i]);
     for (int i = 0; i < 2; i++)
@@ -57,24 +61,25 @@ starg_status twin_pieces_list(twin_pieces *w) {
 /* ---- kernels ---- */
 
 /* Adds the faces of piece `piece` that bound its union with `other`. */
-static starg_status add_faces(twin_pieces *w, uint32_t piece, uint32_t other) {
+static starg_status add_faces(const twin_pieces *w, uint32_t piece, uint32_t other,
+                              face_corners *out) {
     const starg_tetmesh *mesh = w->meshes[0];
     for (uint32_t t = w->heads[piece]; t != TWIN_LAST; t = w->next[t])
         for (size_t face = 4 * (size_t)t; face < 4 * (size_t)t + 4; face++)
-            TRY(piece_faces_add(w->context, mesh, w->pieces.labels, face, piece, other, &w->faces));
+            TRY(piece_faces_add(w->context, mesh, w->pieces.labels, face, piece, other, out));
     return STARG_OK;
 }
 
 /* Looks for a guard of two pieces together, or of one that is given twice, in both places. */
-static starg_status find_guards(twin_pieces *w, uint32_t piece, uint32_t other, double guards[2][3],
-                                bool *found) {
+static starg_status find_guards(const twin_pieces *w, uint32_t piece, uint32_t other,
+                                double guards[2][3], bool *found) {
+    SCOPED face_corners faces = {0};
     *found = true;
-    w->faces.count = 0;
-    TRY(add_faces(w, piece, other));
+    TRY(add_faces(w, piece, other, &faces));
     if (other != piece)
-        TRY(add_faces(w, other, piece));
+        TRY(add_faces(w, other, piece, &faces));
     for (int i = 0; i < 2 && *found; i++) {
-        const kernel_faces surface = {w->meshes[i]->vertices, w->faces.data, w->faces.count / 3};
+        const kernel_faces surface = {w->meshes[i]->vertices, faces.data, faces.count / 3};
         starg_kernel_result kernel;
         TRY(kernel_find(w->context, &surface, &kernel));
         vec3_copy(kernel.guard, guards[i]);
@@ -155,22 +160,51 @@ static void append(twin_pieces *w, uint32_t piece, uint32_t other) {
     w->joined[piece] = w->joined[other] = 1;
 }
 
+/* A pair that is tried, and the guards of its union. */
+typedef struct join_trial {
+    uint32_t first, second;
+    double guards[2][3];
+    bool found;
+} join_trial;
+
+typedef struct join_trials {
+    const twin_pieces *w;
+    join_trial *list;
+} join_trials;
+
+static starg_status try_join(starg_context *context, void *shared, void *scratch, size_t item) {
+    const join_trials *all = shared;
+    join_trial *t = &all->list[item];
+    (void)context;
+    (void)scratch;
+    return find_guards(all->w, t->first, t->second, t->guards, &t->found);
+}
+
 /* One round: each piece changes once at most, so that contacts stay true. */
 static starg_status join_round(twin_pieces *w, const contact_list *contacts, size_t *joins) {
+    const size_t threads = (size_t)w->context->threads, most = threads > 1 ? AT_ONCE * threads : 1;
+    SCOPED join_trial *list = NULL;
+    join_trials trials = {.w = w};
+    starg_parallel_loop loop = {
+        .stage = STAGE, .shared = &trials, .item = try_join, .silent = true};
+    NEW(w->context, STAGE, list, most);
+    trials.list = list;
     *joins = 0;
-    for (size_t i = 0; i < contacts->count; i++) {
-        const contact *c = &contacts->data[i];
-        double guards[2][3];
-        bool found;
-        if (w->joined[c->first] || w->joined[c->second])
-            continue;
+    for (size_t i = 0; i < contacts->count;) {
         TRY(starg_check_cancel(w->context, STAGE));
-        TRY(find_guards(w, c->first, c->second, guards, &found));
-        if (!found)
-            continue;
-        append(w, c->first, c->second);
-        set_guards(w, c->first, guards);
-        (*joins)++;
+        for (loop.count = 0; i < contacts->count && loop.count < most; i++) {
+            const contact *c = &contacts->data[i];
+            if (!w->joined[c->first] && !w->joined[c->second])
+                list[loop.count++] = (join_trial){.first = c->first, .second = c->second};
+        }
+        TRY(starg_parallel_for(w->context, &loop));
+        for (join_trial *t = list; t < list + loop.count; t++) {
+            if (!t->found || w->joined[t->first] || w->joined[t->second])
+                continue;
+            append(w, t->first, t->second);
+            set_guards(w, t->first, t->guards);
+            (*joins)++;
+        }
     }
     return STARG_OK;
 }
@@ -196,7 +230,7 @@ static void renumber(twin_pieces *w) {
 
 starg_status twin_pieces_join(twin_pieces *w) {
     SCOPED contact_list contacts = {0};
-    size_t joins;
+    size_t joins = 0;
     do {
         TRY(find_contacts(w, &contacts));
         TRY(join_round(w, &contacts, &joins));
@@ -225,10 +259,10 @@ starg_status twin_pieces_center(twin_pieces *w) {
 
 starg_status twin_pieces_drop(const twin_pieces *w, size_t wanted, starg_rng *rng, uint8_t *dropped,
                               size_t *tetrahedra) {
-    starg_status status = STARG_OK;
     const starg_tetmesh *mesh = w->meshes[0];
     const uint32_t *labels = w->pieces.labels;
-    STARG_ARRAY(uint32_t) beside = {0}; /* the pieces at the group, as often as faces touch */
+    SCOPED STARG_ARRAY(uint32_t)
+        beside = {0}; /* the pieces at the group, as often as faces touch */
     memset(dropped, 0, w->pieces.count);
     dropped[starg_rng_below(rng, w->pieces.count)] = 1;
     for (size_t chosen = 1; chosen < wanted; chosen++) {
@@ -236,7 +270,7 @@ starg_status twin_pieces_drop(const twin_pieces *w, size_t wanted, starg_rng *rn
         for (size_t face = 0; face < 4 * mesh->count; face++) {
             uint32_t u = mesh->neighbours[face];
             if (u != STARG_TETMESH_NONE && dropped[labels[face / 4]] && !dropped[labels[u]])
-                STARG_PUSH(w->context, STAGE, &beside, labels[u]);
+                PUSH(w->context, STAGE, &beside, labels[u]);
         }
         if (beside.count == 0)
             break;
@@ -245,21 +279,19 @@ starg_status twin_pieces_drop(const twin_pieces *w, size_t wanted, starg_rng *rn
     *tetrahedra = 0;
     for (size_t t = 0; t < mesh->count; t++)
         *tetrahedra += dropped[labels[t]];
-done:
-    STARG_ARRAY_FREE(w->context, &beside);
-    return status;
+    return STARG_OK;
 }
 
-starg_status twin_pieces_prove(twin_pieces *w, bool *proven) {
+starg_status twin_pieces_prove(const twin_pieces *w, bool *proven) {
+    SCOPED face_corners faces = {0};
     *proven = true;
     for (uint32_t piece = 0; piece < w->pieces.count && *proven; piece++) {
-        w->faces.count = 0;
-        TRY(add_faces(w, piece, piece));
-        *proven = w->faces.count > 0;
+        faces.count = 0;
+        TRY(add_faces(w, piece, piece, &faces));
+        *proven = faces.count > 0;
         for (int i = 0; i < 2 && *proven; i++) {
             const double *guards = i == 0 ? w->pieces.guards.data : w->pieces.counterparts.data;
-            const kernel_faces surface = {w->meshes[i]->vertices, w->faces.data,
-                                          w->faces.count / 3};
+            const kernel_faces surface = {w->meshes[i]->vertices, faces.data, faces.count / 3};
             *proven = kernel_sees_all(&surface, guards + 3 * (size_t)piece);
         }
     }

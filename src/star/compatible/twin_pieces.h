@@ -19,7 +19,6 @@ typedef struct twin_pieces {
     uint32_t *next;          /* per tetrahedron */
     uint32_t *heads, *tails; /* per piece; a piece that was joined to another has TWIN_LAST */
     uint8_t *fresh, *joined; /* per piece: changed in the last round of joins, in this one */
-    face_corners faces;      /* of the pieces that are looked at */
 } twin_pieces;
 
 void twin_pieces_free(twin_pieces *w);
@@ -37,7 +36,7 @@ starg_status twin_pieces_center(twin_pieces *w);
 
 /* Are all pieces seen from their guards, in both places? Rounding of new vertices may spoil it.
  * Errors: MEMORY. */
-starg_status twin_pieces_prove(twin_pieces *w, bool *proven);
+starg_status twin_pieces_prove(const twin_pieces *w, bool *proven);
 
 /* Chooses `wanted` pieces that hang together, fewer if there are not so many, from a random one on:
  * dropped[piece] becomes 1. Says how many tetrahedra they have. Errors: MEMORY. */
