@@ -20,12 +20,15 @@
 
 enum { WORK = 300000, EFFORT = 40 };
 
+/* In the search of a proof. */
+static uint64_t work = WORK;
+
 static starg_decompose_options options_of(bool prove) {
     starg_decompose_options options;
     starg_decompose_options_default(&options);
     options.effort = EFFORT;
     options.prove = prove;
-    options.prove_work = WORK;
+    options.prove_work = work;
     return options;
 }
 
@@ -284,6 +287,7 @@ static void test_shared(void **state) {
 static void test_samples(void **state) {
     (void)state;
     static const char *const names[] = {"l-room", "horse", "octopus"};
+    work = test_size(WORK / 3, WORK);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         starg_context *context = test_context(2);
         starg_solid *solid = test_sample(context, names[i], 500);
@@ -295,6 +299,7 @@ static void test_samples(void **state) {
         starg_solid_free(solid);
         test_context_free(context);
     }
+    work = WORK;
 }
 
 static void test_same_bytes(void **state) {
@@ -330,7 +335,7 @@ static void test_forged(void **state) {
     starg_guard_options options;
     starg_guard_options_default(&options);
     options.prove = true;
-    options.prove_work = WORK;
+    options.prove_work = work;
     for (int k = 0; k < 2; k++) {
         starg_guards *guards = NULL;
         char *text = NULL;
