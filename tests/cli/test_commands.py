@@ -342,7 +342,7 @@ class Guard(support.Case):
         for options in [["--coverage", "0.9"], ["--redundancy", "2"], ["--cone", "120"],
                         ["--candidates", "g.json"], ["--max-guards", "2"]]:
             out = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
-                                "--prove-work", "20000", "--refine-lines", "20000", *options)[0]
+                                "--prove-work", "4000", "--refine-lines", "5000", *options)[0]
             self.run_text("verify", maze, "p.json")
             report = json.loads(self.read("p.json"))
             if options[0] == "--max-guards":

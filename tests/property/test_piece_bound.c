@@ -179,7 +179,7 @@ static void test_guards_see_corners(void **state) {
     starg_context *context = test_context(2);
     const starg_decompose_options options = options_of(false);
     size_t tried = 0, several = 0;
-    for (uint64_t item = 0; item < test_rounds(15, 600); item++) {
+    for (uint64_t item = 0; item < test_rounds(24, 600); item++) {
         starg_solid *solid = random_solid(context, item);
         starg_decomposition *d = NULL;
         if (solid == NULL)
