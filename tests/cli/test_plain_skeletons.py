@@ -232,9 +232,9 @@ def main():
     parser.add_argument("--keep", default=None)
     parser.add_argument("--processes", type=int, default=1)
     options = parser.parse_args()
-    every = 1 if options.all or options.long or options.only else 3
+    every = 1 if options.all or options.long or options.only else 2
     with tempfile.TemporaryDirectory() as scratch:
-        jobs = [(solid, number, options.keep or scratch, options.all or options.long or number % (3 * every) == 0)
+        jobs = [(solid, number, options.keep or scratch, options.all or options.long or number % 3 == 0)
                 for number, solid in solids_of_family(options.long, every) if options.only in solid.name]
         with multiprocessing.Pool(options.processes) as pool:
             results = [r for group in pool.imap(examine, jobs) for r in group]
