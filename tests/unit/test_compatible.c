@@ -335,7 +335,7 @@ static void test_planes(void **state) {
 static void test_planes_save(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_tetmesh *mesh = sample_tetmesh(context, "gallery", test_size(1200, 1500)),
+    starg_tetmesh *mesh = sample_tetmesh(context, "gallery", test_size(1000, 1500)),
                   *image = bend(context, mesh);
     starg_decomposition *whole[2], *cut[2];
     grown_regions grown;
