@@ -129,7 +129,7 @@ class Align(support.Case):
         dice = random.Random(7)
         for name, pose, decided in (("horse", 2, True), ("knot", 0, True), ("polycube", 1, True), ("spikes", 0, True),
                                     ("human", 0, False), ("torus", 0, False), ("l-room", 0, False),
-                                    ("star", 0, False))[::1 if support.LONG else 3]:
+                                    ("star", 0, False))[::1 if support.LONG else 4]:
             model = self.sample(name, 520, None, "--pose", str(pose))
             for mirrored in False, True:
                 scale = 10 ** dice.uniform(-3, 3)
@@ -139,6 +139,8 @@ class Align(support.Case):
                 self.assertEqual(told["hand"], ("mirrored" if mirrored else "same") if decided else "undecided", name)
                 if decided:
                     self.assertLess(told["mirrored" if mirrored else "same"], 3e-3, name)
+                if not mirrored and not support.LONG:
+                    continue
                 back = self.align("copy.off", model)["alignment"]
                 self.assertEqual(back["hand"], told["hand"], name)
                 self.assertAlmostEqual(back["scale"] * scale, 1, 9, name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Killed at any moment (docs/robustness.md): outputs are there whole or not at all, databases stay in
-order, and what is left behind is in nobody's way. 4 kills of each command, with STARGUARD_LONG=1 200."""
+order, and what is left behind is in nobody's way. 3 kills of each command, with STARGUARD_LONG=1 200."""
 import collections
 import json
 import os
@@ -14,7 +14,7 @@ import support
 from support import PROGRAM, TETRAHEDRON
 from writing import LONG, Writing, is_leftover
 
-KILLS = 200 if LONG else 4
+KILLS = 200 if LONG else 3
 
 
 class Killed(Writing):

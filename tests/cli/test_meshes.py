@@ -167,7 +167,7 @@ class Scenes(Case):
         return out.getvalue()
 
     def test_damaged(self):
-        """200 broken files, or 60 without STARGUARD_LONG: a result or a message, and nothing else is left."""
+        """200 broken files, or 40 without STARGUARD_LONG: a result or a message, and nothing else is left."""
         rng = random.Random(1)
         self.write("box.obj", "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8)) + "g floor\nf 1 3 4 2\n"
                    "g rest\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
@@ -175,7 +175,7 @@ class Scenes(Case):
         for name in ("bad.glb", "bad.3mf"):
             self.run_text("export", "box.obj", "-o", name)
             good = self.read(name)
-            for _ in range(100 if LONG else 30):
+            for _ in range(100 if LONG else 20):
                 self.write(name, self.damaged(rng, name, good))
                 with self.start("repair", name, "-o", "out.off") as process:
                     _, err = process.communicate()

@@ -61,7 +61,7 @@ class Messages(support.Case):
 
     def test_intersections_are_of_the_model(self):
         """Levels of detail cross themselves as the model does; what is told is about the model, once."""
-        ball = self.ball(2000)
+        ball = self.ball(1200)
         self.write("two.off", join((ball, 0, 1, False), (ball, .7, 1, False)))
         found = self.run_json("check", "two.off")["findings"]["self_intersections"]
         log = self.run_json("guard", "two.off", "-o", "g.json", "--coarsest", "500", "--step", "1000",
@@ -91,7 +91,7 @@ class Messages(support.Case):
         self.run_text("repair", "strip.off", "-o", "r.off", status=2)
 
     def test_one_cavity(self):
-        ball = self.ball(2000)
+        ball = self.ball()
         self.write("hollow.off", join((ball, 0, 1, False), (ball, 0, .5, True)))
         _, err = self.run_text("skeleton", "hollow.off", "-o", "s.obj")
         self.assertIn("has 1 cavity, which", err)

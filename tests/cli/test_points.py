@@ -251,7 +251,7 @@ class Points(Case):
         """What bisection proves seen is seen, and most of what is, against the exact arrangement of all shadows."""
         dice = random.Random(58)
         checked, missed = 0, []
-        while checked < (1000 if LONG else 100):
+        while checked < (1000 if LONG else 60):
             count = dice.randint(2, 9)
             size = dice.choice((2, 4, 9, 1000))
             corners = [[tuple(Fraction(dice.randint(0, size)) for _ in range(3)) for _ in range(3)]

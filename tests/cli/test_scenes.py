@@ -55,7 +55,8 @@ class Scenes(Case):
         self.write("crate.off", off(box(*CRATE, 2)))
 
     def guards(self, *words):
-        self.run_text("guard", *words, "-o", "g.json", "--quiet")
+        fewer = [] if {"--count", "--candidates"} & set(words) else ["--count", "60"]
+        self.run_text("guard", *words, *fewer, "-o", "g.json", "--quiet")
         with open(self.path("g.json"), encoding="utf-8") as file:
             return json.load(file)
 

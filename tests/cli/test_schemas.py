@@ -62,7 +62,7 @@ def shortened(value):
     if isinstance(value, dict):
         return {key: shortened(part) for key, part in value.items()}
     if isinstance(value, list) and value and isinstance(value[0], (dict, list)):
-        return [shortened(part) for part in value[:16]]
+        return [shortened(part) for part in value[:4]]
     return value
 
 

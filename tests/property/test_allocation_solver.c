@@ -123,8 +123,8 @@ static int solve_apart(size_t n) {
 static void test_solver(void **state) {
     (void)state;
     bool more = getenv("STARGUARD_LONG") != NULL;
-    size_t first = more ? 6000 : 6, part = more ? 64 : 2, attempts = 0, last = 0;
-    for (size_t n = 1;; n += n < first ? 1 : 1 + n / part) {
+    size_t first = more ? 6000 : 6, part = more ? 48 : 1, attempts = 0, last = 0;
+    for (size_t n = 1;; n += n < first ? 1 : 1 + 3 * n / (4 * part)) {
         int result = solve_apart(n);
         if (result == NOT_REACHED)
             break;

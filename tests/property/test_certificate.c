@@ -448,11 +448,11 @@ static void damage_shape(shape made, size_t rounds) {
 static void test_damaged(void **state) {
     (void)state;
     subject gallery = prove_sample("gallery", 500, 200000);
-    check_damaged(&gallery, test_rounds(DAMAGED / 200, DAMAGED));
+    check_damaged(&gallery, test_rounds(DAMAGED / 400, DAMAGED));
     subject_free(&gallery);
-    damage_shape(shape_columns(), test_rounds(DAMAGED / 20, DAMAGED));
+    damage_shape(shape_columns(), test_rounds(DAMAGED / 40, DAMAGED));
     for (uint64_t item = 1; item < 4 + test_rounds(0, 4); item++)
-        damage_shape(shape_heap(5, item), test_rounds(DAMAGED / 100, DAMAGED));
+        damage_shape(shape_heap(5, item), test_rounds(DAMAGED / 200, DAMAGED));
 }
 
 /* ---- conclusions from what leaves may see ---- */
@@ -639,7 +639,7 @@ enum { COPIES = 30 };
 static void test_rows(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    size_t proofs = 0, branched = 0, accepted = 0, rounds = test_rounds(150, 20000);
+    size_t proofs = 0, branched = 0, accepted = 0, rounds = test_rounds(225, 20000);
     for (uint64_t item = 0; item < rounds; item++) {
         starg_rng rng = starg_rng_make(31, 4, item);
         random_rows r;
@@ -1011,7 +1011,7 @@ static void check_points(subject *s) {
     s->guards->options.visibility.target = STARG_TARGET_POINTS;
     forge_reasons(s, 100);
     forge_witnesses(s, 60);
-    check_damaged(s, test_rounds(DAMAGED / 50, DAMAGED));
+    check_damaged(s, test_rounds(DAMAGED / 100, DAMAGED));
     s->guards->lower_bound_everywhere = bound;
 }
 

@@ -191,7 +191,7 @@ static void run_many(uint64_t stage, size_t count, size_t most_rows) {
 
 static void small_problems(void **state) {
     (void)state;
-    run_many(1, 20000, 8);
+    run_many(1, test_size(11000, 20000), 8);
 }
 
 static void larger_problems(void **state) {

@@ -60,7 +60,7 @@ static void check_folder(const char *folder, size_t *checked) {
             continue;
         snprintf(path, sizeof path, "%s/%s/%s", data, folder, file->d_name);
         test_ok(context, starg_mesh_read(context, path, &mesh));
-        if (starg_mesh_vertex_count(mesh) <= test_rounds(1000, 1200)) {
+        if (starg_mesh_vertex_count(mesh) <= test_size(350, 1200)) {
             check_model(context, file->d_name, mesh);
             ++*checked;
         }
@@ -88,7 +88,7 @@ static void test_refined_crossing(void **state) {
     test_ok(context, starg_solid_create(context, mesh, &solid));
     starg_guard_options_default(&options);
     options.candidates = STARG_CANDIDATES_INTERIOR;
-    options.refine_lines = 1000000;
+    options.refine_lines = test_size(500000, 1000000);
     test_ok(context, starg_guard(context, solid, &options, &guards));
     test_verified(context, "cat_08, refined", mesh, guards);
     assert_int_equal(guards->coverable_faces + guards->uncovered_count, guards->face_count);
@@ -102,7 +102,7 @@ static void test_cad(void **state) {
     size_t checked = 0;
     (void)state;
     check_folder("cad", &checked);
-    assert_true(checked >= test_rounds(15, 25));
+    assert_true(checked >= test_size(15, 25));
 }
 
 static void test_small_solids(void **state) {
@@ -110,7 +110,7 @@ static void test_small_solids(void **state) {
     (void)state;
     check_folder("table2", &checked);
     check_folder("solids", &checked);
-    assert_true(checked >= test_rounds(1, 6));
+    assert_true(checked >= test_size(1, 6));
 }
 
 int main(void) {

@@ -531,14 +531,19 @@ static void test_lattice(void **state) {
 /* Flat, shaken, far away, tiny and huge. */
 static void test_scales(void **state) {
     (void)state;
+    bool all = test_rounds(0, 1) == 1; /* else one of the two in each place */
     static const double scales[][2] = {{0.1, 1e6}, {1e-80, 0}, {1e90, 0}, {1e-3, -7e3}};
     for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
-        shape s = i % 2 == 0 ? shape_room() : shape_cavity();
-        shape_place(&s, scales[i][0], scales[i][1]);
-        check_shape("placed room", s, 10 + i, 0.17, NULL);
-        s = shape_blob(1, 60 + i);
-        shape_place(&s, scales[i][0], scales[i][1]);
-        check_shape("placed blob", s, 20 + i, 0.13, NULL);
+        if (all || i == 1 || i == 2) {
+            shape s = i % 2 == 0 ? shape_room() : shape_cavity();
+            shape_place(&s, scales[i][0], scales[i][1]);
+            check_shape("placed room", s, 10 + i, 0.17, NULL);
+        }
+        if (all || i == 0 || i == 3) {
+            shape s = shape_blob(1, 60 + i);
+            shape_place(&s, scales[i][0], scales[i][1]);
+            check_shape("placed blob", s, 20 + i, 0.13, NULL);
+        }
     }
     static const double flat[] = {1e-3, 1e-9, 1e-15};
     for (size_t i = 0; i < 3; i++) {

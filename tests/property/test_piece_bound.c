@@ -20,12 +20,15 @@
 
 enum { WORK = 300000, EFFORT = 40 };
 
+/* In the search of a proof. */
+static uint64_t work = WORK;
+
 static starg_decompose_options options_of(bool prove) {
     starg_decompose_options options;
     starg_decompose_options_default(&options);
     options.effort = EFFORT;
     options.prove = prove;
-    options.prove_work = WORK;
+    options.prove_work = work;
     return options;
 }
 
@@ -176,7 +179,7 @@ static void test_guards_see_corners(void **state) {
     starg_context *context = test_context(2);
     const starg_decompose_options options = options_of(false);
     size_t tried = 0, several = 0;
-    for (uint64_t item = 0; item < test_rounds(15, 600); item++) {
+    for (uint64_t item = 0; item < test_rounds(24, 600); item++) {
         starg_solid *solid = random_solid(context, item);
         starg_decomposition *d = NULL;
         if (solid == NULL)
@@ -284,6 +287,7 @@ static void test_shared(void **state) {
 static void test_samples(void **state) {
     (void)state;
     static const char *const names[] = {"l-room", "horse", "octopus"};
+    work = test_size(WORK / 3, WORK);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         starg_context *context = test_context(2);
         starg_solid *solid = test_sample(context, names[i], 500);
@@ -295,6 +299,7 @@ static void test_samples(void **state) {
         starg_solid_free(solid);
         test_context_free(context);
     }
+    work = WORK;
 }
 
 static void test_same_bytes(void **state) {
@@ -330,7 +335,7 @@ static void test_forged(void **state) {
     starg_guard_options options;
     starg_guard_options_default(&options);
     options.prove = true;
-    options.prove_work = WORK;
+    options.prove_work = work;
     for (int k = 0; k < 2; k++) {
         starg_guards *guards = NULL;
         char *text = NULL;

@@ -85,7 +85,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
 
     /* more candidates: never more guards, with their own bound */
     options.refine = true;
-    options.refine_lines = 300000;
+    options.refine_lines = test_size(100000, 300000);
     test_ok(context, starg_guard(context, solid, &options, &refined));
     test_verified(context, name, mesh, refined);
     assert_true(refined->count <= guards->count);
@@ -109,7 +109,7 @@ static void test_samples(void **state) {
     starg_context *context = test_context(2);
     const char *const names[] = {"gallery", "human", "plate"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        starg_mesh *mesh = test_sample_mesh(context, names[i], 1500);
+        starg_mesh *mesh = test_sample_mesh(context, names[i], test_size(1100, 1500));
         check_model(context, names[i], mesh, i == 1 ? STARG_QUARTERS : 400);
         starg_mesh_free(mesh);
     }
@@ -201,7 +201,8 @@ static double seen_from_skeleton(starg_context *context, size_t vertices) {
 static void test_large(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    double small = seen_from_skeleton(context, 20000), large = seen_from_skeleton(context, 110000);
+    double small = seen_from_skeleton(context, test_size(10000, 20000)),
+           large = seen_from_skeleton(context, test_size(102000, 110000));
     if (large < small - 0.01)
         fail_msg("%g of the area seen, %g with fewer vertices", large, small);
     test_context_free(context);

@@ -375,7 +375,7 @@ static void check_boxes(const scene *s, uint64_t seed) {
 
 /* A sample, or twenty times as many where all are wanted. */
 static uint64_t scenes_of(uint64_t few) {
-    return test_rounds(few, 100 * few);
+    return test_rounds(few + few / 2, 100 * few);
 }
 
 static void test_random_scenes(void **state) {

@@ -273,7 +273,7 @@ static void volumes_of_boxes(void **state) {
 static void volume_of_two_boxes(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    for (uint64_t round = 0; round < 20; round++) {
+    for (uint64_t round = 0; round < test_size(10, 20); round++) {
         starg_rng rng = starg_rng_make(3, 0, round);
         shape all = shape_cube(1), other = shape_cube(1);
         double offset[3], common = 1;
@@ -658,7 +658,7 @@ static void shared_models(void **state) {
         starg_check *check = NULL;
         if (starg_mesh_read(context, row.path, &mesh) != STARG_OK)
             continue;
-        bool small = starg_mesh_face_count(mesh) <= test_rounds(MOST_FACES / 2, MOST_FACES);
+        bool small = starg_mesh_face_count(mesh) <= test_size(MOST_FACES / 4, MOST_FACES);
         if (small)
             test_ok(context, starg_mesh_check(context, mesh, &check));
         if (small && check->usable && count_of(check, STARG_FINDING_SELF_INTERSECTION) > 0) {
@@ -672,7 +672,7 @@ static void shared_models(void **state) {
     }
     fclose(readme);
     test_context_free(context);
-    assert_true(done >= test_rounds(3, 5));
+    assert_true(done >= test_size(2, 5));
 }
 
 int main(void) {

@@ -144,7 +144,8 @@ typedef struct run_mode {
     double seconds, thorough; /* processor time for the first n; thorough 0: for every n */
 } run_mode;
 
-static const run_mode RUN_MODES[] = {{1, false, 0.2, 0}, {1, true, 0.04, 4}, {2, false, 0.04, 4}};
+static const run_mode RUN_MODES[] = {
+    {1, false, 0.12, 0}, {1, true, 0.025, 4}, {2, false, 0.025, 4}};
 
 typedef struct tally {
     size_t allocations, attempts, failed;

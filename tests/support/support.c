@@ -59,9 +59,9 @@ const char *test_shared_data(void) {
 }
 
 #ifdef __SANITIZE_ADDRESS__
-enum { SHARE = 4 };
+enum { SHARE = 6 };
 #else
-enum { SHARE = 2 };
+enum { SHARE = 3 };
 #endif
 
 size_t test_rounds(size_t usual, size_t thorough) {
@@ -70,6 +70,10 @@ size_t test_rounds(size_t usual, size_t thorough) {
         return (usual + SHARE - 1) / SHARE;
     size_t rounds = thorough * strtoul(percent, NULL, 10) / 100;
     return rounds > usual ? rounds : usual;
+}
+
+size_t test_size(size_t usual, size_t thorough) {
+    return getenv("STARGUARD_LONG") == NULL ? usual : thorough;
 }
 
 size_t test_step(void) {

@@ -31,10 +31,14 @@ void test_context_free(starg_context *context);
  * skip() and returns). */
 const char *test_shared_data(void);
 
-/* Number of rounds of a randomized test: `usual`, or the percentage of `thorough` given by
- * STARGUARD_LONG in the environment (100 in make check-long). Without it, sanitizers, which make
- * everything some five times as slow, get a quarter of `usual`. */
+/* Number of rounds of a randomized test: a third of `usual`, or the percentage of `thorough` given
+ * by STARGUARD_LONG in the environment (100 in make check-long), at least `usual`. Without it,
+ * sanitizers, which make everything some five times as slow, get a sixth. */
 size_t test_rounds(size_t usual, size_t thorough);
+
+/* A size of a model, or an amount of work: `thorough` with STARGUARD_LONG, else `usual`, however
+ * the program is built. */
+size_t test_size(size_t usual, size_t thorough);
 
 /* Step through a family of models: 1 with STARGUARD_LONG, else 3. */
 size_t test_step(void);

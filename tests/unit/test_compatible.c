@@ -115,7 +115,7 @@ static void test_random(void **state) {
     (void)state;
     starg_context *context = test_context(1), *many = test_context(3);
     size_t pieces = 0, tetrahedra = 0;
-    for (uint64_t seed = 0; seed < 12; seed++) {
+    for (uint64_t seed = 0; seed < test_size(9, 12); seed++) {
         starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + 3 * seed, false, 1);
         starg_tetmesh *image = seed % 4 == 0 ? shear(context, mesh) : shake(context, mesh, seed);
         starg_decomposition *one[2], *three[2];
@@ -321,7 +321,7 @@ static size_t check_planes(starg_context *context, const starg_tetmesh *mesh,
 static void test_planes(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    for (uint64_t seed = 0; seed < 12; seed++) {
+    for (uint64_t seed = 0; seed < test_size(9, 12); seed++) {
         starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + 3 * seed, false, 1);
         starg_tetmesh *image = seed % 4 == 0 ? shear(context, mesh) : shake(context, mesh, seed);
         check_planes(context, mesh, image);
@@ -335,7 +335,8 @@ static void test_planes(void **state) {
 static void test_planes_save(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_tetmesh *mesh = sample_tetmesh(context, "gallery", 1500), *image = bend(context, mesh);
+    starg_tetmesh *mesh = sample_tetmesh(context, "gallery", test_size(1000, 1500)),
+                  *image = bend(context, mesh);
     starg_decomposition *whole[2], *cut[2];
     grown_regions grown;
     size_t parts = check_planes(context, mesh, image);
@@ -365,7 +366,7 @@ static void test_memory(void **state) {
     (void)state;
     starg_status status = STARG_ERROR_MEMORY;
     size_t ration = 0;
-    for (; status != STARG_OK && ration < 200000; ration += 1 + ration / test_rounds(3, 8)) {
+    for (; status != STARG_OK && ration < 200000; ration += 1 + ration / test_size(2, 8)) {
         size_t left = SIZE_MAX;
         starg_context *context = test_scarce_context(1, &left);
         starg_tetmesh *mesh = random_tetmesh(context, 5, 30, false, 1);

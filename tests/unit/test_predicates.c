@@ -301,7 +301,7 @@ static void check_moving(point_family family, const double (*x)[3], size_t *coun
 
 static void test_stays_positive(void **state) {
     (void)state;
-    size_t counts[3] = {0, 0, 0}, rounds = test_rounds(ROUNDS / 10, LONG_ROUNDS / 10);
+    size_t counts[3] = {0, 0, 0}, rounds = test_rounds(3 * ROUNDS / 20, LONG_ROUNDS / 10);
     for (int family = 0; family < POINT_FAMILIES; family++)
         for (uint64_t round = 0; round < rounds; round++) {
             starg_rng rng = starg_rng_make(12, (uint64_t)family, round);

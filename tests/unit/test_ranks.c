@@ -161,7 +161,7 @@ static starg_status prove(starg_context *context, starg_target target, double cl
     starg_guard_options options;
     starg_guard_options_default(&options);
     options.prove = true;
-    options.prove_work = 120000;
+    options.prove_work = test_size(60000, 120000);
     options.candidate_count = 200;
     options.refine = false;
     options.visibility.target = target;

@@ -19,8 +19,8 @@ static void test_renewals(void **state) {
     starg_context *context = test_context(1);
     partition first = grown_sample(context, "gallery", 4000), p = partition_oracle_copy(&first);
     improve_tallies tallies = {0};
-    size_t better = 0, kept = 0, before = first.pieces.count;
-    for (uint64_t round = 1; round <= 20; round++) {
+    size_t better = 0, kept = 0, before = first.pieces.count, rounds = test_size(10, 20);
+    for (uint64_t round = 1; round <= rounds; round++) {
         ruin_recreate_report report;
         const ruin_recreate_options options = options_of(round, &tallies);
         uint64_t stamps = p.stamps;
@@ -35,7 +35,7 @@ static void test_renewals(void **state) {
         better += report.better;
         before = p.pieces.count;
     }
-    print_message("%zu renewals of 20 were better, %zu pieces stayed\n", better, kept);
+    print_message("%zu renewals of %zu were better, %zu pieces stayed\n", better, rounds, kept);
     assert_true(better > 1 && kept > 20);
     partition_free(&first);
     partition_free(&p);

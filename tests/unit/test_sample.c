@@ -321,7 +321,7 @@ static void scenes_are_what_they_say(void **state) {
     starg_context *context = test_context(2);
     const double corridor[3] = {1, 1, 6.5}, cabinet[3] = {3.75, 1, 3.5}, beside[3] = {3.25, 1, 3.5};
     const double above[3] = {1, 1, 1}, far[3] = {0, 5, 0};
-    for (size_t vertices = 1000; vertices <= 20000; vertices *= 20) {
+    for (size_t vertices = 1000; vertices <= 20000; vertices *= test_size(5, 20)) {
         starg_space_options options;
         starg_space_options_default(&options);
         options.orientation = STARG_ORIENTATION_KEEP;
@@ -389,14 +389,14 @@ static void poses_share_connectivity_and_differ(void **state) {
         if (family_genera(info->name) != NULL || is_of_cubes(info)) /* members_differ */
             continue;
         articulated += info->poses >= 5;
-        starg_mesh *rest = make(context, info->name, 0, 800);
+        starg_mesh *rest = make(context, info->name, 0, test_size(500, 800));
         size_t n = starg_mesh_vertex_count(rest), faces = starg_mesh_face_count(rest);
         double lower[3], upper[3], size = 0;
         starg_mesh_bounds(rest, lower, upper);
         for (int k = 0; k < 3; k++)
             size = fmax(size, upper[k] - lower[k]);
         for (int pose = 1; pose < info->poses; pose += info->poses - 1) {
-            starg_mesh *bent = make(context, info->name, pose, 800);
+            starg_mesh *bent = make(context, info->name, pose, test_size(500, 800));
             assert_int_equal(starg_mesh_vertex_count(bent), n);
             assert_int_equal(starg_mesh_face_count(bent), faces);
             assert_memory_equal(starg_mesh_faces(bent), starg_mesh_faces(rest),
@@ -428,12 +428,13 @@ static void proportions(const starg_mesh *mesh, double out[4]) {
     out[3] = volume_of(mesh) / box;
 }
 
-/* No two members of a family are alike, and members are as every sample: two of each family, or
- * all. */
+/* No two members of a family are alike, and members are as every sample: of each family four and
+ * two, or all. */
 static void members_differ(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     size_t families = 0;
+    int step = (int)test_size(3, 1);
     for (size_t i = 0; i < starg_sample_count(); i++) {
         const starg_sample_info *info = starg_sample_at(i);
         double measures[10][4];
@@ -441,13 +442,13 @@ static void members_differ(void **state) {
             continue;
         families++;
         assert_int_equal(info->poses, 10);
-        for (int member = 0; member < info->poses; member++) {
+        for (int member = 0; member < info->poses; member += step) {
             starg_mesh *mesh = make(context, info->name, member, 500);
-            if (member % test_step() == 0)
+            if (step == 1 || member % 9 == 0)
                 check_mesh(info, member, mesh, 500, 0.1);
             proportions(mesh, measures[member]);
             starg_mesh_free(mesh);
-            for (int other = 0; other < member; other++) {
+            for (int other = 0; other < member; other += step) {
                 double most = 0;
                 for (int k = 0; k < 4; k++)
                     most = fmax(most, fabs(measures[member][k] - measures[other][k]));

@@ -359,8 +359,8 @@ static starg_mesh *disguise(starg_context *context, const starg_mesh *mesh, doub
 static void nothing_but_the_shape_counts(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_mesh *mesh = test_sample_mesh(context, "octopus", 3000);
-    starg_mesh *other = test_sample_mesh(context, "torus", 3000);
+    starg_mesh *mesh = test_sample_mesh(context, "octopus", test_size(2010, 3000));
+    starg_mesh *other = test_sample_mesh(context, "torus", test_size(2010, 3000));
     const double noise[STARG_SIGNATURE_KINDS] = {[STARG_SIGNATURE_D2] = 0.02,
                                                  [STARG_SIGNATURE_SHAPE_DNA] = 1e-5,
                                                  [STARG_SIGNATURE_STAR] = 0.2};

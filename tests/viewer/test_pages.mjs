@@ -34,8 +34,8 @@ function fileOf(name) {
 before(async () => {
     browser = await openBrowser();
     shared = await newPage(browser);
-    starguard("sample", "horse", "--vertices", "900", "-o", "horse.off");
-    starguard("sample", "horse", "--pose", "1", "--vertices", "900", "-o", "other.off");
+    starguard("sample", "horse", "--vertices", "500", "-o", "horse.off");
+    starguard("sample", "horse", "--pose", "1", "--vertices", "500", "-o", "other.off");
     starguard("guard", "horse.off", "-o", "guards.json");
     starguard(
         "decompose",
@@ -179,7 +179,7 @@ test("obstacles are shown, and a switch hides them", async () => {
     const points = corners.map((p) => p.map((x) => 0.3 + 0.4 * x).join(" "));
     writeFileSync(fileOf("box.off"), ["OFF", "8 12 0", ...points, ...faces.map((f) => `3 ${f}`)].join("\n"));
     starguard("sample", "l-room", "--vertices", "500", "-o", "room.off");
-    starguard("guard", "room.off", "--obstacles", "box.off", "-o", "crate.json");
+    starguard("guard", "room.off", "--obstacles", "box.off", "--count", "60", "-o", "crate.json");
     starguard("view", "crate.json", "-o", "crate.html");
     await look("crate.html", {}, async (page) => {
         const with_ = await picture(page);
@@ -406,7 +406,7 @@ test("names are text, whatever they are", async () => {
     mkdirSync(fileOf("hostile"));
     const model = path.join("hostile", HOSTILE);
     writeFileSync(fileOf(model), readFileSync(fileOf("horse.off")));
-    starguard("guard", model, "-o", "hostile.json", "--method", "greedy");
+    starguard("guard", model, "-o", "hostile.json", "--method", "greedy", "--count", "60");
     starguard("view", "hostile.json", "-o", "hostile.html");
     await look("hostile.html", {}, async (page) => {
         assert.equal(await page.textContent("#title"), HOSTILE);
@@ -419,7 +419,7 @@ test("a folder named </script> stays text too", async () => {
     mkdirSync(path.join(fileOf("<"), "script><script>alert(1)<", "script>"), { recursive: true });
     const model = "</script><script>alert(1)</script>/horse.off";
     writeFileSync(fileOf(model), readFileSync(fileOf("horse.off")));
-    starguard("guard", model, "-o", "folder.json", "--method", "greedy");
+    starguard("guard", model, "-o", "folder.json", "--method", "greedy", "--count", "60");
     starguard("view", "folder.json", "-o", "folder.html");
     await look("folder.html", {}, async (page) =>
         assert.equal(await page.textContent("#title"), "horse.off"),
@@ -478,7 +478,7 @@ test("results with next to nothing in them are shown", async () => {
 });
 
 test("guards with a cone of view point to where they look", async () => {
-    starguard("guard", "horse.off", "-o", "cone.json", "--cone", "120", "--method", "greedy");
+    starguard("guard", "horse.off", "-o", "cone.json", "--cone", "120", "--method", "greedy", "--count", "100");
     starguard("view", "cone.json", "-o", "cone.html");
     const directions = JSON.parse(readFileSync(fileOf("cone.json"), "utf8")).guards.map(
         (guard) => guard.direction,
@@ -496,7 +496,7 @@ test("guards with a cone of view point to where they look", async () => {
 });
 
 test("cameras show the outline of what they see", async () => {
-    const words = ["guard", "horse.off", "-o", "fov.json", "--fov", "100,70", "--method", "greedy"];
+    const words = ["guard", "horse.off", "-o", "fov.json", "--fov", "100,70", "--method", "greedy", "--count", "100"];
     starguard(...words);
     starguard("view", "fov.json", "-o", "fov.html");
     const { guards } = JSON.parse(readFileSync(fileOf("fov.json"), "utf8"));
@@ -577,7 +577,7 @@ test("the commands that make results again are copied", async () => {
 
 test("a proof shows its witnesses and the boxes of guards", async () => {
     starguard("sample", "gallery", "--vertices", "500", "-o", "room.off");
-    const proof = ["--prove", "--prove-work", "200000", "--certificate", "why.txt"];
+    const proof = ["--prove", "--prove-work", "60000", "--count", "100", "--certificate", "why.txt"];
     starguard("guard", "room.off", ...proof, "-o", "proven.json");
     starguard("view", "proven.json", "why.txt", "-o", "proof.html");
     const lines = readFileSync(fileOf("why.txt"), "utf8").split("\n");
@@ -597,7 +597,7 @@ test("a proof shows its witnesses and the boxes of guards", async () => {
 test("a map shows both solids by one camera, alike in colours, patterns and cuts", async () => {
     starguard("sample", "human", "--vertices", "500", "-o", "a.off");
     starguard("sample", "human", "--pose", "1", "--vertices", "500", "-o", "b.off");
-    starguard("map", "--solid", "a.off", "b.off", "--steps", "20", "-o", "map.vtu");
+    starguard("map", "--solid", "a.off", "b.off", "--steps", "5", "-o", "map.vtu");
     starguard("view", "map.vtu", "-o", "map.html");
     /** Colours of the pixels of either half that are not the background: their number. */
     const colors = (page) =>
@@ -693,7 +693,7 @@ test("a model alone, and a skeleton alone, are shown", async () => {
     starguard("view", "horse.off", "-o", "model.html");
     starguard("view", "skeleton.obj", "-o", "skeleton.html");
     await look("model.html", {}, async (page) =>
-        assert.match(await page.textContent("#views"), /Vertices900/),
+        assert.match(await page.textContent("#views"), new RegExp(`Vertices${readFileSync(fileOf("horse.off"), "utf8").split(/\s/)[1]}`)),
     );
     await look("skeleton.html", {}, async (page) =>
         assert.match(await page.textContent("#views"), /Radii are not known/),
