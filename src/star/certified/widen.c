@@ -23,6 +23,7 @@
 
 #include <stdlib.h>
 
+#include "core/parallel.h"
 #include "core/streams.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -142,7 +143,9 @@ double flatness_of_first(const partition *p, size_t count) {
 enum {
     IDLE_MOST = 12, /* consecutive rounds without a change before it stops */
     DIRECTIONS = 32,
-    STEPS = 24
+    STEPS = 24,
+    AT_ONCE = 2, /* unions for each of several threads */
+    AT_ONCE_MOST = 32
 };
 
 /* The margin required at first, and the growth of a ball that is required then; of what is required
@@ -151,11 +154,25 @@ static const double GOAL = 4e-3, GROWTH = 1.25, ROUNDED = 0.9;
 
 typedef STARG_ARRAY(uint32_t) numbers;
 
+/* Searches for cuts of the union of two pieces: for each margin by a plane, then from two guards
+ * that see all of it. */
+typedef struct union_trial {
+    uint32_t pieces[2];
+    double margins[2]; /* of guards, in unit coordinates */
+    uint64_t first;    /* number of the first search */
+    uint32_t searches,
+        done; /* how many there are; the last one that is done may have found a plan */
+    bool found;
+    cut_plan plan;
+    uint64_t work;
+} union_trial;
+
 typedef struct widener {
     partition *p;
     region_scratch scratch;
     uint64_t work, tries; /* the work allowed; searches so far */
     numbers around;       /* of a piece: its neighbours */
+    union_trial trials[AT_ONCE_MOST];
 } widener;
 
 /* ---- unions ---- */
@@ -179,50 +196,65 @@ static double fitness(const partition *part, size_t count) {
     return -flatness_of_first(part, count);
 }
 
-/* Two pieces, and the margin that both are to have. */
-typedef struct pair {
-    uint32_t pieces[2];
-    const region *r; /* their union */
-    double margin;   /* of guards, in unit coordinates */
-} pair;
+/* With the margin that is aimed at, or else with more than the smaller one is now. */
+static union_trial begin_trial(const partition *p, uint32_t a, uint32_t b, uint64_t first) {
+    union_trial t = {.pieces = {a, b},
+                     .margins = {GOAL * fmax(flatness_diagonal(p, a), flatness_diagonal(p, b)),
+                                 GROWTH * fmin(p->pieces.data[a].radius, p->pieces.data[b].radius)},
+                     .first = first};
+    t.searches = t.margins[1] <= t.margins[0] ? 4 : 2;
+    return t;
+}
 
-/* By a plane, or else from two guards that see all of the union. */
-static starg_status cut(widener *w, const pair *of, bool plane, bool *done) {
+/* Goes on until a search finds a plan, or there are no more. */
+static starg_status find_plan(const partition *p, region_scratch *scratch, union_trial *t) {
+    SCOPED_BY(region_free) region r = {.vertices = {0}};
     double starts[2][3];
-    const repartition_options planes = {
-        .margin = of->margin, .directions = DIRECTIONS, .steps = STEPS};
-    const guard_split_options guards = {
-        .margin = of->margin, .starts = (const double(*)[3])starts, .start_count = 2};
-    starg_rng rng = starg_rng_make(w->p->context->seed, STREAM_WIDEN, w->tries++);
-    cut_plan plan = {.count = 0};
-    apply_effect effect = {.done = false};
-    bool found = false;
+    t->found = false;
+    if (t->done == t->searches)
+        return STARG_OK;
     for (int i = 0; i < 2; i++)
-        partition_to_unit(w->p, w->p->pieces.data[of->pieces[i]].guard, starts[i]);
-    TRY(plane ? repartition_find(of->r, 2, &planes, &rng, &w->scratch, &plan, &found)
-              : guard_split_find(of->r, 2, &guards, &rng, &w->scratch, &plan, &found));
-    if (found)
-        TRY(apply_cuts(w->p, of->pieces, 2, &plan, ROUNDED * of->margin, fitness, &w->scratch,
-                       &effect));
-    *done = effect.done;
+        partition_to_unit(p, p->pieces.data[t->pieces[i]].guard, starts[i]);
+    TRY(region_gather(p, t->pieces, 2, scratch, &r));
+    while (!t->found && t->done < t->searches) {
+        const double margin = t->margins[t->done / 2];
+        const bool plane = t->done % 2 == 0;
+        const repartition_options planes = {
+            .margin = margin, .directions = DIRECTIONS, .steps = STEPS};
+        const guard_split_options guards = {
+            .margin = margin, .starts = (const double(*)[3])starts, .start_count = 2};
+        starg_rng rng = starg_rng_make(p->context->seed, STREAM_WIDEN, t->first + t->done++);
+        t->plan.count = 0;
+        TRY(plane ? repartition_find(&r, 2, &planes, &rng, scratch, &t->plan, &t->found)
+                  : guard_split_find(&r, 2, &guards, &rng, scratch, &t->plan, &t->found));
+    }
     return STARG_OK;
 }
 
-/* With the margin that is aimed at, or else with more than the smaller one is now. */
-static starg_status try_pair(widener *w, uint32_t a, uint32_t b, bool *done) {
-    const partition *p = w->p;
-    SCOPED_BY(region_free) region r = {.vertices = {0}};
-    pair of = {.pieces = {a, b}, .r = &r};
-    const double margins[2] = {GOAL * fmax(flatness_diagonal(p, a), flatness_diagonal(p, b)),
-                               GROWTH * fmin(p->pieces.data[a].radius, p->pieces.data[b].radius)};
-    TRY(starg_check_cancel(p->context, PARTITION_STAGE));
-    TRY(region_gather(p, of.pieces, 2, &w->scratch, &r));
-    for (int i = 0; i < 2 && !*done && margins[i] <= margins[0]; i++) {
-        of.margin = margins[i];
-        TRY(cut(w, &of, true, done));
+static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
+    widener *w = shared;
+    region_scratch *own = scratch;
+    union_trial *t = &w->trials[item];
+    uint64_t before = own->work;
+    (void)context;
+    TRY(find_plan(w->p, own, t));
+    t->work = own->work - before;
+    return STARG_OK;
+}
+
+/* Carries out what was found; if that does not do, goes on with the searches. */
+static starg_status carry_out(widener *w, union_trial *t, bool *done) {
+    w->scratch.work += t->work;
+    while (t->found && !*done) {
+        const double margin = t->margins[(t->done - 1) / 2];
+        apply_effect effect = {.done = false};
+        TRY(apply_cuts(w->p, t->pieces, 2, &t->plan, ROUNDED * margin, fitness, &w->scratch,
+                       &effect));
+        *done = effect.done;
         if (!*done)
-            TRY(cut(w, &of, false, done));
+            TRY(find_plan(w->p, &w->scratch, t));
     }
+    w->tries += t->done;
     return STARG_OK;
 }
 
@@ -230,11 +262,32 @@ static bool is_over(const widener *w) {
     return w->scratch.work >= w->work || starg_time_is_over(w->p->context);
 }
 
+/* Searches for a piece and the next of its neighbours, side by side and carried out in order: few
+ * change anything, so that most are what they would be one after the other. */
 static starg_status widen_piece(widener *w, uint32_t number, bool *done) {
+    const size_t threads = (size_t)w->p->context->threads;
+    const size_t most = threads == 1                       ? 1
+                        : AT_ONCE * threads < AT_ONCE_MOST ? AT_ONCE * threads
+                                                           : AT_ONCE_MOST;
+    starg_parallel_loop loop = {.stage = PARTITION_STAGE,
+                                .shared = w,
+                                .item = run_trial,
+                                .make_scratch = region_make_scratch,
+                                .free_scratch = region_free_scratch,
+                                .silent = true};
     *done = false;
     TRY(find_around(w, number));
-    for (size_t i = 0; i < w->around.count && !*done && !is_over(w); i++)
-        TRY(try_pair(w, number, w->around.data[i], done));
+    for (size_t i = 0; i < w->around.count && !*done && !is_over(w);) {
+        uint64_t first = w->tries;
+        for (loop.count = 0; loop.count < most && i < w->around.count; i++) {
+            union_trial *next = &w->trials[loop.count++];
+            *next = begin_trial(w->p, number, w->around.data[i], first);
+            first += next->searches;
+        }
+        TRY(starg_parallel_for(w->p->context, &loop));
+        for (size_t k = 0; k < loop.count && !*done && !is_over(w); k++)
+            TRY(carry_out(w, &w->trials[k], done));
+    }
     return STARG_OK;
 }
 
