@@ -21,21 +21,30 @@
 
 #include <math.h>
 
+#include "core/parallel.h"
 #include "core/versions.h"
 
 static const char STAGE[] = "search";
 
-enum { MOST_STEPS = 60 };
+enum {
+    MOST_STEPS = 60,
+    FILL_ITEMS = 32,    /* parts in which the matrix is filled */
+    FILL_LEAST = 200000 /* products; fewer take less long than to wake a thread */
+};
 
 static const double GAP = 1e-3; /* between the two objective values, where the iteration stops */
 
 typedef struct program {
+    starg_context *context;
     const witness_row *const *rows;
     const odd_sets *sets;         /* their columns stand behind those of the witnesses */
     size_t n, m;                  /* rows, wanted witnesses and sets */
     uint32_t *index;              /* columns of all rows, one row after the other, ascending */
     double *value;                /* what the row holds of the column */
     size_t *start;                /* by row, and the end */
+    uint32_t *entry, *holder;     /* the same by column: entries, and the rows that hold them */
+    size_t *column;               /* where a column begins there, and the end */
+    size_t products;              /* of pairs of entries of a row, in all */
     double *x, *s, *dx, *ds, *rx; /* by row */
     double *w, *t, *dw, *dt, *rw; /* by witness */
     double *matrix;               /* m x m; only the lower half is used */
@@ -47,6 +56,9 @@ static void program_free(program *p) {
     RELEASE(p->index);
     RELEASE(p->value);
     RELEASE(p->start);
+    RELEASE(p->entry);
+    RELEASE(p->holder);
+    RELEASE(p->column);
     RELEASE(p->x);
     RELEASE(p->w);
     RELEASE(p->matrix);
@@ -76,6 +88,26 @@ static size_t list_row(program *p, const uint32_t *number, const witness_row *wa
     return filled;
 }
 
+/* The entries of each column, in the order of the rows. */
+static void list_by_column(program *p) {
+    for (size_t e = 0; e < p->start[p->n]; e++)
+        p->column[p->index[e] + 1]++;
+    for (size_t f = 0; f < p->m; f++)
+        p->column[f + 1] += p->column[f];
+    for (size_t i = p->n;
+         i-- > 0;) { /* from behind, so that starts are where they belong at last */
+        const size_t count = p->start[i + 1] - p->start[i];
+        p->products += count * count / 2;
+        for (size_t e = p->start[i]; e < p->start[i + 1]; e++) {
+            size_t at = --p->column[p->index[e] + 1];
+            p->entry[at] = (uint32_t)e;
+            p->holder[at] = (uint32_t)i;
+        }
+    }
+    memmove(p->column, p->column + 1, p->m * sizeof *p->column);
+    p->column[p->m] = p->start[p->n];
+}
+
 static void list_columns(program *p, const uint32_t *number, const witness_row *wanted) {
     size_t filled = 0;
     for (size_t i = 0; i < p->n; i++) {
@@ -83,6 +115,7 @@ static void list_columns(program *p, const uint32_t *number, const witness_row *
         filled = list_row(p, number, wanted, i, filled);
     }
     p->start[p->n] = filled;
+    list_by_column(p);
     for (size_t f = 0; f < p->m; f++)
         p->first[f] = f;
     for (size_t i = 0; i < p->n; i++) {
@@ -166,6 +199,9 @@ static starg_status program_make(starg_context *context, program *p, const witne
     NEW(context, STAGE, p->index, entries);
     NEW(context, STAGE, p->value, entries);
     NEW(context, STAGE, p->start, p->n + 1);
+    NEW(context, STAGE, p->entry, entries);
+    NEW(context, STAGE, p->holder, entries);
+    NEW_ZERO(context, STAGE, p->column, p->m + 1);
     NEW_ZERO(context, STAGE, p->x, 5 * p->n);
     NEW_ZERO(context, STAGE, p->w, 5 * p->m);
     NEW(context, STAGE, p->matrix, p->m * p->m);
@@ -213,24 +249,42 @@ static void begin(program *p) {
     sum_rows(p, p->x, -1, p->t);
 }
 
-static void fill_matrix(program *p) {
-    size_t m = p->m;
-    memset(p->matrix, 0, m * m * sizeof *p->matrix);
-    for (size_t i = 0; i < p->n; i++) {
-        const uint32_t *index = p->index + p->start[i];
-        const double *value = p->value + p->start[i];
-        size_t count = p->start[i + 1] - p->start[i];
-        for (size_t a = 0; a < count; a++) {
-            double *line = p->matrix + index[a] * m, d = value[a] * p->x[i] / p->s[i];
-            for (size_t b = 0; b <= a; b++)
-                line[index[b]] += d * value[b];
-        }
-        p->work += count * count / 2;
+static void fill_line(const program *p, size_t f) {
+    double *line = p->matrix + f * p->m;
+    memset(line, 0, (f + 1) * sizeof *line);
+    for (size_t k = p->column[f]; k < p->column[f + 1]; k++) {
+        const size_t i = p->holder[k], last = p->entry[k];
+        const double d = p->value[last] * p->x[i] / p->s[i];
+        for (size_t e = p->start[i]; e <= last; e++)
+            line[p->index[e]] += d * p->value[e];
     }
-    for (size_t f = 0; f < m; f++)
-        p->matrix[f * m + f] += p->t[f] / p->w[f];
-    for (size_t f = 0; f < m; f++)
+    line[f] += p->t[f] / p->w[f];
+}
+
+/* Every so many lines, so that items take about as long. */
+static starg_status fill_lines(starg_context *context, void *shared, void *scratch, size_t item) {
+    const program *p = shared;
+    (void)context;
+    (void)scratch;
+    for (size_t f = item; f < p->m; f += FILL_ITEMS)
+        fill_line(p, f);
+    return STARG_OK;
+}
+
+static starg_status fill_matrix(program *p) {
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = p->products > FILL_LEAST ? FILL_ITEMS : 0,
+                                      .shared = p,
+                                      .item = fill_lines,
+                                      .silent = true};
+    p->work += p->products;
+    for (size_t f = 0; f < p->m; f++)
         p->work += (f - p->first[f]) * (f - p->first[f]) / 3;
+    if (loop.count > 0)
+        return starg_parallel_for(p->context, &loop);
+    for (size_t f = 0; f < p->m; f++)
+        fill_line(p, f);
+    return STARG_OK;
 }
 
 /* Overwrites the lower half by the Cholesky factor L. False: rounding has made the matrix
@@ -320,10 +374,11 @@ static void move(double *v, const double *dv, double a, size_t count) {
         v[k] += a * dv[k];
 }
 
-static bool step(program *p, double gap) {
-    fill_matrix(p);
-    if (!factor(p))
-        return false;
+static starg_status step(program *p, double gap, bool *made) {
+    TRY(fill_matrix(p));
+    *made = factor(p);
+    if (!*made)
+        return STARG_OK;
     aim(p, 0, 0);
     find_step(p);
     double primal = fmin(longest(p->x, p->dx, p->n), longest(p->t, p->dt, p->m));
@@ -337,18 +392,21 @@ static bool step(program *p, double gap) {
     move(p->t, p->dt, primal, p->m);
     move(p->s, p->ds, dual, p->n);
     move(p->w, p->dw, dual, p->m);
-    return true;
+    return STARG_OK;
 }
 
-static void run(program *p) {
+static starg_status run(program *p) {
+    bool made = true;
     begin(p);
     for (size_t f = 0; f < p->m; f++)
         p->dw[f] = p->dt[f] = 0;
-    for (int k = 0; k < MOST_STEPS; k++) {
+    for (int k = 0; k < MOST_STEPS && made; k++) {
         double gap = gap_after(p, 0, 0);
-        if (gap < GAP || !step(p, gap))
+        if (gap < GAP)
             break;
+        TRY(step(p, gap, &made));
     }
+    return STARG_OK;
 }
 
 /* Rounding may leave a row's sum a little above 1. */
@@ -374,13 +432,13 @@ starg_status prices_find(starg_context *context, const witness_row *const *rows,
                          const witness_row *wanted, const odd_sets *sets, witness_prices *out) {
     static const odd_sets NONE = {0};
     starg_status status = STARG_OK;
-    program p = {.rows = rows, .n = count, .sets = sets != NULL ? sets : &NONE};
+    program p = {.context = context, .rows = rows, .n = count, .sets = sets != NULL ? sets : &NONE};
     uint32_t number[MOST_WITNESSES];
     *out = (witness_prices){0};
     STARG_NEW(context, STAGE, out->share, count);
     STARG_TRY(number_witnesses(context, &p, wanted, number));
     STARG_TRY(program_make(context, &p, wanted, number));
-    run(&p);
+    STARG_TRY(run(&p));
     read_prices(&p, number, out);
 done:
     program_free(&p);
