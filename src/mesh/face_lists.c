@@ -213,7 +213,6 @@ done:
 
 starg_status starg_values_collect(starg_context *context, starg_face_values *values,
                                   const char *name, size_t length, double *number) {
-    starg_status status = STARG_OK;
     size_t at = 0;
     for (size_t i = 0; i < values->group_count; i++) {
         const char *known = values->names.data + at;
@@ -224,20 +223,18 @@ starg_status starg_values_collect(starg_context *context, starg_face_values *val
         at += size + 1;
     }
     for (size_t i = 0; i < length; i++)
-        STARG_PUSH(context, STAGE, &values->names, name[i]);
-    STARG_PUSH(context, STAGE, &values->names, '\0');
+        PUSH(context, STAGE, &values->names, name[i]);
+    PUSH(context, STAGE, &values->names, '\0');
     *number = (double)++values->group_count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Takes the names over. */
 static starg_status take_groups(starg_context *context, starg_face_values *values,
                                 starg_face_groups *out) {
-    starg_status status = STARG_OK;
     size_t at = 0;
-    STARG_NEW(context, STAGE, out->names, values->group_count);
-    STARG_NEW(context, STAGE, out->of, values->data.count);
+    NEW(context, STAGE, out->names, values->group_count);
+    NEW(context, STAGE, out->of, values->data.count);
     out->face_count = values->data.count;
     for (size_t f = 0; f < out->face_count; f++)
         out->of[f] = values->data.data[f] > 0 ? (uint32_t)values->data.data[f] - 1 : UINT32_MAX;
@@ -247,8 +244,7 @@ static starg_status take_groups(starg_context *context, starg_face_values *value
         out->names[out->count] = out->text + at;
         at += strlen(out->text + at) + 1;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_face_groups_read(starg_context *context, const char *model_file,

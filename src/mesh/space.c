@@ -283,14 +283,13 @@ static starg_status bind_guards(starg_context *context, const starg_mesh *model,
 
 /* Both sides of a face are. Then faces behind others may be the first to block a view. */
 static starg_status take_clear(starg_context *context, starg_solid *scene) {
-    starg_status status = STARG_OK;
     starg_space_options *o = &scene->space;
     const uint32_t *list = o->clear;
     o->clear = NULL;
     if (o->clear_count == 0)
         return STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, scene->clear, starg_bit_words(scene->mesh->face_count));
-    STARG_NEW(context, STAGE, scene->clear_list, o->clear_count);
+    NEW_ZERO(context, STAGE, scene->clear, starg_bit_words(scene->mesh->face_count));
+    NEW(context, STAGE, scene->clear_list, o->clear_count);
     for (size_t i = 0; i < o->clear_count; i++) {
         scene->clear_list[i] = list[i];
         starg_bit_set(scene->clear, list[i]);
@@ -299,12 +298,10 @@ static starg_status take_clear(starg_context *context, starg_solid *scene) {
     }
     o->clear = scene->clear_list;
     scene->check->embedded = false;
-    status = o->clear_count < scene->model_faces
-                 ? starg_space_weigh(scene, NULL)
-                 : starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                              "all faces of the model are clear: nothing is to be seen");
-done:
-    return status;
+    return o->clear_count < scene->model_faces
+               ? starg_space_weigh(scene, NULL)
+               : starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "all faces of the model are clear: nothing is to be seen");
 }
 
 /* What holds all zones in which guards may stand, is a box in which they stand. */

@@ -233,14 +233,11 @@ static starg_status decompose_filled(starg_context *context, const starg_solid *
  * no interior. */
 static starg_status bound_by_parts(starg_context *context, const starg_solid *solid,
                                    starg_decomposition *d) {
-    starg_status status = STARG_OK;
-    solid_parts parts = {0};
-    STARG_TRY(solid_parts_find(context, solid, &parts));
-    STARG_TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
+    SCOPED_BY(solid_parts_free) solid_parts parts = {0};
+    TRY(solid_parts_find(context, solid, &parts));
+    TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
     d->optimal = d->lower_bound == d->piece_count;
-done:
-    solid_parts_free(&parts);
-    return status;
+    return STARG_OK;
 }
 
 /* Nothing but the surface is needed where that bounds the solid as it is; else *out stays NULL. */

@@ -197,22 +197,17 @@ static starg_status read_array(vtk_file *vtk, const char *name, int64_t count, i
 
 /* From version 5 on: offsets (one more than cells) and connectivity. */
 static starg_status read_offsets(vtk_file *vtk, int64_t offsets, int64_t size) {
-    starg_status status = STARG_OK;
-    int64_t *starts = NULL;
-    STARG_TRY(read_array(vtk, "OFFSETS", offsets, &starts));
-    STARG_TRY(read_array(vtk, "CONNECTIVITY", size, &vtk->indices.data));
+    SCOPED int64_t *starts = NULL;
+    TRY(read_array(vtk, "OFFSETS", offsets, &starts));
+    TRY(read_array(vtk, "CONNECTIVITY", size, &vtk->indices.data));
     vtk->indices.count = vtk->indices.capacity = (size_t)size;
     for (int64_t i = 0; i < offsets; i++) {
         int64_t before = i == 0 ? 0 : starts[i - 1];
-        if (starts[i] < before || starts[i] > size || (i == 0 && starts[i] != 0)) {
-            status = fail_sizes(vtk);
-            goto done;
-        }
-        STARG_PUSH(source_of(vtk)->context, STAGE, &vtk->starts, (size_t)starts[i]);
+        if (starts[i] < before || starts[i] > size || (i == 0 && starts[i] != 0))
+            return fail_sizes(vtk);
+        PUSH(source_of(vtk)->context, STAGE, &vtk->starts, (size_t)starts[i]);
     }
-done:
-    starg_release(source_of(vtk)->context, starts);
-    return status;
+    return STARG_OK;
 }
 
 starg_status vtk_read_cells(vtk_file *vtk) {

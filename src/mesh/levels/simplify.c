@@ -289,21 +289,16 @@ void starg_simplify_options_default(starg_simplify_options *options) {
 starg_status starg_mesh_simplify(starg_context *context, const starg_mesh *mesh,
                                  size_t target_vertex_count, const starg_simplify_options *options,
                                  uint32_t *vertex_map, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    simplifier s = {0};
-    uint32_t *own_map = NULL;
+    SCOPED_BY(end) simplifier s = {0};
+    SCOPED uint32_t *own_map = NULL;
     *out = NULL;
-    STARG_TRY(begin(&s, context, mesh, options));
-    STARG_TRY(reduce(&s, target_vertex_count));
+    TRY(begin(&s, context, mesh, options));
+    TRY(reduce(&s, target_vertex_count));
     if (vertex_map == NULL) {
-        STARG_NEW(context, "simplify", own_map, mesh->vertex_count);
+        NEW(context, "simplify", own_map, mesh->vertex_count);
         vertex_map = own_map;
     }
-    STARG_TRY(snapshot(s.surface, vertex_map, out));
-done:
-    starg_release(context, own_map);
-    end(&s);
-    return status;
+    return snapshot(s.surface, vertex_map, out);
 }
 
 /* Levels built so far, from the finest on. */
@@ -366,20 +361,16 @@ done:
 
 static starg_status add_levels(starg_context *context, const starg_mesh *mesh, const ladder *sizes,
                                const starg_simplify_options *options, level_list *list) {
-    starg_status status = STARG_OK;
-    simplifier s = {0};
-    uint32_t *number = NULL;
-    STARG_TRY(begin(&s, context, mesh, options));
-    STARG_NEW(context, "simplify", number, mesh->vertex_count);
+    SCOPED_BY(end) simplifier s = {0};
+    SCOPED uint32_t *number = NULL;
+    TRY(begin(&s, context, mesh, options));
+    NEW(context, "simplify", number, mesh->vertex_count);
     for (size_t target = mesh->vertex_count; target > sizes->coarsest;) {
         target = next_target(sizes, target);
-        STARG_TRY(reduce(&s, target));
-        STARG_TRY(add_level(&s, list, sizes, number));
+        TRY(reduce(&s, target));
+        TRY(add_level(&s, list, sizes, number));
     }
-done:
-    starg_release(context, number);
-    end(&s);
-    return status;
+    return STARG_OK;
 }
 
 /* Reverses the list: coarsest first. */
