@@ -270,9 +270,8 @@ done:
 }
 
 void starg_face_groups_free(starg_context *context, starg_face_groups *groups) {
-    starg_release(context, groups->names);
-    starg_release(context, groups->text);
-    starg_release(context, groups->of);
+    (void)context;
+    RELEASE(groups->names, groups->text, groups->of);
     *groups = (starg_face_groups){0};
 }
 

@@ -236,12 +236,11 @@ static bool faces_out(const starg_solid *solid, const mesh_examination *all) {
 
 /* A mesh with sheets is taken for what it is; any other is examined as a whole. */
 static starg_status examine(starg_context *context, starg_solid *scene) {
-    starg_status status = STARG_OK;
-    mesh_examination all = {0};
+    SCOPED_BY(mesh_examination_free) mesh_examination all = {0};
     const starg_mesh *mesh = scene->mesh;
     if (scene->other_side != NULL) {
         double lower[3], upper[3];
-        STARG_NEW_ZERO(context, STAGE, scene->check, 1);
+        NEW_ZERO(context, STAGE, scene->check, 1);
         starg_mesh_bounds(mesh, lower, upper);
         scene->check->vertices = mesh->vertex_count;
         scene->check->faces = mesh->face_count;
@@ -250,15 +249,13 @@ static starg_status examine(starg_context *context, starg_solid *scene) {
         scene->check->usable = true;
         return bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &scene->tree);
     }
-    STARG_TRY(mesh_examine(context, mesh, &all));
+    TRY(mesh_examine(context, mesh, &all));
     all.check->embedded = all.check->embedded && faces_out(scene, &all);
     scene->check = all.check;
     scene->tree = all.tree;
     all.check = NULL;
     all.tree = NULL;
-done:
-    mesh_examination_free(context, &all);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status keep_model(starg_context *context, const starg_mesh *model,

@@ -267,16 +267,13 @@ static void measure(starg_solid_map *map) {
 /* Both ends in pieces, measured. */
 static starg_status take_result(starg_context *context, starg_decomposition *const pieces[2],
                                 starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    starg_solid_map *map = NULL;
-    STARG_NEW_ZERO(context, STAGE, map, 1);
-    STARG_TRY(take_pieces(context, (const starg_decomposition *const *)pieces, map));
+    SCOPED_BY(starg_solid_map_drop) starg_solid_map *map = NULL;
+    NEW_ZERO(context, STAGE, map, 1);
+    TRY(take_pieces(context, (const starg_decomposition *const *)pieces, map));
     measure(map);
     *out = map;
     map = NULL;
-done:
-    starg_solid_map_free(context, map);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status place_both(const deform_mesh *c, starg_tetmesh *out[2]) {

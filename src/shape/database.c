@@ -150,15 +150,12 @@ done:
 }
 
 static starg_status read_number(starg_database *d, const char *sql, int *value) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
     bool row;
-    STARG_TRY(database_prepare(d, sql, &statement));
-    STARG_TRY(database_step(d, statement, &row));
+    TRY(database_prepare(d, sql, &statement));
+    TRY(database_step(d, statement, &row));
     *value = row ? sqlite3_column_int(statement, 0) : 0;
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status check_schema(starg_database *d) {

@@ -7,6 +7,10 @@
 #include "core/parallel.h"
 #include "starguard/database.h"
 
+static inline void statement_drop(sqlite3_stmt **statement) {
+    sqlite3_finalize(*statement);
+}
+
 /* SHA-256 (FIPS 180-4) of a block of memory: identifies equal files. */
 
 enum { STARG_SHA256_BYTES = 32 };

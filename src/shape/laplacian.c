@@ -104,7 +104,7 @@ static starg_status subdivide(surface *s) {
 done:
     if (status != STARG_OK)
         surface_free(&fine);
-    edge_table_free(s->context, &table);
+    edge_table_free(&table);
     return status;
 }
 
@@ -211,7 +211,7 @@ static starg_status assemble(const surface *s, laplacian *l) {
         l->masses[i] /= sum.area;
     STARG_TRY(store_columns(context, &sum, l));
 done:
-    edge_table_free(context, &sum.edges);
+    edge_table_free(&sum.edges);
     RELEASE(sum.weights, sum.diagonal);
     return status;
 }

@@ -153,25 +153,22 @@ done:
 }
 
 starg_status tetmesh_copy(starg_context *context, const starg_tetmesh *mesh, starg_tetmesh **out) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *copy = NULL;
+    SCOPED_BY(starg_tetmesh_drop) starg_tetmesh *copy = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, copy, 1);
+    NEW_ZERO(context, STAGE, copy, 1);
     copy->context = context;
     copy->vertex_count = mesh->vertex_count;
     copy->count = mesh->count;
     copy->turned = mesh->turned;
-    STARG_NEW(context, STAGE, copy->vertices, 3 * mesh->vertex_count);
-    STARG_NEW(context, STAGE, copy->tetrahedra, 4 * mesh->count);
-    STARG_NEW(context, STAGE, copy->neighbours, 4 * mesh->count);
+    NEW(context, STAGE, copy->vertices, 3 * mesh->vertex_count);
+    NEW(context, STAGE, copy->tetrahedra, 4 * mesh->count);
+    NEW(context, STAGE, copy->neighbours, 4 * mesh->count);
     memcpy(copy->vertices, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
     memcpy(copy->tetrahedra, mesh->tetrahedra, 4 * mesh->count * sizeof *mesh->tetrahedra);
     memcpy(copy->neighbours, mesh->neighbours, 4 * mesh->count * sizeof *mesh->neighbours);
     *out = copy;
-done:
-    if (status != STARG_OK)
-        starg_tetmesh_free(copy);
-    return status;
+    copy = NULL;
+    return STARG_OK;
 }
 
 void starg_tetmesh_free(starg_tetmesh *mesh) {

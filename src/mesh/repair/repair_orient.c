@@ -112,14 +112,13 @@ static void tell_sheets(repair_state *state) {
 }
 
 starg_status repair_turn_shells(repair_state *state) {
-    starg_status status = STARG_OK;
-    mesh_examination all = {0};
+    SCOPED_BY(mesh_examination_free) mesh_examination all = {0};
     starg_mesh view = repair_view(state);
-    double *area = NULL, *filled = NULL;
-    STARG_TRY(mesh_examine(state->context, &view, &all));
+    SCOPED double *area = NULL, *filled = NULL;
+    TRY(mesh_examine(state->context, &view, &all));
     size_t shells = all.topology->component_count;
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, area, shells);
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, filled, shells);
+    NEW_ZERO(state->context, REPAIR_STAGE, area, shells);
+    NEW_ZERO(state->context, REPAIR_STAGE, filled, shells);
     measure_fillings(state, &view, all.topology, area, filled);
     int outer = outer_facing(&all);
     for (size_t f = 0; f < view.face_count; f++) {
@@ -133,8 +132,5 @@ starg_status repair_turn_shells(repair_state *state) {
             state->report.sheets_kept += all.shells[shell].first_face == f;
     }
     tell_sheets(state);
-done:
-    RELEASE(area, filled);
-    mesh_examination_free(state->context, &all);
-    return status;
+    return STARG_OK;
 }

@@ -112,9 +112,8 @@ void partition_plane_of(const partition *p, const uint32_t corners[3], partition
     plane->offset = vec3_dot(plane->normal, a);
 }
 
-/* A facet in a plane of its own. */
-static starg_status add_facet(partition *p, const uint32_t corners[3], uint32_t inner,
-                              uint32_t outer) {
+starg_status partition_add_facet(partition *p, const uint32_t corners[3], uint32_t inner,
+                                 uint32_t outer) {
     facet f = {.corners = {corners[0], corners[1], corners[2]},
                .side = {inner, outer},
                .plane = (uint32_t)p->planes.count};
@@ -202,7 +201,7 @@ starg_status partition_create_from_surface(starg_context *context, const kernel_
     for (size_t f = 0; f < face_count; f++) {
         const uint32_t *own = faces + 3 * f;
         const uint32_t corners[3] = {numbers[own[0]], numbers[own[1]], numbers[own[2]]};
-        STARG_TRY(add_facet(out, corners, 0, PARTITION_OUTSIDE));
+        STARG_TRY(partition_add_facet(out, corners, 0, PARTITION_OUTSIDE));
     }
     out->first_planes = out->planes.count;
     STARG_TRY(partition_build_index(out));
@@ -236,8 +235,8 @@ static starg_status add_border(partition *p, const starg_tetmesh *mesh, const ui
         int corner = TETMESH_FACE[slot % 4][k];
         corners[k] = numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)corner]];
     }
-    return add_facet(p, corners, labels[slot / 4],
-                     beyond == STARG_TETMESH_NONE ? PARTITION_OUTSIDE : labels[beyond]);
+    return partition_add_facet(p, corners, labels[slot / 4],
+                               beyond == STARG_TETMESH_NONE ? PARTITION_OUTSIDE : labels[beyond]);
 }
 
 static void add_volume(partition *p, const starg_tetmesh *mesh, size_t tetrahedron,
