@@ -377,9 +377,8 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     picture.point_count = g->count;
     picture.point_numbers = true;
     picture.views = g;
-    TRY(starg_picture_write(session->context, d.mesh, &picture,
-                            cli_outputs_place(&session->outputs, name)));
-    return STARG_OK;
+    return starg_picture_write(session->context, d.mesh, &picture,
+                               cli_outputs_place(&session->outputs, name));
 }
 
 /* Standard output comes last: output to it cannot be undone. */
@@ -402,9 +401,8 @@ static starg_status write_files(cli_session *session, const values *v, const sta
         TRY(write_marks(session, solid, g, v->marks));
     if (v->picture != NULL)
         TRY(write_picture(session, solid, g, v->picture));
-    TRY(starg_guards_write(session->context, g, session->operands[0],
-                           cli_outputs_place(&session->outputs, v->output)));
-    return STARG_OK;
+    return starg_guards_write(session->context, g, session->operands[0],
+                              cli_outputs_place(&session->outputs, v->output));
 }
 
 static starg_status announce_poses(cli_session *session, const char *name) {
@@ -493,8 +491,7 @@ static starg_status prepare(cli_session *session, void *data) {
     TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
         TRY(take_candidates(session, v->candidates, &v->wanted, &v->poses));
-    TRY(take_keep(session, v));
-    return STARG_OK;
+    return take_keep(session, v);
 }
 
 static starg_status run(cli_session *session, void *data) {

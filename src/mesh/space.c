@@ -195,17 +195,12 @@ static bool is_apart(const starg_mesh *a, const starg_mesh *b) {
 
 /* Those that are closed are pushed at once, for open ones the time comes later: `sheets`. */
 static starg_status push_obstacle(parts *p, const starg_mesh *obstacle, bool sheets) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
-    status = solid_make(p->context, obstacle, &solid);
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    starg_status status = solid_make(p->context, obstacle, &solid);
     if (status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE)
         return sheets ? push_sheet(p, obstacle, false) : STARG_OK;
-    STARG_TRY(status);
-    if (!sheets)
-        status = push_closed(p, solid->mesh, true);
-done:
-    starg_solid_free(solid);
-    return status;
+    TRY(status);
+    return sheets ? STARG_OK : push_closed(p, solid->mesh, true);
 }
 
 static starg_status push_obstacles(parts *p, const starg_mesh *model,
@@ -384,25 +379,21 @@ starg_status starg_space_weigh(starg_solid *scene, const double *weights) {
 enum { DENSITY_NAMES = 5 }; /* as negative numbers */
 
 starg_status starg_space_require(starg_solid *scene, const starg_face_need *needs, size_t count) {
-    starg_status status = STARG_OK;
     starg_context *context = scene->context;
     size_t faces = starg_space_model_faces(scene), all = scene->mesh->face_count;
-    uint32_t *times = NULL;
-    double *density = NULL;
-    STARG_NEW_ZERO(context, STAGE, times, all);
-    STARG_NEW_ZERO(context, STAGE, density, all);
+    SCOPED uint32_t *times = NULL;
+    SCOPED double *density = NULL;
+    NEW_ZERO(context, STAGE, times, all);
+    NEW_ZERO(context, STAGE, density, all);
     for (size_t i = 0; i < count; i++) {
         const starg_face_need *need = &needs[i];
         uint64_t face = need->face;
         if (face >= faces || need->times > 1000 ||
-            !(need->density >= -DENSITY_NAMES && need->density < 1e100)) {
-            status =
-                starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_FACE, &face, 1,
-                              "face %u of %zu is to be seen by %u guards with the density %g; "
-                              "that is no face of the model, or beyond 1,000 guards",
-                              need->face, faces, need->times, need->density);
-            goto done;
-        }
+            !(need->density >= -DENSITY_NAMES && need->density < 1e100))
+            return starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_FACE, &face, 1,
+                                 "face %u of %zu is to be seen by %u guards with the density %g; "
+                                 "that is no face of the model, or beyond 1,000 guards",
+                                 need->face, faces, need->times, need->density);
         times[face] = need->times;
         density[face] = need->density;
         if (scene->other_side != NULL && scene->other_side[face] != TOPOLOGY_NONE) {
@@ -410,16 +401,12 @@ starg_status starg_space_require(starg_solid *scene, const starg_face_need *need
             density[scene->other_side[face]] = need->density;
         }
     }
-    starg_release(context, scene->times);
-    starg_release(context, scene->density);
+    RELEASE(scene->times, scene->density);
     scene->times = times;
     scene->density = density;
     times = NULL;
     density = NULL;
-done:
-    starg_release(context, times);
-    starg_release(context, density);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- what is reached ---- */

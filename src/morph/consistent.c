@@ -153,18 +153,17 @@ static bool counterpart(const guarding *g, const moments *own, const moments *wh
 }
 
 static starg_status find_candidates(guarding *g, size_t wanted) {
-    starg_status status = STARG_OK;
     starg_context *context = g->morph->context;
     starg_skeleton_options options;
-    moments *own = NULL, *all = NULL;
+    SCOPED moments *own = NULL, *all = NULL;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
-    STARG_TRY(starg_skeleton_create(context, g->solids[0], &options, &g->skeleton));
+    TRY(starg_skeleton_create(context, g->solids[0], &options, &g->skeleton));
     size_t nodes = g->skeleton->node_count;
-    STARG_NEW_ZERO(context, STAGE, own, nodes);
-    STARG_NEW_ZERO(context, STAGE, all, nodes + 1);
-    STARG_NEW(context, STAGE, g->morph->candidates[0], 3 * nodes);
-    STARG_NEW(context, STAGE, g->morph->candidates[1], 3 * nodes);
+    NEW_ZERO(context, STAGE, own, nodes);
+    NEW_ZERO(context, STAGE, all, nodes + 1);
+    NEW(context, STAGE, g->morph->candidates[0], 3 * nodes);
+    NEW(context, STAGE, g->morph->candidates[1], 3 * nodes);
     gather_moments(g, own, all);
     for (size_t i = 0; i < nodes; i++) {
         const double *node = g->skeleton->positions + 3 * i;
@@ -174,12 +173,10 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
         vec3_copy(node, g->morph->candidates[0] + 3 * g->morph->candidate_count++);
     }
     if (g->morph->candidate_count == 0)
-        status = starg_fail(context, STARG_ERROR_MESH, STAGE,
-                            "no node of A's skeleton has a counterpart inside B; the map may be "
-                            "too distorted. --method arap needs no guards");
-done:
-    RELEASE(own, all);
-    return status;
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "no node of A's skeleton has a counterpart inside B; the map may be "
+                          "too distorted. --method arap needs no guards");
+    return STARG_OK;
 }
 
 /* ---- cover ---- */

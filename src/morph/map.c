@@ -370,34 +370,28 @@ static starg_status look_from(starg_context *context, const starg_mesh *mesh, co
  * no room in doubles. *moved: it had to be made. */
 static starg_status map_by_kernels(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                    uint64_t attempt, bool *moved, starg_map **out) {
-    starg_status status = STARG_OK;
-    starg_map *map = NULL;
+    SCOPED_BY(starg_map_drop) starg_map *map = NULL;
     double centers[6];
     bool found;
     *moved = false;
-    STARG_TRY(make_map(context, a, b, STARG_MAP_SPHERE, &map));
-    STARG_TRY(look_from(context, a, "A", attempt, centers, &map->directions, &found));
+    TRY(make_map(context, a, b, STARG_MAP_SPHERE, &map));
+    TRY(look_from(context, a, "A", attempt, centers, &map->directions, &found));
     if (found)
-        STARG_TRY(
-            look_from(context, b, "B", attempt, centers + 3, &map->target_directions, &found));
+        TRY(look_from(context, b, "B", attempt, centers + 3, &map->target_directions, &found));
     if (!found)
-        goto done;
+        return STARG_OK;
     map->direction_count = a->vertex_count;
     map->target_direction_count = b->vertex_count;
-    STARG_TRY(copy_doubles(context, centers, 6, &map->centers));
+    TRY(copy_doubles(context, centers, 6, &map->centers));
     memset(map->faces, 0, map->vertex_count * sizeof *map->faces); /* until the overlay tells */
     memset(map->coordinates, 0, 3 * map->vertex_count * sizeof *map->coordinates);
-    status = map_overlay(context, a, b, map, moved);
-    if (status == STARG_ERROR_SOLVER || status == STARG_ERROR_MESH) {
-        status = STARG_OK;
-        goto done;
-    }
-    STARG_TRY(status);
+    starg_status status = map_overlay(context, a, b, map, moved);
+    if (status == STARG_ERROR_SOLVER || status == STARG_ERROR_MESH)
+        return STARG_OK;
+    TRY(status);
     *out = map;
     map = NULL;
-done:
-    starg_map_free(context, map);
-    return status;
+    return STARG_OK;
 }
 
 /* From centers that leave room, if there are any: edges that nearly coincide do not, from others.

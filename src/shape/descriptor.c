@@ -171,9 +171,9 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
     starg_status status = STARG_OK;
     bool closed = false, found = false;
     if (options->detail > 0)
-        STARG_TRY(level_create(context, mesh, options->detail, &out->level));
+        TRY(level_create(context, mesh, options->detail, &out->level));
     if (out->level != NULL)
-        STARG_TRY(level_coarsen(context, out->level, options->detail / FINER, &out->coarse));
+        TRY(level_coarsen(context, out->level, options->detail / FINER, &out->coarse));
     const starg_mesh *const levels[] = {out->coarse, out->level, mesh};
     for (size_t i = 0; i < 3 && !found; i++) {
         if (levels[i] == NULL)
@@ -188,7 +188,6 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
         starg_log(context, STARG_LOG_WARNING,
                   "the surface bounds no solid; isosurface stuffing closes its holes, and the "
                   "filled solid is described");
-done:
     return status;
 }
 

@@ -2,6 +2,7 @@
 /* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
 
 #include "geometry/vec3.h"
+#include "mesh/examine.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
 #include "tetra/fields.h"
@@ -193,16 +194,15 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
  * to do with it. */
 static starg_status check_filling(starg_context *context, const starg_mesh *surface,
                                   const starg_tetra_report *report) {
-    starg_status status = STARG_OK;
-    starg_check *check = NULL;
+    SCOPED_BY(starg_check_drop) starg_check *check = NULL;
     double lower[3], upper[3], off = fmax(report->to_surface, report->from_surface) + report->step;
     starg_mesh_bounds(surface, lower, upper);
     double share = off / vec3_distance(lower, upper);
     if (share <= STARG_DECOMPOSE_FILL_MOST)
         return STARG_OK;
-    STARG_TRY(starg_mesh_check(context, surface, &check));
+    TRY(starg_mesh_check(context, surface, &check));
     bool holes = check->findings[STARG_FINDING_OPEN_EDGE].count > 0;
-    status = starg_fail(
+    return starg_fail(
         context, STARG_ERROR_MESH, STAGE,
         "the volume that fills the surface is up to %.2g of its diagonal away from it, more than "
         "%g: %s with 'starguard repair', or set --fill",
@@ -210,9 +210,6 @@ static starg_status check_filling(starg_context *context, const starg_mesh *surf
         holes ? "its holes are too large; close them"
               : "edges with more than two faces, or faces that are turned differently, leave open "
                 "what is inside; mend them");
-done:
-    starg_check_free(context, check);
-    return status;
 }
 
 static starg_status decompose_filled(starg_context *context, const starg_solid *solid,

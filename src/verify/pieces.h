@@ -80,6 +80,7 @@ starg_status verify_check_arrays(starg_context *context, const starg_pieces_mesh
 starg_status verify_pieces_create(starg_context *context, const starg_pieces_mesh *mesh,
                                   const starg_pieces_report *report, verify_pieces **out);
 void verify_pieces_free(verify_pieces *pieces);
+STARG_DROP(verify_pieces, verify_pieces)
 
 static inline const double *verify_point(const starg_pieces_mesh *mesh, uint32_t vertex) {
     return mesh->vertices + 3 * (size_t)vertex;

@@ -450,20 +450,18 @@ static starg_status copy_faces(starg_context *context, const starg_mesh *mesh,
 
 starg_status verify_surface_facing(starg_context *context, const starg_mesh *mesh,
                                    verify_facing facing, verify_surface **out) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     *out = NULL;
-    STARG_TRY(copy_faces(context, mesh, &surface));
-    status = orient(surface, facing);
+    TRY(copy_faces(context, mesh, &surface));
+    starg_status status = orient(surface, facing);
     if (status == STARG_ERROR_MESH) { /* nothing has been reversed yet */
-        STARG_TRY(weld(surface));
-        STARG_TRY(orient(surface, facing));
+        TRY(weld(surface));
+        status = orient(surface, facing);
     }
-    *out = status == STARG_OK ? surface : NULL;
-done:
-    if (status != STARG_OK)
-        verify_surface_free(surface);
-    return status;
+    TRY(status);
+    *out = surface;
+    surface = NULL;
+    return STARG_OK;
 }
 
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,

@@ -307,9 +307,8 @@ static int edge_balance(const starg_mesh *mesh, const mesh_topology *topology, u
 }
 
 static starg_status check_closed(starg_context *context, const starg_mesh *mesh) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    STARG_TRY(topology_create(context, mesh, &topology));
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    TRY(topology_create(context, mesh, &topology));
     for (uint32_t h = 0; h < 3 * mesh->face_count; h++) {
         uint32_t a = mesh->faces[h], b = mesh->faces[corner_next(h)], twin = topology->twin[h];
         bool balanced = a == b || (twin != TOPOLOGY_NONE ? mesh->faces[twin] == b && a != b
@@ -317,16 +316,13 @@ static starg_status check_closed(starg_context *context, const starg_mesh *mesh)
         if (balanced)
             continue;
         uint64_t edge[2] = {a, b};
-        status = starg_fail_at(
+        return starg_fail_at(
             context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, edge, 2,
             "the mesh is not closed: the faces at the edge between vertices %u and %u do not "
             "match; run 'starguard check' for details, or try 'starguard repair'",
             a, b);
-        goto done;
     }
-done:
-    topology_free(topology);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_kernel(starg_context *context, const starg_mesh *mesh,

@@ -54,19 +54,15 @@ static starg_status collect_guards(const partition *p, double **guards) {
 }
 
 static starg_status finish(const partition *p, starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *mesh = NULL;
-    int32_t *labels = NULL;
-    double *guards = NULL;
-    STARG_TRY(cone_all(p, &mesh, &labels));
-    STARG_TRY(collect_guards(p, &guards));
-    status = decomposition_finish(p->context, STARG_DECOMPOSE_STRICT, mesh, labels, guards,
-                                  p->pieces.count, out);
+    SCOPED_BY(starg_tetmesh_drop) starg_tetmesh *mesh = NULL;
+    SCOPED int32_t *labels = NULL;
+    SCOPED double *guards = NULL;
+    TRY(cone_all(p, &mesh, &labels));
+    TRY(collect_guards(p, &guards));
+    starg_status status = decomposition_finish(p->context, STARG_DECOMPOSE_STRICT, mesh, labels,
+                                               guards, p->pieces.count, out);
     mesh = NULL;
     labels = NULL;
-done:
-    starg_tetmesh_free(mesh);
-    RELEASE(labels, guards);
     return status;
 }
 
