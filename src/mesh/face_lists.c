@@ -260,8 +260,7 @@ starg_status starg_face_groups_read(starg_context *context, const char *model_fi
     STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
     STARG_TRY(take_groups(context, &values, out));
 done:
-    STARG_ARRAY_FREE(context, &values.data);
-    STARG_ARRAY_FREE(context, &values.names);
+    RELEASE(values.data.data, values.names.data);
     starg_mesh_free(mesh);
     starg_release(context, bytes);
     if (status != STARG_OK)

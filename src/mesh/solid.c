@@ -206,10 +206,8 @@ starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_so
 }
 
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = solid_make(context, mesh, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return solid_make(context, mesh, out);
 }
 
 starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, starg_solid **out) {

@@ -182,22 +182,19 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
 /* ---- cover ---- */
 
 static starg_status see(guarding *g) {
-    starg_status status = STARG_OK;
     starg_context *context = g->morph->context;
-    starg_bits *seen[2] = {NULL, NULL};
-    for (int end = 0; end < 2; end++)
-        STARG_TRY(starg_visibility(context, g->solids[end], g->morph->candidates[end],
-                                   g->morph->candidate_count, NULL, &seen[end]));
-    STARG_TRY(starg_bits_create(context, g->morph->candidate_count, g->morph->mesh->face_count,
-                                &g->seen));
+    SCOPED_BY(starg_bits_drop) starg_bits *first = NULL, *second = NULL;
+    TRY(starg_visibility(context, g->solids[0], g->morph->candidates[0], g->morph->candidate_count,
+                         NULL, &first));
+    TRY(starg_visibility(context, g->solids[1], g->morph->candidates[1], g->morph->candidate_count,
+                         NULL, &second));
+    TRY(starg_bits_create(context, g->morph->candidate_count, g->morph->mesh->face_count,
+                          &g->seen));
     for (size_t i = 0; i < g->morph->candidate_count; i++)
         for (size_t f = 0; f < g->morph->mesh->face_count; f++)
-            if (starg_bits_test(seen[0], i, f) && starg_bits_test(seen[1], i, f))
+            if (starg_bits_test(first, i, f) && starg_bits_test(second, i, f))
                 starg_bits_set(g->seen, i, f);
-done:
-    starg_bits_free(seen[0]);
-    starg_bits_free(seen[1]);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status choose(guarding *g) {

@@ -182,8 +182,6 @@ starg_status map_overlay(starg_context *context, const starg_mesh *a, const star
 starg_status starg_map_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                starg_map *map) {
     bool moved;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = map_overlay(context, a, b, map, &moved);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return map_overlay(context, a, b, map, &moved);
 }

@@ -49,15 +49,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "morph options", .size = sizeof(starg_morph_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_morph_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_morph_options_default(starg_morph_options *options) {
-    *options = (starg_morph_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_morph_options)
 
 static starg_status check_input(starg_context *context, const starg_mesh *a, const double *images,
                                 const starg_morph_options *options) {

@@ -411,10 +411,8 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
                                     const double *images, const starg_solid_map_options *options,
                                     starg_solid_map **out) {
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = make_map(context, a, images, ENDS_NEAR, options, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return make_map(context, a, images, ENDS_NEAR, options, out);
 }
 
 /* A's tetrahedra where B's surface is that of the overlay: first to B in A's connectivity, then,
@@ -506,10 +504,8 @@ starg_status starg_solid_map_overlay(starg_context *context, const starg_mesh *a
                                      const starg_solid_map_options *options,
                                      starg_solid_map **out) {
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = make_overlay(context, a, b, map, options, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return make_overlay(context, a, b, map, options, out);
 }
 
 starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,

@@ -139,12 +139,11 @@ static size_t surface_of(const unfold_problem *p) {
 
 /* The logarithm of how much the surface grows about each of its vertices, in length. */
 static starg_status find_growth_outside(const unfold_problem *p, double *growth) {
-    starg_status status = STARG_OK;
-    double *areas[2] = {NULL, NULL};
+    SCOPED double *block = NULL;
     size_t surface = surface_of(p);
     const double *places[2] = {p->rest, p->springs.count > 0 ? p->springs.targets : p->now};
-    for (int end = 0; end < 2; end++)
-        STARG_NEW_ZERO(p->context, STAGE, areas[end], p->vertex_count);
+    NEW_ZERO(p->context, STAGE, block, 2 * p->vertex_count);
+    double *areas[2] = {block, block + p->vertex_count};
     for (size_t i = 0; i < 4 * p->count; i++) {
         const uint32_t *corners = p->tetrahedra + i / 4 * 4;
         uint32_t v[3];
@@ -163,10 +162,7 @@ static starg_status find_growth_outside(const unfold_problem *p, double *growth)
     for (size_t v = 0; v < surface; v++)
         if (areas[0][v] > 0 && areas[1][v] > 0)
             growth[v] = log(areas[1][v] / areas[0][v]) / 2;
-done:
-    for (int end = 0; end < 2; end++)
-        starg_release(p->context, areas[end]);
-    return status;
+    return STARG_OK;
 }
 
 /* Extends it to the inside: each vertex takes the mean over its tetrahedra. */

@@ -265,7 +265,6 @@ starg_status solid_blocks(starg_context *context, blocks_kind kind, int member, 
     STARG_TRY(build[kind](&b, squares));
     STARG_TRY(make_mesh(&b, kind == BLOCKS_SPIKES, out));
 done:
-    starg_release(context, b.solid);
-    STARG_ARRAY_FREE(context, &b.open);
+    RELEASE(b.solid, b.open.data);
     return status;
 }

@@ -191,6 +191,6 @@ starg_status starg_database_query(starg_database *d, const starg_signature *sign
 done:
     database_roll_back(d);
     RELEASE(bounded.data, nearest.data);
-    database_models_clear(d->context, &list);
+    database_models_clear(&list);
     return status;
 }

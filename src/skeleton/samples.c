@@ -178,23 +178,19 @@ static void move_points(surface_samples *samples) {
 
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
                             bool moved, surface_samples *samples) {
-    starg_status status = STARG_OK;
     *samples = (surface_samples){0};
-    STARG_TRY(copy_mesh(context, solid->mesh, samples));
+    TRY(copy_mesh(context, solid->mesh, samples));
     /* twice the edge of equilateral triangles that share the area evenly */
     double longest = 2 * sqrt(1.1547 * solid->check->area / (double)wanted);
     size_t splits = 1;
     size_t most = solid->mesh->vertex_count + MOST_ADDED * wanted;
     for (int round = 0; splits > 0 && samples->point_count < most && round < MAX_ROUNDS; round++) {
-        STARG_TRY(starg_check_cancel(context, STAGE));
-        STARG_TRY(refine(context, samples, longest, &splits));
+        TRY(starg_check_cancel(context, STAGE));
+        TRY(refine(context, samples, longest, &splits));
     }
     if (moved)
         move_points(samples);
-done:
-    if (status != STARG_OK)
-        samples_free(samples);
-    return status;
+    return STARG_OK;
 }
 
 void samples_free(surface_samples *samples) {

@@ -114,15 +114,7 @@ const starg_fields decompose_file_options = {.name = "options",
                                              .fields = OPTIONS,
                                              .count = sizeof OPTIONS / sizeof *OPTIONS -
                                                       TETRA_MACHINE_FIELDS};
-
-const starg_fields *starg_decompose_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_decompose_options_default(starg_decompose_options *options) {
-    *options = (starg_decompose_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_decompose_options)
 
 /* Strict pieces are made of their surfaces: where tetrahedra are needed, they may be few. */
 static starg_tetra_options tetra_options(const starg_decompose_options *o) {
@@ -182,12 +174,9 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
                          const starg_mesh *surface, const starg_decompose_options *options,
                          starg_tetra_report *report, starg_tetmesh **out) {
     const starg_tetra_options tetra = tetra_options(options);
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = solid != NULL
-                              ? starg_tetmesh_from_solid(context, solid, &tetra, report, out)
-                              : starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return solid != NULL ? starg_tetmesh_from_solid(context, solid, &tetra, report, out)
+                         : starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
 }
 
 /* Where a surface is more hole than surface, or turns to and fro, what it winds around has little

@@ -60,29 +60,26 @@ static starg_status read_report(starg_context *context, const starg_file_bytes *
 /* The piece of each tetrahedron; a mesh with the same label everywhere has none of its own. */
 static starg_status take_labels(starg_context *context, const starg_file_bytes *report,
                                 starg_decomposition *d) {
-    starg_status status = STARG_OK;
     const int32_t *regions = starg_tetmesh_regions(d->mesh);
-    size_t *left = NULL;
+    SCOPED size_t *left = NULL;
     if (d->mesh->count != d->tetrahedra)
         return reject(context, report->name, "tetrahedra", "the number of cells of PIECES.vtk");
-    STARG_NEW_ZERO(context, STAGE, d->labels, d->tetrahedra);
-    STARG_NEW_ZERO(context, STAGE, left, d->piece_count);
+    NEW_ZERO(context, STAGE, d->labels, d->tetrahedra);
+    NEW_ZERO(context, STAGE, left, d->piece_count);
     for (size_t p = 0; p < d->piece_count; p++)
         left[p] = d->pieces[p].tetrahedra;
-    for (size_t t = 0; t < d->tetrahedra && status == STARG_OK; t++) {
+    for (size_t t = 0; t < d->tetrahedra; t++) {
         int32_t label = regions != NULL ? regions[t] : 0;
         d->labels[t] = label;
         uint64_t index = t;
         if (label < 0 || (size_t)label >= d->piece_count || left[label]-- == 0)
-            status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON,
-                                   &index, 1,
-                                   "tetrahedron %zu has the label %d, which does not match "
-                                   "'%.200s'; the files belong to different decompositions",
-                                   t, label, report->name);
+            return starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON,
+                                 &index, 1,
+                                 "tetrahedron %zu has the label %d, which does not match "
+                                 "'%.200s'; the files belong to different decompositions",
+                                 t, label, report->name);
     }
-done:
-    starg_release(context, left);
-    return status;
+    return STARG_OK;
 }
 
 /* Images of corners, which the tetrahedral mesh has kept. */

@@ -199,7 +199,6 @@ static starg_status find_insides(lattice *l) {
 
 starg_status lattice_create(starg_context *context, const tetra_shape *shape, double spacing,
                             lattice *out) {
-    starg_status status = STARG_OK;
     double lower[3], extent[3];
     *out = (lattice){.context = context, .shape = shape, .half = 0.5 * spacing};
     shape_extent(shape, lower, extent);
@@ -212,15 +211,11 @@ starg_status lattice_create(starg_context *context, const tetra_shape *shape, do
         (size_t)(out->cubes[0] + 1) * (size_t)(out->cubes[1] + 1) * (size_t)(out->cubes[2] + 1);
     out->points =
         out->corners + (size_t)out->cubes[0] * (size_t)out->cubes[1] * (size_t)out->cubes[2];
-    STARG_NEW_ZERO(context, STAGE, out->winding, out->points);
-    STARG_NEW(context, STAGE, out->side, out->points);
-    STARG_NEW(context, STAGE, out->node, out->points);
+    NEW_ZERO(context, STAGE, out->winding, out->points);
+    NEW(context, STAGE, out->side, out->points);
+    NEW(context, STAGE, out->node, out->points);
     memset(out->node, 0xff, out->points * sizeof *out->node);
-    STARG_TRY(find_insides(out));
-done:
-    if (status != STARG_OK)
-        lattice_free(out);
-    return status;
+    return find_insides(out);
 }
 
 void lattice_free(lattice *l) {

@@ -253,13 +253,12 @@ static void end(simplifier *s) {
 
 /* Makes a mesh of the current surface, and maps each input vertex to its vertex there. */
 static starg_status snapshot(const mesh_surface *surface, uint32_t *number, starg_mesh **out) {
-    starg_status status = STARG_OK;
     starg_context *context = surface->context;
-    double *vertices = NULL;
-    uint32_t *faces = NULL;
+    SCOPED double *vertices = NULL;
+    SCOPED uint32_t *faces = NULL;
     *out = NULL;
-    STARG_NEW(context, "simplify", vertices, 3 * surface->vertices_left);
-    STARG_NEW(context, "simplify", faces, 3 * surface->faces_left);
+    NEW(context, "simplify", vertices, 3 * surface->vertices_left);
+    NEW(context, "simplify", faces, 3 * surface->faces_left);
     halfedges_compact(&surface->mesh, number, faces);
     for (size_t v = 0; v < surface->vertex_count; v++)
         if (surface->merged[v] == v)
@@ -271,13 +270,11 @@ static starg_status snapshot(const mesh_surface *surface, uint32_t *number, star
         else if (root != v)
             number[v] = number[sets_find(surface->merged, root)];
     }
-    STARG_TRY(starg_mesh_adopt(context, vertices, surface->vertices_left, faces,
-                               surface->faces_left, out));
-done:
-    if (status != STARG_OK) {
-        RELEASE(vertices, faces);
-    }
-    return status;
+    TRY(starg_mesh_adopt(context, vertices, surface->vertices_left, faces, surface->faces_left,
+                         out));
+    vertices = NULL;
+    faces = NULL;
+    return STARG_OK;
 }
 
 /* ---- public functions ---- */
@@ -337,15 +334,14 @@ static size_t most_levels(const ladder *sizes, size_t vertices) {
 /* Appends the surface as a level, unless it is too similar to the last one. */
 static starg_status add_level(simplifier *s, level_list *list, const ladder *sizes,
                               uint32_t *number) {
-    starg_status status = STARG_OK;
     starg_context *context = s->context;
     size_t finer = list->out->levels[list->out->count - 1].mesh->vertex_count;
-    uint32_t *map = NULL;
+    SCOPED uint32_t *map = NULL;
     starg_mesh *mesh = NULL;
     if (finer - s->surface->vertices_left < least_difference(sizes, finer))
         return STARG_OK;
-    STARG_NEW(context, "simplify", map, finer);
-    STARG_TRY(snapshot(s->surface, number, &mesh));
+    NEW(context, "simplify", map, finer);
+    TRY(snapshot(s->surface, number, &mesh));
     memset(map, 0xff, finer * sizeof *map); /* fills with STARG_NO_VERTEX */
     for (size_t v = 0; v < s->surface->vertex_count; v++) {
         if (list->of_finest[v] != STARG_NO_VERTEX)
@@ -353,10 +349,8 @@ static starg_status add_level(simplifier *s, level_list *list, const ladder *siz
         list->of_finest[v] = number[v];
     }
     list->out->levels[list->out->count++] = (starg_level){mesh, map};
-done:
-    if (status != STARG_OK)
-        starg_release(context, map);
-    return status;
+    map = NULL;
+    return STARG_OK;
 }
 
 static starg_status add_levels(starg_context *context, const starg_mesh *mesh, const ladder *sizes,

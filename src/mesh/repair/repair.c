@@ -58,15 +58,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "repair options", .size = sizeof(starg_repair_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_repair_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_repair_options_default(starg_repair_options *options) {
-    *options = (starg_repair_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_repair_options)
 
 static size_t found(const starg_check *check, starg_finding_kind kind) {
     return check->findings[kind].count;

@@ -183,33 +183,27 @@ starg_status partition_sort_edges(starg_context *context, partition_edge *edges,
 
 starg_status partition_create_from_surface(starg_context *context, const kernel_faces *surface,
                                            partition *out) {
-    starg_status status = STARG_OK;
     const uint32_t *faces = surface->faces;
     size_t vertex_count = 0, face_count = surface->count;
     const piece whole = {.stamp = 1};
-    uint32_t *numbers = NULL;
+    SCOPED uint32_t *numbers = NULL;
     *out = (partition){.context = context, .stamps = 1};
     for (size_t i = 0; i < 3 * face_count; i++)
         vertex_count = faces[i] >= vertex_count ? faces[i] + (size_t)1 : vertex_count;
     find_frame(surface->vertices, faces, 3 * face_count, out);
-    STARG_NEW(context, PARTITION_STAGE, numbers, vertex_count);
+    NEW(context, PARTITION_STAGE, numbers, vertex_count);
     memset(numbers, 0xff, vertex_count * sizeof *numbers);
     for (size_t i = 0; i < 3 * face_count; i++)
         numbers[faces[i]] = 0;
-    STARG_TRY(add_points(out, surface->vertices, vertex_count, numbers));
-    STARG_PUSH(context, PARTITION_STAGE, &out->pieces, whole);
+    TRY(add_points(out, surface->vertices, vertex_count, numbers));
+    PUSH(context, PARTITION_STAGE, &out->pieces, whole);
     for (size_t f = 0; f < face_count; f++) {
         const uint32_t *own = faces + 3 * f;
         const uint32_t corners[3] = {numbers[own[0]], numbers[own[1]], numbers[own[2]]};
-        STARG_TRY(partition_add_facet(out, corners, 0, PARTITION_OUTSIDE));
+        TRY(partition_add_facet(out, corners, 0, PARTITION_OUTSIDE));
     }
     out->first_planes = out->planes.count;
-    STARG_TRY(partition_build_index(out));
-done:
-    starg_release(context, numbers);
-    if (status != STARG_OK)
-        partition_free(out);
-    return status;
+    return partition_build_index(out);
 }
 
 /* ---- from tetrahedra ---- */
@@ -254,30 +248,24 @@ static void add_volume(partition *p, const starg_tetmesh *mesh, size_t tetrahedr
 starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
                               const uint32_t *labels, const double *guards, size_t count,
                               partition *out) {
-    starg_status status = STARG_OK;
-    uint32_t *numbers = NULL;
+    SCOPED uint32_t *numbers = NULL;
     *out = (partition){.context = context};
     find_frame(mesh->vertices, mesh->tetrahedra, 4 * mesh->count, out);
-    STARG_NEW(context, PARTITION_STAGE, numbers, mesh->vertex_count);
+    NEW(context, PARTITION_STAGE, numbers, mesh->vertex_count);
     mark_vertices(mesh, labels, numbers);
-    STARG_TRY(add_points(out, mesh->vertices, mesh->vertex_count, numbers));
+    TRY(add_points(out, mesh->vertices, mesh->vertex_count, numbers));
     for (size_t i = 0; i < count; i++) {
         piece fresh = {.stamp = ++out->stamps};
         vec3_copy(guards + 3 * i, fresh.guard);
-        STARG_PUSH(context, PARTITION_STAGE, &out->pieces, fresh);
+        PUSH(context, PARTITION_STAGE, &out->pieces, fresh);
     }
     for (size_t slot = 0; slot < 4 * mesh->count; slot++)
         if (is_border(mesh, labels, slot))
-            STARG_TRY(add_border(out, mesh, labels, numbers, slot));
+            TRY(add_border(out, mesh, labels, numbers, slot));
     out->first_planes = out->planes.count;
     for (size_t t = 0; t < mesh->count; t++)
         add_volume(out, mesh, t, labels[t]);
-    STARG_TRY(partition_build_index(out));
-done:
-    starg_release(context, numbers);
-    if (status != STARG_OK)
-        partition_free(out);
-    return status;
+    return partition_build_index(out);
 }
 
 void partition_free(partition *p) {
@@ -292,14 +280,13 @@ void partition_free(partition *p) {
 #define COPY_ARRAY(CONTEXT, TO, FROM)                                                              \
     do {                                                                                           \
         (TO)->capacity = (FROM)->count + (FROM)->count / 8 + 64;                                   \
-        STARG_NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (TO)->capacity);                         \
+        NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (TO)->capacity);                               \
         (TO)->count = (FROM)->count;                                                               \
         if ((FROM)->count > 0)                                                                     \
             memcpy((TO)->data, (FROM)->data, (FROM)->count * sizeof *(TO)->data);                  \
     } while (0)
 
 starg_status partition_copy(const partition *from, partition *to) {
-    starg_status status = STARG_OK;
     *to = (partition){.context = from->context,
                       .first_points = from->first_points,
                       .first_planes = from->first_planes,
@@ -311,10 +298,7 @@ starg_status partition_copy(const partition *from, partition *to) {
     COPY_ARRAY(from->context, &to->planes, &from->planes);
     COPY_ARRAY(from->context, &to->facets, &from->facets);
     COPY_ARRAY(from->context, &to->pieces, &from->pieces);
-done:
-    if (status != STARG_OK)
-        partition_free(to);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- facets of a piece, corners at a point ---- */
