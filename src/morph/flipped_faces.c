@@ -12,8 +12,8 @@
  *
  * Cost: two checks of a surface and a sparse system of the flipped faces. */
 
-#include "mesh/topology.h"
 #include "mesh/examine.h"
+#include "mesh/topology.h"
 #include "morph/morph.h"
 
 static const char STAGE[] = "morph";
