@@ -97,10 +97,6 @@ bool unfold_is_positive(const unfold_problem *p, size_t tetrahedron) {
     return is_positive(p, p->now, tetrahedron);
 }
 
-size_t unfold_count(const unfold_problem *p) {
-    return count_inverted(p, p->now);
-}
-
 /* ---- preparation ---- */
 
 static void edges_of(const unfold_problem *p, const double *places, size_t t, matrix out) {
@@ -445,7 +441,7 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
     SCOPED_BY(descent_free) descent d = {.p = p};
     size_t least = SIZE_MAX;
     int idle = 0, most_idle = p->springs.count > 0 ? ROUNDS_IDLE_SPRINGS : ROUNDS_IDLE;
-    *inverted = unfold_count(p);
+    *inverted = count_inverted(p, p->now);
     if (*inverted == 0 || p->fixed >= p->vertex_count)
         return STARG_OK;
     TRY(prepare(&d));
@@ -455,7 +451,7 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
          done_steps += ROUND) {
         double before = evaluate(&d, p->now, NULL), after;
         TRY(go_down(&d, ROUND, &after));
-        *inverted = unfold_count(p);
+        *inverted = count_inverted(p, p->now);
         d.epsilon = lowered(&d, before);
         if (p->springs.move != NULL)
             p->springs.move(p->springs.user);

@@ -27,7 +27,9 @@ static const double WARP_LONG = 0.24999, WARP_SHORT = 0.41189;
 
 enum { MARGIN = 2, MOST_WINDING = 100 }; /* cubes around the solid */
 
-const int LATTICE_STEP[LATTICE_EDGES][3] = {
+/* To the neighbours; the first LATTICE_OWNED lead along edges that a point owns, the others are
+ * their opposites in the same order. Steps 0 to 2 of each half are long. */
+static const int LATTICE_STEP[LATTICE_EDGES][3] = {
     {2, 0, 0},  {0, 2, 0},  {0, 0, 2},  {1, 1, 1},    {-1, 1, 1},  {1, -1, 1},  {-1, -1, 1},
     {-2, 0, 0}, {0, -2, 0}, {0, 0, -2}, {-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}};
 

@@ -97,11 +97,6 @@ static void make_row(const finder *f, size_t face, double row[ROW]) {
     row[4] = length > 0 ? vec3_dot(row, a) : SEARCH_RADIUS;
 }
 
-static void make_rows(const finder *f) {
-    for (size_t face = 0; face < f->surface->count; face++)
-        make_row(f, face, f->rows + ROW * face);
-}
-
 /* ---- candidates ---- */
 
 static void solve(const finder *f, uint64_t seed, linear_solution *solution) {
@@ -279,7 +274,8 @@ starg_status kernel_find(starg_context *context, const kernel_faces *surface,
     if (find_flat_face(&f, result))
         goto done;
     find_frame(&f);
-    make_rows(&f);
+    for (size_t face = 0; face < surface->count; face++)
+        make_row(&f, face, f.rows + ROW * face);
     for (uint64_t attempt = 0; attempt < TRIES; attempt++) {
         linear_solution solution;
         STARG_TRY(starg_check_cancel(context, STAGE));

@@ -89,7 +89,7 @@ starg_status vtk_read_header(vtk_file *vtk, starg_word *dataset) {
     return starg_scan_expect(scan, "a kind of data set", dataset);
 }
 
-starg_status vtk_type(vtk_file *vtk, number_type *type) {
+static starg_status read_type(vtk_file *vtk, number_type *type) {
     static const struct {
         const char *name;
         number_type type;
@@ -120,7 +120,7 @@ starg_status vtk_read_points(vtk_file *vtk) {
     int64_t count;
     TRY(vtk_expect(vtk, "POINTS"));
     TRY(vtk_count(vtk, "the number of points", &count));
-    TRY(vtk_type(vtk, &type));
+    TRY(read_type(vtk, &type));
     if (!is_real(type))
         return starg_source_fail(source_of(vtk), numbers_place(&vtk->numbers),
                                  "the points must be of type double or float");
@@ -185,7 +185,7 @@ static starg_status read_list(vtk_file *vtk, int64_t cells, int64_t size) {
 static starg_status read_array(vtk_file *vtk, const char *name, int64_t count, int64_t **out) {
     number_type type;
     TRY(vtk_expect(vtk, name));
-    TRY(vtk_type(vtk, &type));
+    TRY(read_type(vtk, &type));
     vtk_begin_data(vtk);
     TRY(numbers_check_count(&vtk->numbers, count, numbers_least_bytes(&vtk->numbers, type),
                             "numbers of cells"));

@@ -105,11 +105,6 @@ static starg_status start_by_bsp(const model *m, const bsp_options *options, par
     return STARG_OK;
 }
 
-static void keep_better(partition *p, partition *other) {
-    if (other->pieces.count < p->pieces.count)
-        partition_swap(p, other);
-}
-
 /* Where there are tetrahedra, regions of them are a start at once, and in a solid full of holes the
  * better one; planes are worth no more than a few evaluations for each. */
 static starg_status begin_with_tetrahedra(const model *of, const starg_decompose_options *options,
@@ -123,8 +118,8 @@ static starg_status begin_with_tetrahedra(const model *of, const starg_decompose
                                 .guards = options->guards,
                                 .guard_count = options->guard_count};
     TRY(start_by_bsp(of, &wanted, &other, &report));
-    if (report.done)
-        keep_better(p, &other);
+    if (report.done && other.pieces.count < p->pieces.count)
+        partition_swap(p, &other);
     return STARG_OK;
 }
 

@@ -466,12 +466,6 @@ static starg_status number_point(const extractor *x, uint32_t point) {
     return STARG_OK;
 }
 
-static starg_status number_points(const extractor *x) {
-    for (size_t i = 0; i < 3 * x->e->facets.count; i++)
-        TRY(number_point(x, x->p->facets.data[x->e->facets.data[i / 3]].corners[i % 3]));
-    return STARG_OK;
-}
-
 /* Does a facet belong to none of the pieces but have two of their vertices, `corner` being the
  * first? */
 static bool is_beside(const extractor *x, const facet *f, uint32_t corner) {
@@ -568,7 +562,8 @@ starg_status extract_make(const partition *p, const uint32_t *pieces, size_t cou
     TRY(region_scratch_fit(scratch, p));
     TRY(name_pieces(&x, pieces, count));
     TRY(list_own_facets(&x));
-    TRY(number_points(&x));
+    for (size_t i = 0; i < 3 * out->facets.count; i++)
+        TRY(number_point(&x, p->facets.data[out->facets.data[i / 3]].corners[i % 3]));
     TRY(list_facets_beside(&x));
     if (out->facets.count > 1)
         qsort(out->facets.data, out->facets.count, sizeof *out->facets.data, partition_ascending);
