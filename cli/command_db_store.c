@@ -117,18 +117,15 @@ const cli_command cli_command_db_add = {
 
 static starg_status run_remove(cli_session *session, void *data) {
     (void)data;
-    starg_status status = STARG_OK;
-    starg_database *database = NULL;
+    SCOPED_BY(cli_database_drop) starg_database *database = NULL;
     size_t count = session->operand_count - 1;
-    CLI_TRY(cli_database_open(session, &database));
-    CLI_TRY(starg_database_remove(database, (const char *const *)session->operands + 1, count));
+    TRY(cli_database_open(session, &database));
+    TRY(starg_database_remove(database, (const char *const *)session->operands + 1, count));
     cli_say(session, "%s removed\n", cli_count_of(count, "model", "models").text);
     report_file(session, "starguard-db-remove");
     if (session->report != NULL)
         cli_put(session, session->report, "removed", json_integer((json_int_t)count));
-done:
-    starg_database_close(database);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_db_remove = {

@@ -337,17 +337,14 @@ static starg_status draw_obstacles(cli_session *session, const starg_solid *soli
                  more = starg_mesh_vertex_count(all) - own;
     const uint32_t *faces = starg_mesh_faces(all);
     size_t count = starg_mesh_face_count(d->mesh);
-    starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     if (more == 0)
         return STARG_OK;
-    double *points = malloc(3 * (base + more) * sizeof *points);
-    uint32_t *corners = malloc(3 * (count + starg_mesh_face_count(all)) * sizeof *corners);
-    uint8_t *colors = malloc(3 * (count + starg_mesh_face_count(all)));
-    if (points == NULL || corners == NULL || colors == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    SCOPED double *points = malloc(3 * (base + more) * sizeof *points);
+    SCOPED uint32_t *corners = malloc(3 * (count + starg_mesh_face_count(all)) * sizeof *corners);
+    SCOPED uint8_t *colors = malloc(3 * (count + starg_mesh_face_count(all)));
+    if (points == NULL || corners == NULL || colors == NULL)
+        return cli_fail_memory(session);
     memcpy(points, starg_mesh_vertices(d->mesh), 3 * base * sizeof *points);
     memcpy(points + 3 * base, starg_mesh_vertices(all) + 3 * own, 3 * more * sizeof *points);
     memcpy(corners, starg_mesh_faces(d->mesh), 3 * count * sizeof *corners);
@@ -359,17 +356,13 @@ static starg_status draw_obstacles(cli_session *session, const starg_solid *soli
             corners[3 * count + k] = (uint32_t)(faces[3 * f + k] - own + base);
         memcpy(colors + 3 * count++, OBSTACLE, sizeof OBSTACLE);
     }
-    CLI_TRY(starg_mesh_create(session->context, points, base + more, corners, count, &mesh));
+    TRY(starg_mesh_create(session->context, points, base + more, corners, count, &mesh));
     starg_mesh_free(d->mesh);
     free(d->colors);
     d->mesh = mesh;
     d->colors = colors;
     colors = NULL;
-done:
-    free(points);
-    free(corners);
-    free(colors);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status write_picture(cli_session *session, const starg_solid *solid,
@@ -384,9 +377,8 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     picture.point_count = g->count;
     picture.point_numbers = true;
     picture.views = g;
-    TRY(starg_picture_write(session->context, d.mesh, &picture,
-                            cli_outputs_place(&session->outputs, name)));
-    return STARG_OK;
+    return starg_picture_write(session->context, d.mesh, &picture,
+                               cli_outputs_place(&session->outputs, name));
 }
 
 /* Standard output comes last: output to it cannot be undone. */
@@ -409,9 +401,8 @@ static starg_status write_files(cli_session *session, const values *v, const sta
         TRY(write_marks(session, solid, g, v->marks));
     if (v->picture != NULL)
         TRY(write_picture(session, solid, g, v->picture));
-    TRY(starg_guards_write(session->context, g, session->operands[0],
-                           cli_outputs_place(&session->outputs, v->output)));
-    return STARG_OK;
+    return starg_guards_write(session->context, g, session->operands[0],
+                              cli_outputs_place(&session->outputs, v->output));
 }
 
 static starg_status announce_poses(cli_session *session, const char *name) {
@@ -500,8 +491,7 @@ static starg_status prepare(cli_session *session, void *data) {
     TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
         TRY(take_candidates(session, v->candidates, &v->wanted, &v->poses));
-    TRY(take_keep(session, v));
-    return STARG_OK;
+    return take_keep(session, v);
 }
 
 static starg_status run(cli_session *session, void *data) {

@@ -71,9 +71,9 @@ typedef struct telling {
     const values *options;
 } telling;
 
-/* Reports a verdict and adds it to the results; takes over `result`, the keys specific to its
- * kind. `holds` says what a passed verdict means. */
-static void tell_verdict(cli_session *session, const char *file, const starg_verdict *verdict,
+/* Reports a verdict and adds it to the results; takes it over, and `result`, the keys specific to
+ * its kind. `holds` says what a passed verdict means. */
+static void tell_verdict(cli_session *session, const char *file, starg_verdict *verdict,
                          const char *holds, json_t *result, const telling *to) {
     cli_say(session, "%s\n", file);
     tell_claims(session, verdict, to->verbose);
@@ -93,6 +93,7 @@ static void tell_verdict(cli_session *session, const char *file, const starg_ver
     cli_append(session, to->results, result);
     if (!verdict->passed)
         session->outcome = CLI_EXIT_FAILED;
+    starg_verdict_free(session->context, verdict);
 }
 
 /* ---- input ---- */
@@ -225,9 +226,8 @@ static starg_status read_frame(cli_session *session, const char *name, folder *o
 
 /* frame_0000.off and so on, or .ply, and morph.json. */
 static starg_status read_folder(cli_session *session, const char *name, folder *out) {
-    starg_status status = STARG_OK;
     bool found = true;
-    char *path = NULL;
+    SCOPED char *path = NULL;
     SCOPED char *off = name_in(name, "frame_0000.off");
     SCOPED char *ply = name_in(name, "frame_0000.ply");
     if (off == NULL || ply == NULL)
@@ -243,23 +243,21 @@ static starg_status read_folder(cli_session *session, const char *name, folder *
         path = name_in(name, file);
         if (path == NULL)
             return cli_fail_memory(session);
-        CLI_TRY(read_frame(session, path, out, &found));
+        TRY(read_frame(session, path, out, &found));
     }
     free(path);
     path = name_in(name, "morph.json");
     if (path == NULL)
         return cli_fail_memory(session);
     if (exists(path))
-        CLI_TRY(starg_result_read(session->context, path, &out->report));
+        TRY(starg_result_read(session->context, path, &out->report));
     if (out->count < 2)
-        status =
-            cli_fail(session, STARG_ERROR_READ,
-                     "'%.200s' holds no morph: frame_0000.off and frame_0001.off at least", name);
-    else if (out->report != NULL && out->report->morph == NULL)
-        status = cli_fail(session, STARG_ERROR_READ, "'%.200s' is no report of a morph", path);
-done:
-    free(path);
-    return status;
+        return cli_fail(session, STARG_ERROR_READ,
+                        "'%.200s' holds no morph: frame_0000.off and frame_0001.off at least",
+                        name);
+    if (out->report != NULL && out->report->morph == NULL)
+        return cli_fail(session, STARG_ERROR_READ, "'%.200s' is no report of a morph", path);
+    return STARG_OK;
 }
 
 /* Reads all results before verifying the first, so that a bad name is reported at once. Results of
@@ -398,7 +396,6 @@ done:
     cli_scene_free_obstacles(zones, guards->zone_count);
     starg_poses_free(session->context, &keep);
     starg_face_groups_free(session->context, &groups);
-    starg_verdict_free(session->context, verdict);
     return status;
 }
 
@@ -432,7 +429,6 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
         cli_put(session, entry, "strictly_star", json_integer((json_int_t)report->strictly_star));
     }
     tell_verdict(session, session->operands[found.pieces], verdict, holds, entry, to);
-    starg_verdict_free(session->context, verdict);
     return STARG_OK;
 }
 
@@ -446,44 +442,37 @@ static json_t *entry_of_pair(cli_session *session, const inputs *from) {
 
 static starg_status verify_map(cli_session *session, const model *given, const inputs *from,
                                size_t operand, const telling *to) {
-    starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
-    CLI_TRY(starg_verify_map(session->context, given->mesh, from->target,
-                             from->results[operand]->map, &verdict));
+    TRY(starg_verify_map(session->context, given->mesh, from->target, from->results[operand]->map,
+                         &verdict));
     tell_verdict(session, session->operands[operand], verdict,
                  "points of A are where the map has them on B", entry_of_pair(session, from), to);
-done:
-    starg_verdict_free(session->context, verdict);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status verify_morph(cli_session *session, const model *given, const inputs *from,
                                  size_t operand, const telling *to) {
-    starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     const folder *own = &from->folders[operand];
     if (own->report == NULL)
         cli_warn(session,
                  "'%.200s' has no morph.json (morph --report): checking only the frames' ends",
                  session->operands[operand]);
-    CLI_TRY(starg_verify_morph(session->context, given->mesh, from->target,
-                               (const starg_mesh *const *)own->frames, own->count,
-                               own->report != NULL ? own->report->morph : NULL, &verdict));
+    TRY(starg_verify_morph(session->context, given->mesh, from->target,
+                           (const starg_mesh *const *)own->frames, own->count,
+                           own->report != NULL ? own->report->morph : NULL, &verdict));
     json_t *entry = entry_of_pair(session, from);
     cli_put(session, entry, "frames", json_integer((json_int_t)own->count));
     tell_verdict(session, session->operands[operand], verdict, "frames lead from A to B", entry,
                  to);
-done:
-    starg_verdict_free(session->context, verdict);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status verify_solid_map(cli_session *session, const model *given, const inputs *from,
                                      size_t operand, const telling *to) {
-    starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
     const starg_solid_map *map = from->results[operand]->solid_map;
-    CLI_TRY(starg_verify_solid_map(session->context, given->mesh, from->target, map, &verdict));
+    TRY(starg_verify_solid_map(session->context, given->mesh, from->target, map, &verdict));
     json_t *entry = entry_of_pair(session, from);
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)map->count));
     cli_put(session, entry, "pieces", json_integer((json_int_t)map->piece_count));
@@ -492,9 +481,7 @@ static starg_status verify_solid_map(cli_session *session, const model *given, c
                  : map->compared      ? "tetrahedra fill A, and end near B as told"
                                       : "tetrahedra fill A and B, one to one",
                  entry, to);
-done:
-    starg_verdict_free(session->context, verdict);
-    return status;
+    return STARG_OK;
 }
 
 static void report(cli_session *session, const starg_mesh *mesh, json_t *results) {

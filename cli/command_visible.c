@@ -294,12 +294,11 @@ static starg_status find_area(cli_session *session, const values *v, const starg
 
 static starg_status tell_all(cli_session *session, const starg_guards *g, const starg_bits *faces,
                              const starg_bits *parts, const double *fractions, const values *v) {
-    starg_status status = STARG_OK;
     bool points = v->view.target == STARG_TARGET_POINTS;
-    json_t *list = session->report == NULL ? NULL : json_array();
+    SCOPED_BY(json_decrefp) json_t *list = session->report == NULL ? NULL : json_array();
     for (size_t i = 0; i < g->count; i++) {
         double area = 0;
-        CLI_TRY(find_area(session, v, g, parts, fractions, i, &area));
+        TRY(find_area(session, v, g, parts, fractions, i, &area));
         tell_pose(session, v, g, faces, list, i, area);
     }
     cli_say(session, "together  %.2f %% of the area%s; %s not seen whole\n",
@@ -321,9 +320,7 @@ static starg_status tell_all(cli_session *session, const starg_guards *g, const 
     cli_put(session, session->report, "points", list);
     cli_put(session, session->report, "coverage", coverage);
     return STARG_OK;
-done:
-    json_decref(list);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status write_parts(cli_session *session, const values *v, const starg_mesh *mesh,
@@ -535,35 +532,25 @@ static starg_status see(cli_session *session, values *v, starg_bits **seen) {
 
 static starg_status run(cli_session *session, void *data) {
     values *v = data;
-    starg_status status = STARG_OK;
-    starg_bits *seen = NULL;
-    double *fractions = NULL;
-    CLI_TRY(cli_scene_make(session, &v->scene));
+    SCOPED_BY(starg_bits_drop) starg_bits *seen = NULL;
+    SCOPED double *fractions = NULL;
+    TRY(cli_scene_make(session, &v->scene));
     const starg_solid *solid = session->solid;
     fractions = cli_area_fractions(starg_solid_mesh(solid), starg_space_model_faces(solid));
-    if (fractions == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
-    if (audits(v)) {
-        status = run_audit(session, v);
-        goto done;
-    }
-    if (v->unseen) {
-        status = run_unseen(session, v, fractions);
-        goto done;
-    }
-    CLI_TRY(see(session, v, &seen));
+    if (fractions == NULL)
+        return cli_fail_memory(session);
+    if (audits(v))
+        return run_audit(session, v);
+    if (v->unseen)
+        return run_unseen(session, v, fractions);
+    TRY(see(session, v, &seen));
     look l = {.wanted = v, .solid = solid, .seen = seen, .fractions = fractions};
-    CLI_TRY(tell(session, &l));
+    TRY(tell(session, &l));
     if (v->share)
-        CLI_TRY(tell_shares(session, seen, starg_solid_mesh(solid), seen, NULL, NULL));
+        TRY(tell_shares(session, seen, starg_solid_mesh(solid), seen, NULL, NULL));
     if (v->output != NULL)
-        CLI_TRY(write_seen(session, &l));
-done:
-    free(fractions);
-    starg_bits_free(seen);
-    return status;
+        TRY(write_seen(session, &l));
+    return STARG_OK;
 }
 
 static void release(cli_session *session, void *data) {

@@ -61,17 +61,12 @@ static starg_status make_distances(cli_session *session, cli_table *t) {
 }
 
 starg_status cli_table_make(cli_session *session, const char *file, int kind, cli_table *t) {
-    starg_status status = STARG_OK;
-    CLI_TRY(starg_database_open(session->context, file, &t->database));
-    CLI_TRY(starg_database_signatures(t->database, (starg_signature_kind)kind, &t->models));
-    if (t->models->count == 0) {
-        status = cli_fail(session, STARG_ERROR_FORMAT,
-                          "'%s' has no models; add some with 'starguard db add'", file);
-        goto done;
-    }
-    CLI_TRY(make_distances(session, t));
-done:
-    return status;
+    TRY(starg_database_open(session->context, file, &t->database));
+    TRY(starg_database_signatures(t->database, (starg_signature_kind)kind, &t->models));
+    if (t->models->count == 0)
+        return cli_fail(session, STARG_ERROR_FORMAT,
+                        "'%s' has no models; add some with 'starguard db add'", file);
+    return make_distances(session, t);
 }
 
 void cli_table_free(cli_session *session, cli_table *t) {

@@ -71,6 +71,9 @@ json_t *cli_json_alignment(const starg_alignment *alignment);
 
 /* Opens the database given by the first operand. */
 starg_status cli_database_open(cli_session *session, starg_database **out);
+static inline void cli_database_drop(starg_database **database) {
+    starg_database_close(*database);
+}
 
 /* The models of a database with all their distances (models->count squared). */
 typedef struct cli_table {

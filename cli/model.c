@@ -68,22 +68,20 @@ static starg_status grow_head(cli_session *session, const char *name, size_t *ca
 
 static starg_status fill_head(cli_session *session, const char *name, FILE *file,
                               input_head *head) {
-    starg_status status = STARG_OK;
     size_t capacity = HEAD, got = 1;
     head->bytes = malloc(capacity);
     if (head->bytes == NULL)
         return cli_fail_memory(session);
     while (got > 0 && (head->whole || head->size < HEAD)) {
         if (head->size == capacity)
-            CLI_TRY(grow_head(session, name, &capacity, head));
+            TRY(grow_head(session, name, &capacity, head));
         got = fread(head->bytes + head->size, 1, capacity - head->size, file);
         head->size += got;
     }
     if (head->whole && ferror(file))
-        status =
-            cli_fail(session, STARG_ERROR_READ, "cannot read '%.200s': %s", name, strerror(errno));
-done:
-    return status;
+        return cli_fail(session, STARG_ERROR_READ, "cannot read '%.200s': %s", name,
+                        strerror(errno));
+    return STARG_OK;
 }
 
 /* A file that cannot be opened has an empty head: the reader reports why. */

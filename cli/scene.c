@@ -108,7 +108,6 @@ static starg_status read_zone(cli_session *session, const char *option, const ch
 /* One box alone is an option of the space, as ever. */
 static starg_status read_zones(cli_session *session, cli_scene *s, starg_space_options *out,
                                starg_zone **list) {
-    starg_status status = STARG_OK;
     size_t count = s->within.count + s->without.count;
     starg_zone *zones = calloc(count + 1, sizeof *zones);
     *list = zones;
@@ -121,7 +120,7 @@ static starg_status read_zones(cli_session *session, cli_scene *s, starg_space_o
         const char *word = excludes ? s->without.values[i - s->within.count] : s->within.values[i];
         zones[i].excludes = excludes;
         s->zone_files[i] = word;
-        CLI_TRY(read_zone(session, excludes ? "--without" : "--within", word, &zones[i]));
+        TRY(read_zone(session, excludes ? "--without" : "--within", word, &zones[i]));
     }
     if (count == 1 && !zones[0].excludes && zones[0].mesh == NULL) {
         memcpy(out->within, zones[0].box, sizeof out->within);
@@ -129,8 +128,7 @@ static starg_status read_zones(cli_session *session, cli_scene *s, starg_space_o
     }
     out->zones = zones;
     out->zone_count = count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_obstacles(cli_session *session, const char *const *files, size_t count,
@@ -617,7 +615,6 @@ starg_status cli_scene_read_obstacles(cli_session *session, const starg_guards *
 
 starg_status cli_scene_read_zones(cli_session *session, const starg_guards *guards,
                                   starg_mesh ***out) {
-    starg_status status = STARG_OK;
     starg_mesh **list = calloc(guards->zone_count + 1, sizeof *list);
     *out = list;
     if (list == NULL)
@@ -629,10 +626,9 @@ starg_status cli_scene_read_zones(cli_session *session, const starg_guards *guar
         if (file == NULL)
             return cli_fail(session, STARG_ERROR_FORMAT,
                             "the result does not name the file of zone %zu", i);
-        CLI_TRY(starg_mesh_read(session->context, file, &list[i]));
+        TRY(starg_mesh_read(session->context, file, &list[i]));
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status cli_scene_join(cli_session *session, starg_mesh *const *obstacles, size_t count,

@@ -174,6 +174,9 @@ void cli_free_scoped(void *pointer);
 static inline void starg_mesh_drop(starg_mesh **mesh) {
     starg_mesh_free(*mesh);
 }
+static inline void starg_bits_drop(starg_bits **rows) {
+    starg_bits_free(*rows);
+}
 
 /* The same for functions that clean up after `done`. */
 #define CLI_TRY(EXPR)                                                                              \

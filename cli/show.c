@@ -415,19 +415,15 @@ static void fill_page(const cli_session *session, const char *model, cli_show *s
 }
 
 starg_status cli_show_read(cli_session *session, const char *model, int distance, cli_show *show) {
-    starg_status status = STARG_OK;
-    CLI_TRY(take_operands(session, distance, &model, show));
-    if (show->page.report != NULL && show->page.pieces == NULL) {
-        status = cli_fail(session, STARG_ERROR_READ,
-                          "'%.200s' is a report without tetrahedra; add its PIECES.vtk",
-                          show->report_file);
-        goto done;
-    }
-    CLI_TRY(take_model(session, model, show));
-    CLI_TRY(compute(session, show));
+    TRY(take_operands(session, distance, &model, show));
+    if (show->page.report != NULL && show->page.pieces == NULL)
+        return cli_fail(session, STARG_ERROR_READ,
+                        "'%.200s' is a report without tetrahedra; add its PIECES.vtk",
+                        show->report_file);
+    TRY(take_model(session, model, show));
+    TRY(compute(session, show));
     fill_page(session, model, show);
-done:
-    return status;
+    return STARG_OK;
 }
 
 static void free_frames(starg_context *context, cli_show *show) {

@@ -5,8 +5,7 @@
 
 starg_status cli_tables_announce(cli_session *session, const cli_tables *tables) {
     TRY(cli_announce_with_extension(session, "--table", tables->table, ".csv"));
-    TRY(cli_announce_with_extension(session, "--summary", tables->summary, ".csv"));
-    return STARG_OK;
+    return cli_announce_with_extension(session, "--summary", tables->summary, ".csv");
 }
 
 starg_status cli_groups_read(cli_session *session, const char *model, size_t faces,

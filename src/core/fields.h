@@ -11,6 +11,16 @@
 /* Rows of a table and their count. */
 #define FIELD_ROWS(ROWS) .fields = (ROWS), .count = sizeof(ROWS) / sizeof *(ROWS)
 
+/* Defines NAME_fields and NAME_default for options of type NAME, by their table. */
+#define OPTIONS_BY(TABLE, NAME)                                                                    \
+    const starg_fields *NAME##_fields(void) {                                                      \
+        return &(TABLE);                                                                           \
+    }                                                                                              \
+    void NAME##_default(NAME *options) {                                                           \
+        *options = (NAME){0};                                                                      \
+        starg_fields_default(&(TABLE), options);                                                   \
+    }
+
 /* The words of an effort, from `most` = INT64_MAX on. */
 extern const char *const effort_words[];
 

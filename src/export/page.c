@@ -632,27 +632,20 @@ static starg_status take_map(starg_context *context, const starg_solid_map *map,
 }
 
 starg_status starg_page_write(starg_context *context, const starg_page *page, const char *path) {
-    starg_status status = STARG_OK;
-    book b = {.page = page};
-    starg_output output = {0};
+    SCOPED_BY(free_book) book b = {.page = page};
+    SCOPED_BY(starg_output_discard) starg_output output = {0};
     if (!starg_page_available())
         return starg_fail(context, STARG_ERROR_WRITE, STAGE, "%s", NO_VIEWER);
     if (page->pieces != NULL)
-        STARG_TRY(starg_piece_surfaces_create(context, page->pieces, &b.surfaces));
+        TRY(starg_piece_surfaces_create(context, page->pieces, &b.surfaces));
     if (page->map != NULL)
-        STARG_TRY(take_map(context, page->map, &b));
-    STARG_TRY(check(context, &b));
+        TRY(take_map(context, page->map, &b));
+    TRY(check(context, &b));
     find_frame(page, &b.frame);
-    STARG_TRY(copy_names(context, &b));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    if (!put_page(output.stream, &b)) {
-        status = starg_fail_memory(context, STAGE);
-        goto done;
-    }
-    STARG_TRY(starg_check_cancel(context, STAGE));
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_output_discard(&output);
-    free_book(&b);
-    return status;
+    TRY(copy_names(context, &b));
+    TRY(starg_output_open(context, STAGE, path, &output));
+    if (!put_page(output.stream, &b))
+        return starg_fail_memory(context, STAGE);
+    TRY(starg_check_cancel(context, STAGE));
+    return starg_output_commit(&output);
 }

@@ -98,7 +98,8 @@ void planar_flip(planar *m, uint32_t h) {
     planar_link(m, 3 * one + 1, 3 * two + 2, NONE);
 }
 
-uint32_t planar_first(const planar *m, uint32_t vertex) {
+/* The first halfedge from a vertex, clockwise; any for one that is not on the border. */
+static uint32_t planar_first(const planar *m, uint32_t vertex) {
     uint32_t start = m->at.data[vertex], h = start;
     while (m->twin.data[h] != NONE && planar_next(m->twin.data[h]) != start)
         h = planar_next(m->twin.data[h]);

@@ -79,9 +79,6 @@ bool planar_can_flip(const planar *m, uint32_t h);
 /* (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c). */
 void planar_flip(planar *m, uint32_t h);
 
-/* The first halfedge from a vertex, clockwise; any for one that is not on the border. */
-uint32_t planar_first(const planar *m, uint32_t vertex);
-
 /* The halfedge from a to b, or NONE. */
 uint32_t planar_find(const planar *m, uint32_t a, uint32_t b);
 

@@ -105,7 +105,8 @@ void dyadic_round(dyadic_point *p) {
     p->blur = p->exact ? 0 : dyadic_blur(most);
 }
 
-int dyadic_compare(const dyadic_point *a, const dyadic_point *b, int k) {
+/* Sign of a[k] - b[k]. */
+static int compare(const dyadic_point *a, const dyadic_point *b, int k) {
     double difference = a->at[k] - b->at[k];
     const dyadic_point *points[2] = {a, b};
     exact x, y, d;
@@ -283,8 +284,8 @@ static __attribute__((noinline)) int orient2d_in_integers(const dyadic_point *co
     return determinant.sign;
 }
 
-int dyadic_orient2d(const dyadic_point *a, const dyadic_point *b, const dyadic_point *c, int u,
-                    int v) {
+static int orient2d_of(const dyadic_point *a, const dyadic_point *b, const dyadic_point *c, int u,
+                       int v) {
     const dyadic_point *const points[3] = {a, b, c};
     double blur = largest_blur(points, 3);
     if (a->exact && b->exact && c->exact)
@@ -301,14 +302,14 @@ int dyadic_orient2d(const dyadic_point *a, const dyadic_point *b, const dyadic_p
 }
 
 static bool aligned(const dyadic_point *a, const dyadic_point *b, const dyadic_point *c) {
-    return dyadic_orient2d(a, b, c, 0, 1) == 0 && dyadic_orient2d(a, b, c, 1, 2) == 0 &&
-           dyadic_orient2d(a, b, c, 2, 0) == 0;
+    return orient2d_of(a, b, c, 0, 1) == 0 && orient2d_of(a, b, c, 1, 2) == 0 &&
+           orient2d_of(a, b, c, 2, 0) == 0;
 }
 
 #define POINT                const dyadic_point *
 #define TURN3(a, b, c, d)    dyadic_orient3d(a, b, c, d)
-#define TURN2(a, b, c, u, v) dyadic_orient2d(a, b, c, u, v)
-#define ORDER(a, b, k)       dyadic_compare(a, b, k)
+#define TURN2(a, b, c, u, v) orient2d_of(a, b, c, u, v)
+#define ORDER(a, b, k)       compare(a, b, k)
 #define ALIGNED(a, b, c)     aligned(a, b, c)
 #include "geometry/segment_stages.h"
 

@@ -39,14 +39,9 @@ static inline double dyadic_blur(double largest) {
  * equal doubles. */
 void dyadic_round(dyadic_point *point);
 
-/* orient3d and orient2d of such points. */
+/* orient3d of such points. */
 int dyadic_orient3d(const dyadic_point *a, const dyadic_point *b, const dyadic_point *c,
                     const dyadic_point *d);
-int dyadic_orient2d(const dyadic_point *a, const dyadic_point *b, const dyadic_point *c, int u,
-                    int v);
-
-/* Sign of a[k] - b[k]. */
-int dyadic_compare(const dyadic_point *a, const dyadic_point *b, int k);
 
 /* segment_meets_triangle, to such a point q. */
 bool dyadic_segment_meets_triangle(const double p[3], const dyadic_point *q, const double a[3],

@@ -32,19 +32,10 @@ static void shift_left(exact *out, const exact *a, int bits) {
     out->sign = 1;
 }
 
-static void negate(exact *a) {
-    a->sign = -a->sign;
-}
-
 static void copy(exact *out, const exact *a) {
     out->sign = a->sign;
     out->count = a->count;
     memcpy(out->limb, a->limb, (size_t)a->count * sizeof *a->limb);
-}
-
-static void set_one(exact *out) {
-    out->sign = out->count = 1;
-    out->limb[0] = 1;
 }
 
 /* Nearest double to a / b 2^scale, b > 0. Both are shifted to the same length, so that 56 steps of
@@ -82,7 +73,7 @@ static void combine(exact_point *out, const exact a[3], const exact *x, const ex
 static void make_positive(exact_point *out) {
     if (out->x[3].sign < 0)
         for (int k = 0; k < 4; k++)
-            negate(&out->x[k]);
+            out->x[k].sign = -out->x[k].sign;
 }
 
 static void set_vertex(exact out[3], const double p[3], int scale) {
@@ -124,7 +115,8 @@ static void round_point(exact_point *point, int scale) {
 
 void exact_point_set(exact_point *out, const double p[3], int scale) {
     set_vertex(out->x, p, scale);
-    set_one(&out->x[3]);
+    out->x[3].sign = out->x[3].count = 1;
+    out->x[3].limb[0] = 1;
     for (int k = 0; k < 3; k++)
         out->rounded[k] = p[k] + 0.0; /* no -0: equal points have equal bits */
 }

@@ -69,8 +69,8 @@ starg_status kd_tree_create(starg_context *context, const double *points, size_t
     return STARG_OK;
 }
 
-void kd_tree_free(starg_context *context, kd_tree *tree) {
-    starg_release(context, tree->order);
+void kd_tree_free(kd_tree *tree) {
+    RELEASE(tree->order);
     *tree = (kd_tree){0};
 }
 

@@ -16,7 +16,7 @@ typedef struct kd_tree {
 /* Errors: MEMORY. */
 starg_status kd_tree_create(starg_context *context, const double *points, size_t count,
                             int dimension, kd_tree *out) STARG_PRIVATE(kd_tree_create);
-void kd_tree_free(starg_context *context, kd_tree *tree) STARG_PRIVATE(kd_tree_free);
+void kd_tree_free(kd_tree *tree) STARG_PRIVATE(kd_tree_free);
 
 /* The point nearest to p, on ties that of the lowest index; `squared` receives the rounded squared
  * distance. The tree must not be empty. */

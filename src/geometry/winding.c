@@ -89,12 +89,12 @@ static void make_moment(const winding_field *field, double *weights, size_t inde
 }
 
 starg_status winding_create(starg_context *context, const bvh *tree, winding_field *out) {
-    starg_status status = STARG_OK;
-    double *weights = NULL, extent = 0;
+    SCOPED double *weights = NULL;
+    double extent = 0;
     int exponent;
     *out = (winding_field){.tree = tree};
-    STARG_NEW(context, STAGE, out->moments, tree->node_count);
-    STARG_NEW(context, STAGE, weights, tree->node_count);
+    NEW(context, STAGE, out->moments, tree->node_count);
+    NEW(context, STAGE, weights, tree->node_count);
     for (int k = 0; k < 3; k++) {
         const bvh_box *box = &tree->nodes[0].box;
         out->origin[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
@@ -104,11 +104,7 @@ starg_status winding_create(starg_context *context, const bvh *tree, winding_fie
     out->scale = ldexp(1, -exponent);
     for (size_t index = tree->node_count; index-- > 0;)
         make_moment(out, weights, index);
-done:
-    starg_release(context, weights);
-    if (status != STARG_OK)
-        winding_free(out);
-    return status;
+    return STARG_OK;
 }
 
 void winding_free(winding_field *field) {

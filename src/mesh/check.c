@@ -371,27 +371,26 @@ done:
     return status;
 }
 
-void mesh_examination_free(starg_context *context, mesh_examination *examination) {
-    starg_check_free(context, examination->check);
+void mesh_examination_free(mesh_examination *examination) {
+    starg_check_free(NULL, examination->check);
     topology_free(examination->topology);
     bvh_free(examination->tree);
-    starg_release(context, examination->shells);
+    RELEASE(examination->shells);
 }
 
 /* What the shells enclose where they share vertices. */
 static starg_status check_parted(starg_context *context, const starg_mesh *mesh,
                                  starg_check *check) {
-    starg_status status = STARG_OK;
-    mesh_examination all = {0};
-    starg_mesh *parted = NULL;
+    SCOPED_BY(mesh_examination_free) mesh_examination all = {0};
+    SCOPED_BY(starg_mesh_drop) starg_mesh *parted = NULL;
     if (check->usable || !check->closed || !check->oriented)
         return STARG_OK;
-    STARG_TRY(wings_part(context, mesh, &parted));
+    TRY(wings_part(context, mesh, &parted));
     if (parted == NULL)
-        goto done;
-    STARG_TRY(mesh_examine(context, parted, &all));
+        return STARG_OK;
+    TRY(mesh_examine(context, parted, &all));
     if (!all.check->usable || !mesh_only_touches(all.check))
-        goto done;
+        return STARG_OK;
     check->usable = true;
     check->volume = all.check->volume;
     check->components = all.check->components;
@@ -399,10 +398,7 @@ static starg_status check_parted(starg_context *context, const starg_mesh *mesh,
     check->genus = all.check->genus;
     check->findings[STARG_FINDING_INWARD_COMPONENT] =
         all.check->findings[STARG_FINDING_INWARD_COMPONENT];
-done:
-    mesh_examination_free(context, &all);
-    starg_mesh_free(parted);
-    return status;
+    return STARG_OK;
 }
 
 /* Components are connected by edges, also by those of more than two faces. */
@@ -432,7 +428,7 @@ starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, st
         *out = all.check;
         all.check = NULL;
     }
-    mesh_examination_free(context, &all);
+    mesh_examination_free(&all);
     return status;
 }
 

@@ -54,4 +54,8 @@ starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh
 bool mesh_only_touches(const starg_check *check);
 /* Has rounding far from the origin broken it? Then nothing else is worth saying. */
 bool mesh_is_rounded(const starg_check *check);
-void mesh_examination_free(starg_context *context, mesh_examination *examination);
+void mesh_examination_free(mesh_examination *examination);
+
+static inline void starg_check_drop(starg_check **check) {
+    starg_check_free(NULL, *check);
+}

@@ -178,42 +178,39 @@ static starg_status take_pattern(starg_context *context, const char *name,
     return STARG_OK;
 }
 
+static void values_free(starg_face_values *values) {
+    RELEASE(values->data.data, values->names.data);
+}
+
 starg_status starg_faces_named(starg_context *context, const char *model_file, const char *name,
                                size_t face_count, double **weights) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    char *bytes = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED char *bytes = NULL;
     const char *up;
     size_t size = 0;
-    starg_face_values values = {0};
+    SCOPED_BY(values_free) starg_face_values values = {0};
     *weights = NULL;
-    STARG_TRY(take_pattern(context, name, &values));
-    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size, &up));
-    STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
+    TRY(take_pattern(context, name, &values));
+    TRY(starg_mesh_bytes(context, model_file, &bytes, &size, &up));
+    TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
     if (!values.found)
-        status = fail_unknown(context, &values, model_file);
-    else if (values.data.count != face_count)
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "'%.200s' has %zu faces, and the model %zu", model_file,
-                            values.data.count, face_count);
-    else if (values.compared && isnan(values.wanted))
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "'%.100s' is not a number that a property can have", values.equals + 1);
-    STARG_TRY(status);
+        return fail_unknown(context, &values, model_file);
+    if (values.data.count != face_count)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "'%.200s' has %zu faces, and the model %zu", model_file,
+                          values.data.count, face_count);
+    if (values.compared && isnan(values.wanted))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "'%.100s' is not a number that a property can have", values.equals + 1);
     *weights = values.data.data;
     values.data.data = NULL;
-done:
-    STARG_ARRAY_FREE(context, &values.data);
-    starg_mesh_free(mesh);
-    starg_release(context, bytes);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- groups ---- */
 
 starg_status starg_values_collect(starg_context *context, starg_face_values *values,
                                   const char *name, size_t length, double *number) {
-    starg_status status = STARG_OK;
     size_t at = 0;
     for (size_t i = 0; i < values->group_count; i++) {
         const char *known = values->names.data + at;
@@ -224,20 +221,18 @@ starg_status starg_values_collect(starg_context *context, starg_face_values *val
         at += size + 1;
     }
     for (size_t i = 0; i < length; i++)
-        STARG_PUSH(context, STAGE, &values->names, name[i]);
-    STARG_PUSH(context, STAGE, &values->names, '\0');
+        PUSH(context, STAGE, &values->names, name[i]);
+    PUSH(context, STAGE, &values->names, '\0');
     *number = (double)++values->group_count;
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Takes the names over. */
 static starg_status take_groups(starg_context *context, starg_face_values *values,
                                 starg_face_groups *out) {
-    starg_status status = STARG_OK;
     size_t at = 0;
-    STARG_NEW(context, STAGE, out->names, values->group_count);
-    STARG_NEW(context, STAGE, out->of, values->data.count);
+    NEW(context, STAGE, out->names, values->group_count);
+    NEW(context, STAGE, out->of, values->data.count);
     out->face_count = values->data.count;
     for (size_t f = 0; f < out->face_count; f++)
         out->of[f] = values->data.data[f] > 0 ? (uint32_t)values->data.data[f] - 1 : UINT32_MAX;
@@ -247,36 +242,28 @@ static starg_status take_groups(starg_context *context, starg_face_values *value
         out->names[out->count] = out->text + at;
         at += strlen(out->text + at) + 1;
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_face_groups_read(starg_context *context, const char *model_file,
                                     starg_face_groups *out) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    char *bytes = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED char *bytes = NULL;
     const char *up;
     size_t size = 0;
-    starg_face_values values = {.collects = true, .pattern = ""};
+    SCOPED_BY(values_free) starg_face_values values = {.collects = true, .pattern = ""};
     *out = (starg_face_groups){0};
-    STARG_TRY(starg_mesh_bytes(context, model_file, &bytes, &size, &up));
-    STARG_TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
-    STARG_TRY(take_groups(context, &values, out));
-done:
-    STARG_ARRAY_FREE(context, &values.data);
-    STARG_ARRAY_FREE(context, &values.names);
-    starg_mesh_free(mesh);
-    starg_release(context, bytes);
+    TRY(starg_mesh_bytes(context, model_file, &bytes, &size, &up));
+    TRY(starg_mesh_read_with(context, bytes, size, model_file, &values, &mesh));
+    starg_status status = take_groups(context, &values, out);
     if (status != STARG_OK)
         starg_face_groups_free(context, out);
     return status;
 }
 
 void starg_face_groups_free(starg_context *context, starg_face_groups *groups) {
-    starg_release(context, groups->names);
-    starg_release(context, groups->text);
-    starg_release(context, groups->of);
+    (void)context;
+    RELEASE(groups->names, groups->text, groups->of);
     *groups = (starg_face_groups){0};
 }
 

@@ -53,11 +53,6 @@ static double step_on_axis(const starg_mesh *mesh, size_t axis) {
     return fmax(bit, power >= 0 ? TEN_TO[power] : power > -POWERS ? 1 / TEN_TO[-power] : 0);
 }
 
-static void find_grid(const starg_mesh *mesh, double step[3]) {
-    for (size_t axis = 0; axis < 3; axis++)
-        step[axis] = step_on_axis(mesh, axis);
-}
-
 /* The axis of the largest coordinates has the fewest digits behind them. */
 static bool is_of_few_digits(const double step[3], const double most[3]) {
     int far = most[1] > most[0];
@@ -81,6 +76,7 @@ static bool is_coarse(const starg_mesh *mesh, const double step[3], double edge)
 void check_steps(const starg_mesh *mesh, starg_check *check) {
     double edge = mesh_shortest_edge(mesh);
     check->shortest_edge = edge < INFINITY ? edge : 0;
-    find_grid(mesh, check->grid);
+    for (size_t axis = 0; axis < 3; axis++)
+        check->grid[axis] = step_on_axis(mesh, axis);
     check->coarse = is_coarse(mesh, check->grid, edge);
 }

@@ -56,23 +56,20 @@ starg_status starg_mesh_adopt(starg_context *context, double *vertices, size_t v
 
 starg_status starg_mesh_create(starg_context *context, const double *vertices, size_t vertex_count,
                                const uint32_t *faces, size_t face_count, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    double *own_vertices = NULL;
-    uint32_t *own_faces = NULL;
+    SCOPED double *own_vertices = NULL;
+    SCOPED uint32_t *own_faces = NULL;
     *out = NULL;
-    STARG_TRY(check_counts(context, vertex_count, face_count));
-    STARG_NEW(context, "mesh", own_vertices, 3 * vertex_count);
-    STARG_NEW(context, "mesh", own_faces, 3 * face_count);
+    TRY(check_counts(context, vertex_count, face_count));
+    NEW(context, "mesh", own_vertices, 3 * vertex_count);
+    NEW(context, "mesh", own_faces, 3 * face_count);
     if (vertex_count != 0)
         memcpy(own_vertices, vertices, 3 * vertex_count * sizeof *vertices);
     if (face_count != 0)
         memcpy(own_faces, faces, 3 * face_count * sizeof *faces);
-    STARG_TRY(starg_mesh_adopt(context, own_vertices, vertex_count, own_faces, face_count, out));
-done:
-    if (status != STARG_OK) {
-        RELEASE(own_vertices, own_faces);
-    }
-    return status;
+    TRY(starg_mesh_adopt(context, own_vertices, vertex_count, own_faces, face_count, out));
+    own_vertices = NULL;
+    own_faces = NULL;
+    return STARG_OK;
 }
 
 void starg_mesh_free(starg_mesh *mesh) {

@@ -231,23 +231,21 @@ static void visit_later(pairing *p, size_t g) {
 
 starg_status face_pairs_visit(starg_context *context, const starg_mesh *mesh, const bvh *tree,
                               bvh_visit_pair *visit, void *user) {
-    starg_status status = STARG_OK;
+    SCOPED_BY(free_groups)
     pairing p = {.context = context, .mesh = mesh, .visit = visit, .user = user};
-    STARG_TRY(find_hubs(&p));
+    TRY(find_hubs(&p));
     if (p.count == 1) {
         bvh_query_pairs(tree, visit, user);
-        goto done;
+        return STARG_OK;
     }
-    STARG_TRY(make_groups(&p));
+    TRY(make_groups(&p));
     among without = {&p, &p.groups[0], 0};
     bvh_query_pairs(p.groups[0].tree, visit_within, &without);
     for (size_t g = 0; g < p.count && !p.ended; g++) {
         if (g > 0)
-            STARG_TRY(visit_hub(&p, &p.groups[g]));
+            TRY(visit_hub(&p, &p.groups[g]));
         if (!p.ended)
             visit_later(&p, g);
     }
-done:
-    free_groups(&p);
-    return status;
+    return STARG_OK;
 }

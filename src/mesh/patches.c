@@ -60,7 +60,8 @@ bool patch_halve(const patch_triangle *t, int k, patch_triangle child[2]) {
     return true;
 }
 
-double patch_share(const patch_triangle *t) {
+/* The share of the face's area. */
+static double patch_share(const patch_triangle *t) {
     double m[3][3];
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)

@@ -59,9 +59,6 @@ int patch_longest_edge(const patch_triangle *t, const double *const corner[3], u
 /* Halves edge k; child 0 keeps its first end. False: the corners lie too close for that. */
 bool patch_halve(const patch_triangle *t, int k, patch_triangle child[2]);
 
-/* The share of the face's area. */
-double patch_share(const patch_triangle *t);
-
 /* The point of a corner of a face, in the common form; false: *vertex of the mesh. */
 bool patch_point_of(const uint32_t face[3], const patch_corner *corner, patch_point *point,
                     uint32_t *vertex);

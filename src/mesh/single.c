@@ -160,18 +160,14 @@ static double as_single(double x) {
 
 starg_status single_check(starg_context *context, const starg_mesh *surface, const double origin[3],
                           const single_place *place) {
-    starg_status status = STARG_OK;
     starg_mesh shifted = *surface;
-    double *rounded = NULL;
-    shifted.vertices = NULL;
-    STARG_NEW(context, place->stage, shifted.vertices, 3 * surface->vertex_count);
-    STARG_NEW(context, place->stage, rounded, 3 * surface->vertex_count);
+    SCOPED double *vertices = NULL, *rounded = NULL;
+    NEW(context, place->stage, vertices, 3 * surface->vertex_count);
+    NEW(context, place->stage, rounded, 3 * surface->vertex_count);
     for (size_t i = 0; i < 3 * surface->vertex_count; i++) {
-        shifted.vertices[i] = surface->vertices[i] - (origin != NULL ? origin[i % 3] : 0);
-        rounded[i] = as_single(shifted.vertices[i]);
+        vertices[i] = surface->vertices[i] - (origin != NULL ? origin[i % 3] : 0);
+        rounded[i] = as_single(vertices[i]);
     }
-    status = single_compare(context, &shifted, rounded, place);
-done:
-    RELEASE(shifted.vertices, rounded);
-    return status;
+    shifted.vertices = vertices;
+    return single_compare(context, &shifted, rounded, place);
 }

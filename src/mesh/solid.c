@@ -94,7 +94,7 @@ static starg_status take_if_usable(starg_context *context, starg_solid *solid, s
         solid->mesh = *other;
         *other = given;
     }
-    mesh_examination_free(context, &own);
+    mesh_examination_free(&own);
     return status;
 }
 
@@ -174,23 +174,20 @@ void solid_tell(starg_context *context, const char *whose, const starg_check *ch
 
 starg_status solid_make_facing(starg_context *context, const starg_mesh *mesh, shell_facing facing,
                                starg_solid **out) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
-    mesh_examination all = {0};
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED_BY(mesh_examination_free) mesh_examination all = {0};
     *out = NULL;
-    STARG_NEW_ZERO(context, "solid", solid, 1);
+    NEW_ZERO(context, "solid", solid, 1);
     solid->context = context;
     solid->model_vertices = mesh->vertex_count;
-    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
-                                mesh->face_count, &solid->mesh));
-    STARG_TRY(mesh_check_extent(context, mesh, "solid"));
-    STARG_TRY(mesh_examine(context, solid->mesh, &all));
+    TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
+                          mesh->face_count, &solid->mesh));
+    TRY(mesh_check_extent(context, mesh, "solid"));
+    TRY(mesh_examine(context, solid->mesh, &all));
     if (!all.check->usable)
-        STARG_TRY(mend_vertices(context, solid, &all));
-    if (!all.check->usable) {
-        status = fail_unusable(context, all.check);
-        goto done;
-    }
+        TRY(mend_vertices(context, solid, &all));
+    if (!all.check->usable)
+        return fail_unusable(context, all.check);
     if (facing != SHELLS_AS_GIVEN)
         turn_shells(solid->mesh, all.topology, all.shells, facing);
     if (facing != SHELLS_AS_GIVEN && solid->shared != NULL)
@@ -200,11 +197,8 @@ starg_status solid_make_facing(starg_context *context, const starg_mesh *mesh, s
     all.check = NULL;
     all.tree = NULL;
     *out = solid;
-done:
-    mesh_examination_free(context, &all);
-    if (status != STARG_OK)
-        starg_solid_free(solid);
-    return status;
+    solid = NULL;
+    return STARG_OK;
 }
 
 starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
@@ -212,10 +206,8 @@ starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_so
 }
 
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = solid_make(context, mesh, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return solid_make(context, mesh, out);
 }
 
 starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
@@ -239,23 +231,19 @@ starg_status solid_must_not_share(starg_context *context, const starg_solid *sol
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,
                             const uint32_t *faces, size_t face_count, const starg_check *check,
                             starg_solid **out) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, "solid", solid, 1);
+    NEW_ZERO(context, "solid", solid, 1);
     solid->context = context;
     solid->model_vertices = vertex_count;
-    STARG_TRY(starg_mesh_create(context, vertices, vertex_count, faces, face_count, &solid->mesh));
-    STARG_NEW(context, "solid", solid->check, 1);
+    TRY(starg_mesh_create(context, vertices, vertex_count, faces, face_count, &solid->mesh));
+    NEW(context, "solid", solid->check, 1);
     *solid->check = *check;
     solid->check->face_marks = NULL;
-    STARG_TRY(
-        bvh_create(context, solid->mesh->vertices, solid->mesh->faces, face_count, &solid->tree));
+    TRY(bvh_create(context, solid->mesh->vertices, solid->mesh->faces, face_count, &solid->tree));
     *out = solid;
-done:
-    if (status != STARG_OK)
-        starg_solid_free(solid);
-    return status;
+    solid = NULL;
+    return STARG_OK;
 }
 
 starg_status solid_of_level(starg_context *context, const starg_solid *fine,

@@ -195,17 +195,12 @@ static bool is_apart(const starg_mesh *a, const starg_mesh *b) {
 
 /* Those that are closed are pushed at once, for open ones the time comes later: `sheets`. */
 static starg_status push_obstacle(parts *p, const starg_mesh *obstacle, bool sheets) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
-    status = solid_make(p->context, obstacle, &solid);
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    starg_status status = solid_make(p->context, obstacle, &solid);
     if (status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE)
         return sheets ? push_sheet(p, obstacle, false) : STARG_OK;
-    STARG_TRY(status);
-    if (!sheets)
-        status = push_closed(p, solid->mesh, true);
-done:
-    starg_solid_free(solid);
-    return status;
+    TRY(status);
+    return sheets ? STARG_OK : push_closed(p, solid->mesh, true);
 }
 
 static starg_status push_obstacles(parts *p, const starg_mesh *model,
@@ -236,12 +231,11 @@ static bool faces_out(const starg_solid *solid, const mesh_examination *all) {
 
 /* A mesh with sheets is taken for what it is; any other is examined as a whole. */
 static starg_status examine(starg_context *context, starg_solid *scene) {
-    starg_status status = STARG_OK;
-    mesh_examination all = {0};
+    SCOPED_BY(mesh_examination_free) mesh_examination all = {0};
     const starg_mesh *mesh = scene->mesh;
     if (scene->other_side != NULL) {
         double lower[3], upper[3];
-        STARG_NEW_ZERO(context, STAGE, scene->check, 1);
+        NEW_ZERO(context, STAGE, scene->check, 1);
         starg_mesh_bounds(mesh, lower, upper);
         scene->check->vertices = mesh->vertex_count;
         scene->check->faces = mesh->face_count;
@@ -250,15 +244,13 @@ static starg_status examine(starg_context *context, starg_solid *scene) {
         scene->check->usable = true;
         return bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &scene->tree);
     }
-    STARG_TRY(mesh_examine(context, mesh, &all));
+    TRY(mesh_examine(context, mesh, &all));
     all.check->embedded = all.check->embedded && faces_out(scene, &all);
     scene->check = all.check;
     scene->tree = all.tree;
     all.check = NULL;
     all.tree = NULL;
-done:
-    mesh_examination_free(context, &all);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status keep_model(starg_context *context, const starg_mesh *model,
@@ -283,14 +275,13 @@ static starg_status bind_guards(starg_context *context, const starg_mesh *model,
 
 /* Both sides of a face are. Then faces behind others may be the first to block a view. */
 static starg_status take_clear(starg_context *context, starg_solid *scene) {
-    starg_status status = STARG_OK;
     starg_space_options *o = &scene->space;
     const uint32_t *list = o->clear;
     o->clear = NULL;
     if (o->clear_count == 0)
         return STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, scene->clear, starg_bit_words(scene->mesh->face_count));
-    STARG_NEW(context, STAGE, scene->clear_list, o->clear_count);
+    NEW_ZERO(context, STAGE, scene->clear, starg_bit_words(scene->mesh->face_count));
+    NEW(context, STAGE, scene->clear_list, o->clear_count);
     for (size_t i = 0; i < o->clear_count; i++) {
         scene->clear_list[i] = list[i];
         starg_bit_set(scene->clear, list[i]);
@@ -299,12 +290,10 @@ static starg_status take_clear(starg_context *context, starg_solid *scene) {
     }
     o->clear = scene->clear_list;
     scene->check->embedded = false;
-    status = o->clear_count < scene->model_faces
-                 ? starg_space_weigh(scene, NULL)
-                 : starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                              "all faces of the model are clear: nothing is to be seen");
-done:
-    return status;
+    return o->clear_count < scene->model_faces
+               ? starg_space_weigh(scene, NULL)
+               : starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "all faces of the model are clear: nothing is to be seen");
 }
 
 /* What holds all zones in which guards may stand, is a box in which they stand. */
@@ -390,25 +379,21 @@ starg_status starg_space_weigh(starg_solid *scene, const double *weights) {
 enum { DENSITY_NAMES = 5 }; /* as negative numbers */
 
 starg_status starg_space_require(starg_solid *scene, const starg_face_need *needs, size_t count) {
-    starg_status status = STARG_OK;
     starg_context *context = scene->context;
     size_t faces = starg_space_model_faces(scene), all = scene->mesh->face_count;
-    uint32_t *times = NULL;
-    double *density = NULL;
-    STARG_NEW_ZERO(context, STAGE, times, all);
-    STARG_NEW_ZERO(context, STAGE, density, all);
+    SCOPED uint32_t *times = NULL;
+    SCOPED double *density = NULL;
+    NEW_ZERO(context, STAGE, times, all);
+    NEW_ZERO(context, STAGE, density, all);
     for (size_t i = 0; i < count; i++) {
         const starg_face_need *need = &needs[i];
         uint64_t face = need->face;
         if (face >= faces || need->times > 1000 ||
-            !(need->density >= -DENSITY_NAMES && need->density < 1e100)) {
-            status =
-                starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_FACE, &face, 1,
-                              "face %u of %zu is to be seen by %u guards with the density %g; "
-                              "that is no face of the model, or beyond 1,000 guards",
-                              need->face, faces, need->times, need->density);
-            goto done;
-        }
+            !(need->density >= -DENSITY_NAMES && need->density < 1e100))
+            return starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_FACE, &face, 1,
+                                 "face %u of %zu is to be seen by %u guards with the density %g; "
+                                 "that is no face of the model, or beyond 1,000 guards",
+                                 need->face, faces, need->times, need->density);
         times[face] = need->times;
         density[face] = need->density;
         if (scene->other_side != NULL && scene->other_side[face] != TOPOLOGY_NONE) {
@@ -416,16 +401,12 @@ starg_status starg_space_require(starg_solid *scene, const starg_face_need *need
             density[scene->other_side[face]] = need->density;
         }
     }
-    starg_release(context, scene->times);
-    starg_release(context, scene->density);
+    RELEASE(scene->times, scene->density);
     scene->times = times;
     scene->density = density;
     times = NULL;
     density = NULL;
-done:
-    starg_release(context, times);
-    starg_release(context, density);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- what is reached ---- */

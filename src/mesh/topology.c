@@ -92,36 +92,32 @@ static void number_components(mesh_topology *topology, uint32_t *parent) {
 }
 
 starg_status topology_create(starg_context *context, const starg_mesh *mesh, mesh_topology **out) {
-    starg_status status = STARG_OK;
-    mesh_topology *result = NULL;
-    size_t *start = NULL;
-    entry *entries = NULL;
-    uint32_t *parent = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *result = NULL;
+    SCOPED size_t *start = NULL;
+    SCOPED entry *entries = NULL;
+    SCOPED uint32_t *parent = NULL;
     *out = NULL;
     if (mesh->face_count > UINT32_MAX / 3)
         return starg_fail(context, STARG_ERROR_MESH, "topology",
                           "%zu faces are more than the %u whose edges can be numbered",
                           mesh->face_count, UINT32_MAX / 3);
-    STARG_NEW_ZERO(context, "topology", result, 1);
+    NEW_ZERO(context, "topology", result, 1);
     result->context = context;
     result->vertex_count = mesh->vertex_count;
     result->face_count = mesh->face_count;
-    STARG_NEW(context, "topology", result->twin, 3 * mesh->face_count);
-    STARG_NEW(context, "topology", result->ring, 3 * mesh->face_count);
-    STARG_NEW(context, "topology", result->component, mesh->face_count);
-    STARG_NEW_ZERO(context, "topology", start, mesh->vertex_count + 2);
-    STARG_NEW(context, "topology", entries, 3 * mesh->face_count);
-    STARG_NEW(context, "topology", parent, mesh->face_count);
+    NEW(context, "topology", result->twin, 3 * mesh->face_count);
+    NEW(context, "topology", result->ring, 3 * mesh->face_count);
+    NEW(context, "topology", result->component, mesh->face_count);
+    NEW_ZERO(context, "topology", start, mesh->vertex_count + 2);
+    NEW(context, "topology", entries, 3 * mesh->face_count);
+    NEW(context, "topology", parent, mesh->face_count);
     sets_make(parent, mesh->face_count);
     file_halfedges(mesh, start, entries);
     link_edges(result, parent, start, entries);
     number_components(result, parent);
     *out = result;
-done:
-    RELEASE(start, entries, parent);
-    if (status != STARG_OK)
-        topology_free(result);
-    return status;
+    result = NULL;
+    return STARG_OK;
 }
 
 /* Each face has two sides, 2 f and 2 f + 1; an edge connects a side to a side. */

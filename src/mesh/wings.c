@@ -115,24 +115,20 @@ static bool is_lowest(const mesh_topology *topology, uint32_t h) {
 }
 
 starg_status wings_create(starg_context *context, const starg_mesh *mesh, mesh_topology **out) {
-    starg_status status = STARG_OK;
-    pairing s = {.mesh = mesh};
-    wing_list wings = {0};
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED wing_list wings = {0};
     *out = NULL;
-    STARG_TRY(topology_create(context, mesh, &s.topology));
+    TRY(topology_create(context, mesh, &topology));
+    pairing s = {.mesh = mesh, .topology = topology};
     for (uint32_t h = 0; h < 3 * mesh->face_count; h++) {
-        if (s.topology->twin[h] != TOPOLOGY_NONE || s.topology->ring[h] == h ||
-            !is_lowest(s.topology, h))
+        if (topology->twin[h] != TOPOLOGY_NONE || topology->ring[h] == h || !is_lowest(topology, h))
             continue;
-        STARG_TRY(sort_wings(&s, h, &wings));
-        STARG_TRY(pair_wings(&s, &wings));
+        TRY(sort_wings(&s, h, &wings));
+        TRY(pair_wings(&s, &wings));
     }
-    *out = s.topology;
-    s.topology = NULL;
-done:
-    STARG_ARRAY_FREE(context, &wings);
-    topology_free(s.topology);
-    return status;
+    *out = topology;
+    topology = NULL;
+    return STARG_OK;
 }
 
 /* ---- fans ---- */

@@ -51,11 +51,10 @@ static void widen(bvh_box *all, const bvh_box *by, bool first) {
 }
 
 starg_status zones_make(starg_context *context, const starg_zone *list, size_t count, zones *out) {
-    starg_status status = STARG_OK;
     *out = (zones){0};
     if (count == 0)
         return STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, out->list, count);
+    NEW_ZERO(context, STAGE, out->list, count);
     out->count = count;
     for (size_t i = 0; i < count; i++) {
         zone *own = &out->list[i];
@@ -64,10 +63,10 @@ starg_status zones_make(starg_context *context, const starg_zone *list, size_t c
         if (given->mesh != NULL) {
             own->vertices = given->mesh->vertex_count;
             own->faces = given->mesh->face_count;
-            STARG_TRY(take_mesh(context, given->mesh, i, own));
+            TRY(take_mesh(context, given->mesh, i, own));
             own->box = own->solid->tree->nodes[0].box;
         } else {
-            STARG_TRY(check_box(context, given->box, i));
+            TRY(check_box(context, given->box, i));
             vec3_copy(given->box, own->box.lower);
             vec3_copy(given->box + 3, own->box.upper);
         }
@@ -76,10 +75,7 @@ starg_status zones_make(starg_context *context, const starg_zone *list, size_t c
             out->limits = true;
         }
     }
-done:
-    if (status != STARG_OK)
-        zones_free(out);
-    return status;
+    return STARG_OK;
 }
 
 void zones_free(zones *all) {

@@ -176,22 +176,19 @@ static void measure(const approaching *a, approach_result *out) {
 
 starg_status approach(deform_mesh *c, const starg_mesh *mesh, double strength,
                       approach_result *out) {
-    starg_status status = STARG_OK;
-    approaching a = {.c = c};
+    SCOPED_BY(free_all) approaching a = {.c = c};
     *out = (approach_result){0};
-    STARG_TRY(begin(&a, mesh, strength));
-    STARG_TRY(unfold(&a.p, UNFOLD_STEPS, &out->inverted));
+    TRY(begin(&a, mesh, strength));
+    TRY(unfold(&a.p, UNFOLD_STEPS, &out->inverted));
     if (out->inverted > 0)
-        goto done;
+        return STARG_OK;
     for (int round = 0; round < ROUNDS; round++) {
         a.p.springs.strength *= TIGHTER;
-        STARG_TRY(unfold_relax(&a.p, ROUND_STEPS));
+        TRY(unfold_relax(&a.p, ROUND_STEPS));
         choose_targets(&a);
     }
     for (int sweep = 0; sweep < SWEEPS; sweep++)
         go_there(&a);
     measure(&a, out);
-done:
-    free_all(&a);
-    return status;
+    return STARG_OK;
 }

@@ -129,7 +129,7 @@ starg_status compose_spheres(sphere *from, const locator *to, const landmark_lis
     memcpy(from->directions, p.best, 3 * count * sizeof *p.best);
     *met = p.met;
 done:
-    sphere_work_free(context, &p.work);
+    sphere_work_free(&p.work);
     RELEASE(p.c.kept, p.c.points, p.c.images, p.best);
     return status;
 }

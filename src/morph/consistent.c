@@ -153,18 +153,17 @@ static bool counterpart(const guarding *g, const moments *own, const moments *wh
 }
 
 static starg_status find_candidates(guarding *g, size_t wanted) {
-    starg_status status = STARG_OK;
     starg_context *context = g->morph->context;
     starg_skeleton_options options;
-    moments *own = NULL, *all = NULL;
+    SCOPED moments *own = NULL, *all = NULL;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
-    STARG_TRY(starg_skeleton_create(context, g->solids[0], &options, &g->skeleton));
+    TRY(starg_skeleton_create(context, g->solids[0], &options, &g->skeleton));
     size_t nodes = g->skeleton->node_count;
-    STARG_NEW_ZERO(context, STAGE, own, nodes);
-    STARG_NEW_ZERO(context, STAGE, all, nodes + 1);
-    STARG_NEW(context, STAGE, g->morph->candidates[0], 3 * nodes);
-    STARG_NEW(context, STAGE, g->morph->candidates[1], 3 * nodes);
+    NEW_ZERO(context, STAGE, own, nodes);
+    NEW_ZERO(context, STAGE, all, nodes + 1);
+    NEW(context, STAGE, g->morph->candidates[0], 3 * nodes);
+    NEW(context, STAGE, g->morph->candidates[1], 3 * nodes);
     gather_moments(g, own, all);
     for (size_t i = 0; i < nodes; i++) {
         const double *node = g->skeleton->positions + 3 * i;
@@ -174,33 +173,28 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
         vec3_copy(node, g->morph->candidates[0] + 3 * g->morph->candidate_count++);
     }
     if (g->morph->candidate_count == 0)
-        status = starg_fail(context, STARG_ERROR_MESH, STAGE,
-                            "no node of A's skeleton has a counterpart inside B; the map may be "
-                            "too distorted. --method arap needs no guards");
-done:
-    RELEASE(own, all);
-    return status;
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "no node of A's skeleton has a counterpart inside B; the map may be "
+                          "too distorted. --method arap needs no guards");
+    return STARG_OK;
 }
 
 /* ---- cover ---- */
 
 static starg_status see(guarding *g) {
-    starg_status status = STARG_OK;
     starg_context *context = g->morph->context;
-    starg_bits *seen[2] = {NULL, NULL};
-    for (int end = 0; end < 2; end++)
-        STARG_TRY(starg_visibility(context, g->solids[end], g->morph->candidates[end],
-                                   g->morph->candidate_count, NULL, &seen[end]));
-    STARG_TRY(starg_bits_create(context, g->morph->candidate_count, g->morph->mesh->face_count,
-                                &g->seen));
+    SCOPED_BY(starg_bits_drop) starg_bits *first = NULL, *second = NULL;
+    TRY(starg_visibility(context, g->solids[0], g->morph->candidates[0], g->morph->candidate_count,
+                         NULL, &first));
+    TRY(starg_visibility(context, g->solids[1], g->morph->candidates[1], g->morph->candidate_count,
+                         NULL, &second));
+    TRY(starg_bits_create(context, g->morph->candidate_count, g->morph->mesh->face_count,
+                          &g->seen));
     for (size_t i = 0; i < g->morph->candidate_count; i++)
         for (size_t f = 0; f < g->morph->mesh->face_count; f++)
-            if (starg_bits_test(seen[0], i, f) && starg_bits_test(seen[1], i, f))
+            if (starg_bits_test(first, i, f) && starg_bits_test(second, i, f))
                 starg_bits_set(g->seen, i, f);
-done:
-    starg_bits_free(seen[0]);
-    starg_bits_free(seen[1]);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status choose(guarding *g) {

@@ -277,21 +277,19 @@ static starg_status untangle(walk *w, size_t *inverted) {
 typedef STARG_ARRAY(deform_edge) edge_list;
 
 static starg_status find_surface_edges(const walk *w, edge_list *out) {
-    starg_status status = STARG_OK;
     const starg_mesh *mesh = w->m->mesh;
-    uint32_t *own = NULL; /* numbers of the mesh's vertices here */
-    STARG_NEW_ZERO(w->c->context, STAGE, own, mesh->vertex_count);
+    /* numbers of the mesh's vertices here */
+    SCOPED uint32_t *own = NULL;
+    NEW_ZERO(w->c->context, STAGE, own, mesh->vertex_count);
     for (uint32_t v = 0; v < w->c->fixed; v++)
         own[w->c->surface[v]] = v;
     for (size_t f = 0; f < mesh->face_count; f++)
         for (size_t k = 0; k < 3; k++)
-            STARG_PUSH(
+            PUSH(
                 w->c->context, STAGE, out,
                 deform_edge_of(own[mesh->faces[3 * f + k]], own[mesh->faces[3 * f + (k + 1) % 3]]));
     deform_edges_sort(out->data, &out->count);
-done:
-    starg_release(w->c->context, own);
-    return status;
+    return STARG_OK;
 }
 
 /* Interior edges with both ends on the surface. */

@@ -60,7 +60,5 @@ starg_status deform(const starg_morph *m, deform_mesh *c, deform_path *path, siz
                     double *reached);
 
 static inline void deform_free(deform_mesh *c) {
-    STARG_ARRAY_FREE(c->context, &c->rest);
-    STARG_ARRAY_FREE(c->context, &c->now);
-    STARG_ARRAY_FREE(c->context, &c->tetrahedra);
+    RELEASE(c->rest.data, c->now.data, c->tetrahedra.data);
 }

@@ -12,6 +12,7 @@
  *
  * Cost: two checks of a surface and a sparse system of the flipped faces. */
 
+#include "mesh/examine.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
 
@@ -29,19 +30,15 @@ static const double OWN = 1e-6; /* weight of a face's own path: decides if nothi
 
 /* Marks the faces that intersect at one end with a value. */
 static starg_status mark(const starg_morph *m, const double *positions, uint8_t value) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    starg_check *check = NULL;
-    STARG_TRY(starg_mesh_create(m->context, positions, m->mesh->vertex_count, m->mesh->faces,
-                                m->mesh->face_count, &mesh));
-    STARG_TRY(starg_mesh_check(m->context, mesh, &check));
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED_BY(starg_check_drop) starg_check *check = NULL;
+    TRY(starg_mesh_create(m->context, positions, m->mesh->vertex_count, m->mesh->faces,
+                          m->mesh->face_count, &mesh));
+    TRY(starg_mesh_check(m->context, mesh, &check));
     for (size_t f = 0; f < m->mesh->face_count; f++)
         if (check->face_marks[f] == 1 + STARG_FINDING_SELF_INTERSECTION)
             m->flipped[f] = value;
-done:
-    starg_check_free(m->context, check);
-    starg_mesh_free(mesh);
-    return status;
+    return STARG_OK;
 }
 
 /* Adds the faces that share a vertex with a flipped one. */

@@ -28,30 +28,27 @@ void starg_map_options_default(starg_map_options *options) {
 /* Allocates a map and its tables. */
 static starg_status make_map(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                              starg_map_kind kind, starg_map **out) {
-    starg_status status = STARG_OK;
-    starg_map *map = NULL;
+    SCOPED_BY(starg_map_drop) starg_map *map = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, map, 1);
+    NEW_ZERO(context, STAGE, map, 1);
     map->kind = kind;
     map->vertex_count = a->vertex_count;
     map->target_vertices = b->vertex_count;
     map->target_faces = b->face_count;
-    STARG_NEW(context, STAGE, map->faces, a->vertex_count);
-    STARG_NEW(context, STAGE, map->coordinates, 3 * a->vertex_count);
+    NEW(context, STAGE, map->faces, a->vertex_count);
+    NEW(context, STAGE, map->coordinates, 3 * a->vertex_count);
     *out = map;
     map = NULL;
-done:
-    starg_map_free(context, map);
-    return status;
+    return STARG_OK;
 }
 
 void starg_map_free(starg_context *context, starg_map *map) {
+    (void)context;
     if (map == NULL)
         return;
-    RELEASE(map->faces, map->coordinates, map->directions, map->target_directions, map->pairs,
-            map->centers);
     map_free_overlay(&map->overlay);
-    starg_release(context, map);
+    RELEASE(map->faces, map->coordinates, map->directions, map->target_directions, map->pairs,
+            map->centers, map);
 }
 
 /* Number of faces that differ at equal positions in the lists; SIZE_MAX if counts differ. */
@@ -373,34 +370,28 @@ static starg_status look_from(starg_context *context, const starg_mesh *mesh, co
  * no room in doubles. *moved: it had to be made. */
 static starg_status map_by_kernels(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                    uint64_t attempt, bool *moved, starg_map **out) {
-    starg_status status = STARG_OK;
-    starg_map *map = NULL;
+    SCOPED_BY(starg_map_drop) starg_map *map = NULL;
     double centers[6];
     bool found;
     *moved = false;
-    STARG_TRY(make_map(context, a, b, STARG_MAP_SPHERE, &map));
-    STARG_TRY(look_from(context, a, "A", attempt, centers, &map->directions, &found));
+    TRY(make_map(context, a, b, STARG_MAP_SPHERE, &map));
+    TRY(look_from(context, a, "A", attempt, centers, &map->directions, &found));
     if (found)
-        STARG_TRY(
-            look_from(context, b, "B", attempt, centers + 3, &map->target_directions, &found));
+        TRY(look_from(context, b, "B", attempt, centers + 3, &map->target_directions, &found));
     if (!found)
-        goto done;
+        return STARG_OK;
     map->direction_count = a->vertex_count;
     map->target_direction_count = b->vertex_count;
-    STARG_TRY(copy_doubles(context, centers, 6, &map->centers));
+    TRY(copy_doubles(context, centers, 6, &map->centers));
     memset(map->faces, 0, map->vertex_count * sizeof *map->faces); /* until the overlay tells */
     memset(map->coordinates, 0, 3 * map->vertex_count * sizeof *map->coordinates);
-    status = map_overlay(context, a, b, map, moved);
-    if (status == STARG_ERROR_SOLVER || status == STARG_ERROR_MESH) {
-        status = STARG_OK;
-        goto done;
-    }
-    STARG_TRY(status);
+    starg_status status = map_overlay(context, a, b, map, moved);
+    if (status == STARG_ERROR_SOLVER || status == STARG_ERROR_MESH)
+        return STARG_OK;
+    TRY(status);
     *out = map;
     map = NULL;
-done:
-    starg_map_free(context, map);
-    return status;
+    return STARG_OK;
 }
 
 /* From centers that leave room, if there are any: edges that nearly coincide do not, from others.
@@ -432,26 +423,22 @@ starg_status map_share_directions(starg_context *context, const starg_mesh *a, c
 
 starg_status starg_map_create(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                               const starg_map_options *options, starg_map **out) {
-    starg_status status = STARG_OK;
     const starg_map_options none = {0};
-    starg_map *map = NULL;
+    SCOPED_BY(starg_map_drop) starg_map *map = NULL;
     if (options == NULL)
         options = &none;
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(check_landmarks(context, a, b, options));
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(check_landmarks(context, a, b, options));
     size_t different = different_faces(a, b);
     if (different <= a->face_count / SAME_SHARE)
-        STARG_TRY(map_same(context, a, b, different, options, &map));
+        TRY(map_same(context, a, b, different, options, &map));
     else if (options->solid && options->landmark_count == 0)
-        STARG_TRY(map_stars(context, a, b, &map));
+        TRY(map_stars(context, a, b, &map));
     if (map == NULL)
-        STARG_TRY(map_by_sphere(context, a, b, options, &map));
-    STARG_TRY(map_measure(context, a, b, map));
+        TRY(map_by_sphere(context, a, b, options, &map));
+    TRY(map_measure(context, a, b, map));
     *out = map;
     map = NULL;
-done:
-    starg_time_end(context, former);
-    starg_map_free(context, map);
-    return status;
+    return STARG_OK;
 }

@@ -292,23 +292,18 @@ static starg_status check_map(starg_context *context, const starg_mesh *a, const
 
 starg_status starg_map_read(starg_context *context, const char *path, const starg_mesh *a,
                             const starg_mesh *b, starg_map **out) {
-    starg_status status = STARG_OK;
-    starg_map *map = NULL;
-    json_t *root = NULL;
-    char *bytes = NULL;
+    SCOPED_BY(starg_map_drop) starg_map *map = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
+    SCOPED char *bytes = NULL;
     size_t size;
     *out = NULL;
-    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    STARG_TRY(starg_json_parse(context, STAGE, path, bytes, size, &root));
-    STARG_NEW_ZERO(context, STAGE, map, 1);
-    STARG_TRY(record_read(context, path, root, &map_file_fields, map));
-    STARG_TRY(check_map(context, a, b, map));
-    STARG_TRY(map_measure(context, a, b, map));
+    TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    TRY(starg_json_parse(context, STAGE, path, bytes, size, &root));
+    NEW_ZERO(context, STAGE, map, 1);
+    TRY(record_read(context, path, root, &map_file_fields, map));
+    TRY(check_map(context, a, b, map));
+    TRY(map_measure(context, a, b, map));
     *out = map;
     map = NULL;
-done:
-    json_decref(root);
-    starg_release(context, bytes);
-    starg_map_free(context, map);
-    return status;
+    return STARG_OK;
 }

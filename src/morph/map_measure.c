@@ -34,12 +34,13 @@ static double capped(double x) {
 
 starg_status map_measure(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                          starg_map *map) {
-    starg_status status = STARG_OK;
-    starg_mesh *from = NULL, *to = NULL; /* of unit size, so that squares do not overflow */
-    double *images = NULL, angles = 0, areas = 0;
-    STARG_TRY(map_unit_copy(context, a, &from));
-    STARG_TRY(map_unit_copy(context, b, &to));
-    STARG_NEW(context, STAGE, images, 3 * map->vertex_count);
+    /* of unit size, so that squares do not overflow */
+    SCOPED_BY(starg_mesh_drop) starg_mesh *from = NULL, *to = NULL;
+    SCOPED double *images = NULL;
+    double angles = 0, areas = 0;
+    TRY(map_unit_copy(context, a, &from));
+    TRY(map_unit_copy(context, b, &to));
+    NEW(context, STAGE, images, 3 * map->vertex_count);
     starg_map_positions(map, to, images);
     map->collapsed = 0;
     double area = starg_mesh_area(from), scale = area / starg_mesh_area(to);
@@ -55,9 +56,5 @@ starg_status map_measure(starg_context *context, const starg_mesh *a, const star
     }
     map->mean_angle_distortion = area > 0 ? angles / area : 0;
     map->mean_area_distortion = area > 0 ? areas / area : 0;
-done:
-    starg_mesh_free(from);
-    starg_mesh_free(to);
-    starg_release(context, images);
-    return status;
+    return STARG_OK;
 }

@@ -158,37 +158,30 @@ static starg_status overlay_directions(starg_context *context, const starg_mesh 
 
 starg_status map_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                          starg_map *map, bool *moved) {
-    starg_status status = STARG_OK;
-    starg_overlay found = {0};
+    SCOPED_BY(map_free_overlay) starg_overlay found = {0};
     *moved = false;
     bool same = keeps_vertices(map, b);
     if (same && has_same_faces(a, b)) {
-        STARG_TRY(overlay_same(context, a, b, &found));
+        TRY(overlay_same(context, a, b, &found));
     } else {
         if (map->direction_count == 0 && same)
-            STARG_TRY(map_share_directions(context, a, b, map));
-        if (map->direction_count == 0) {
-            status = starg_fail(context, STARG_ERROR_MESH, STAGE,
-                                "the map says where vertices go, but not what lies between them; "
-                                "an overlay needs its directions, which 'starguard map' writes");
-            goto done;
-        }
-        STARG_TRY(overlay_directions(context, a, b, map, &found, moved));
-        STARG_TRY(map_measure(context, a, b, map));
+            TRY(map_share_directions(context, a, b, map));
+        if (map->direction_count == 0)
+            return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                              "the map says where vertices go, but not what lies between them; "
+                              "an overlay needs its directions, which 'starguard map' writes");
+        TRY(overlay_directions(context, a, b, map, &found, moved));
+        TRY(map_measure(context, a, b, map));
     }
     map_free_overlay(&map->overlay);
     map->overlay = found;
     found = (starg_overlay){0};
-done:
-    map_free_overlay(&found);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_map_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                starg_map *map) {
     bool moved;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = map_overlay(context, a, b, map, &moved);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return map_overlay(context, a, b, map, &moved);
 }

@@ -2,6 +2,7 @@
 /* Measures a frame of a morph: exact counts of intersections, folds, and drifts. */
 
 #include "geometry/vec3.h"
+#include "mesh/examine.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
 
@@ -65,23 +66,23 @@ static double drift(double value, double first, double last, double t) {
 
 starg_status starg_morph_measure(const starg_morph *m, double t, const double *positions,
                                  starg_frame_measures *out) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    starg_check *check = NULL;
-    double *scaled = NULL, volumes[3], areas[3], size = morph_size(m, t);
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED_BY(starg_check_drop) starg_check *check = NULL;
+    SCOPED double *scaled = NULL;
+    double volumes[3], areas[3], size = morph_size(m, t);
     size_t count = 3 * m->mesh->vertex_count;
     *out = (starg_frame_measures){0};
-    STARG_NEW(m->context, STAGE, scaled, count);
+    NEW(m->context, STAGE, scaled, count);
     for (size_t i = 0; i < count; i++)
         scaled[i] =
             (positions[i] - (1 - t) * m->centers[0][i % 3] - t * m->centers[1][i % 3]) / size;
-    STARG_TRY(count_faces(m, scaled, out));
-    STARG_TRY(size_of(m, m->mesh->vertices, &volumes[0], &areas[0]));
-    STARG_TRY(size_of(m, m->images, &volumes[1], &areas[1]));
-    STARG_TRY(size_of(m, scaled, &volumes[2], &areas[2]));
-    STARG_TRY(starg_mesh_create(m->context, positions, m->mesh->vertex_count, m->mesh->faces,
-                                m->mesh->face_count, &mesh));
-    STARG_TRY(starg_mesh_check(m->context, mesh, &check));
+    TRY(count_faces(m, scaled, out));
+    TRY(size_of(m, m->mesh->vertices, &volumes[0], &areas[0]));
+    TRY(size_of(m, m->images, &volumes[1], &areas[1]));
+    TRY(size_of(m, scaled, &volumes[2], &areas[2]));
+    TRY(starg_mesh_create(m->context, positions, m->mesh->vertex_count, m->mesh->faces,
+                          m->mesh->face_count, &mesh));
+    TRY(starg_mesh_check(m->context, mesh, &check));
     out->intersections = check->findings[STARG_FINDING_SELF_INTERSECTION].count;
     for (int i = 0; i < 3; i++) {
         double own = (i < 2 ? m->sizes[i] : size) / m->sizes[0];
@@ -92,9 +93,5 @@ starg_status starg_morph_measure(const starg_morph *m, double t, const double *p
     out->area = areas[2] * m->sizes[0] * m->sizes[0];
     out->volume_drift = drift(volumes[2], volumes[0], volumes[1], t);
     out->area_drift = drift(areas[2], areas[0], areas[1], t);
-done:
-    starg_release(m->context, scaled);
-    starg_mesh_free(mesh);
-    starg_check_free(m->context, check);
-    return status;
+    return STARG_OK;
 }

@@ -49,15 +49,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "morph options", .size = sizeof(starg_morph_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_morph_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_morph_options_default(starg_morph_options *options) {
-    *options = (starg_morph_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_morph_options)
 
 static starg_status check_input(starg_context *context, const starg_mesh *a, const double *images,
                                 const starg_morph_options *options) {
@@ -117,38 +109,33 @@ double morph_size(const starg_morph *m, double t) {
 }
 
 static starg_status take_ends(starg_morph *m, const starg_mesh *a, const double *images) {
-    starg_status status = STARG_OK;
     starg_context *context = m->context;
     size_t count = 3 * a->vertex_count;
-    double *scaled = NULL, growth;
-    STARG_NEW(context, STAGE, m->source, count);
-    STARG_NEW(context, STAGE, m->target, count);
-    STARG_NEW(context, STAGE, m->images, count);
-    STARG_NEW(context, STAGE, scaled, count);
+    SCOPED double *scaled = NULL;
+    double growth;
+    NEW(context, STAGE, m->source, count);
+    NEW(context, STAGE, m->target, count);
+    NEW(context, STAGE, m->images, count);
+    NEW(context, STAGE, scaled, count);
     memcpy(m->source, a->vertices, count * sizeof *m->source);
     memcpy(m->target, images, count * sizeof *m->target);
     double own = box_of(m->source, a->vertex_count, m->centers[0]);
     double other = box_of(m->target, a->vertex_count, m->centers[1]);
     double size = fmax(own, other);
-    if (!(own > 0 && other > 0)) {
-        status =
-            starg_fail(context, STARG_ERROR_MESH, STAGE, "one of the two shapes is a single point");
-        goto done;
-    }
+    if (!(own > 0 && other > 0))
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "one of the two shapes is a single point");
     for (size_t i = 0; i < count; i++) {
         scaled[i] = (m->source[i] - m->centers[0][i % 3]) / size;
         m->images[i] = (m->target[i] - m->centers[1][i % 3]) / size;
     }
-    STARG_TRY(
-        starg_mesh_create(context, scaled, a->vertex_count, a->faces, a->face_count, &m->mesh));
-    STARG_TRY(find_growth(m, &growth));
+    TRY(starg_mesh_create(context, scaled, a->vertex_count, a->faces, a->face_count, &m->mesh));
+    TRY(find_growth(m, &growth));
     m->sizes[0] = size;
     m->sizes[1] = size * growth;
     for (size_t i = 0; i < count; i++)
         m->images[i] /= growth;
-done:
-    starg_release(context, scaled);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_morph_create(starg_context *context, const starg_mesh *a, const double *images,

@@ -158,12 +158,11 @@ static void carry_point(const locator *l, size_t t, const double p[3], double ou
 static starg_status carry_all(starg_context *context, const locator *l,
                               const starg_samples *samples, bool back, starg_samples *out) {
     static const double zero[3];
-    starg_status status = STARG_OK;
     uint64_t nowhere[NOWHERE_SHOWN];
     size_t missing = 0;
     for (size_t i = 0; i < samples->count; i++) {
         if (i % 1024 == 0)
-            STARG_TRY(starg_check_cancel(context, STAGE));
+            TRY(starg_check_cancel(context, STAGE));
         size_t t = locate(l, samples->points + 3 * i);
         if (t == NOWHERE) {
             if (missing < NOWHERE_SHOWN)
@@ -176,14 +175,13 @@ static starg_status carry_all(starg_context *context, const locator *l,
             carry(l, t, samples->values + 3 * i, zero, out->values + 3 * i);
     }
     if (missing > 0)
-        status = starg_fail_at(
+        return starg_fail_at(
             context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, nowhere,
             missing < NOWHERE_SHOWN ? missing : NOWHERE_SHOWN,
             "%zu of %zu points are outside of %s, first point %llu (from 0); give points inside or "
             "on its surface",
             missing, samples->count, back ? "B" : "A", (unsigned long long)nowhere[0]);
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_solid_map_carry(starg_context *context, const starg_solid_map *map,

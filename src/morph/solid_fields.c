@@ -30,12 +30,4 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "solid map options", .size = sizeof(starg_solid_map_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_solid_map_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_solid_map_options_default(starg_solid_map_options *options) {
-    *options = (starg_solid_map_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_solid_map_options)

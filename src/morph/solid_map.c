@@ -151,21 +151,18 @@ static starg_status fail_nearly(const deform_mesh *c, const approach_result *off
 /* As near to B as possible: B meets itself, or tetrahedra stay inverted there. The strongest
  * springs that let the tetrahedra unfold, without the surface meeting itself, keep it nearest. */
 static starg_status spread_nearly(const starg_morph *m, deform_mesh *c, approach_result *off) {
-    starg_status status = STARG_OK;
     for (size_t i = 0; i < sizeof STRENGTHS / sizeof *STRENGTHS; i++) {
         bool meets_itself = true;
         memset(c->now.data, 0, c->now.count * sizeof *c->now.data);
-        STARG_TRY(deform_harmonic(m, c));
-        STARG_TRY(approach(c, m->mesh, STRENGTHS[i], off));
+        TRY(deform_harmonic(m, c));
+        TRY(approach(c, m->mesh, STRENGTHS[i], off));
         if (off->inverted > 0 || off->farthest > MOST_OFF)
             continue;
-        STARG_TRY(image_meets_itself(m->mesh, c, &meets_itself));
+        TRY(image_meets_itself(m->mesh, c, &meets_itself));
         if (!meets_itself)
-            goto done;
+            return STARG_OK;
     }
-    status = fail_nearly(c, off); /* with the weakest springs */
-done:
-    return status;
+    return fail_nearly(c, off); /* with the weakest springs */
 }
 
 /* To B itself if that is possible, else near it. */
@@ -267,57 +264,49 @@ static void measure(starg_solid_map *map) {
 /* Both ends in pieces, measured. */
 static starg_status take_result(starg_context *context, starg_decomposition *const pieces[2],
                                 starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    starg_solid_map *map = NULL;
-    STARG_NEW_ZERO(context, STAGE, map, 1);
-    STARG_TRY(take_pieces(context, (const starg_decomposition *const *)pieces, map));
+    SCOPED_BY(starg_solid_map_drop) starg_solid_map *map = NULL;
+    NEW_ZERO(context, STAGE, map, 1);
+    TRY(take_pieces(context, (const starg_decomposition *const *)pieces, map));
     measure(map);
     *out = map;
     map = NULL;
-done:
-    starg_solid_map_free(context, map);
-    return status;
+    return STARG_OK;
 }
 
-static starg_status place_both(const deform_mesh *c, starg_tetmesh *out[2]) {
-    TRY(solids_place(c, c->rest.data, &out[0]));
-    return solids_place(c, c->now.data, &out[1]);
-}
+typedef struct both_ends {
+    starg_context *context;
+    starg_tetmesh *places[2];
+    starg_decomposition *pieces[2];
+} both_ends;
 
-static void free_both(starg_context *context, starg_tetmesh *places[2],
-                      starg_decomposition *pieces[2]) {
+static void free_both(both_ends *b) {
     for (int end = 0; end < 2; end++) {
-        starg_tetmesh_free(places[end]);
-        starg_decomposition_free(context, pieces[end]);
+        starg_tetmesh_free(b->places[end]);
+        starg_decomposition_free(b->context, b->pieces[end]);
     }
+}
+
+static starg_status place_both(const deform_mesh *c, both_ends *b) {
+    TRY(solids_place(c, c->rest.data, &b->places[0]));
+    return solids_place(c, c->now.data, &b->places[1]);
 }
 
 starg_status solid_map_finish(starg_context *context, const deform_mesh *c, bool cut,
                               starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *places[2] = {NULL, NULL};
-    starg_decomposition *pieces[2] = {NULL, NULL};
-    STARG_TRY(place_both(c, places));
-    STARG_TRY(compatible_decompose(context, places[0], places[1], cut, pieces));
-    STARG_TRY(take_result(context, pieces, out));
-done:
-    free_both(context, places, pieces);
-    return status;
+    SCOPED_BY(free_both) both_ends b = {.context = context};
+    TRY(place_both(c, &b));
+    TRY(compatible_decompose(context, b.places[0], b.places[1], cut, b.pieces));
+    return take_result(context, b.pieces, out);
 }
 
 starg_status solid_map_finish_cones(starg_context *context, const deform_mesh *c,
                                     const uint32_t *labels, size_t count, starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *places[2] = {NULL, NULL};
-    starg_decomposition *pieces[2] = {NULL, NULL};
+    SCOPED_BY(free_both) both_ends b = {.context = context};
     const double *const guards[2] = {c->rest.data + c->rest.count - 3 * count,
                                      c->now.data + c->now.count - 3 * count};
-    STARG_TRY(place_both(c, places));
-    STARG_TRY(compatible_join(context, places[0], places[1], labels, guards, count, pieces));
-    STARG_TRY(take_result(context, pieces, out));
-done:
-    free_both(context, places, pieces);
-    return status;
+    TRY(place_both(c, &b));
+    TRY(compatible_join(context, b.places[0], b.places[1], labels, guards, count, b.pieces));
+    return take_result(context, b.pieces, out);
 }
 
 /* ---- public functions ---- */
@@ -422,80 +411,65 @@ starg_status starg_solid_map_create(starg_context *context, const starg_mesh *a,
                                     const double *images, const starg_solid_map_options *options,
                                     starg_solid_map **out) {
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = make_map(context, a, images, ENDS_NEAR, options, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return make_map(context, a, images, ENDS_NEAR, options, out);
 }
 
 /* A's tetrahedra where B's surface is that of the overlay: first to B in A's connectivity, then,
  * divided, to B. */
 static starg_status spread_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                    const starg_map *map, double density, deform_mesh *c) {
-    starg_status status = STARG_OK;
     const starg_overlay *overlay = &map->overlay;
-    starg_morph *first = NULL, *last = NULL;
-    starg_mesh *divided = NULL;
-    starg_solid *solid = NULL;
-    double *images = NULL;
-    uint32_t *surface = NULL;
+    SCOPED_BY(starg_morph_drop) starg_morph *first = NULL, *last = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *divided = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED double *images = NULL;
+    SCOPED uint32_t *surface = NULL;
     size_t inverted;
-    STARG_NEW(context, STAGE, images, 3 * a->vertex_count + 3 * overlay->vertex_count);
+    NEW(context, STAGE, images, 3 * a->vertex_count + 3 * overlay->vertex_count);
     starg_map_positions(map, b, images);
-    STARG_TRY(make_morph(context, a, images, STARG_MORPH_ARAP, &first));
-    STARG_TRY(solids_fill_first(first, density, c, &solid, &surface));
-    STARG_TRY(spread_exactly(first, c));
-    STARG_TRY(solids_divide(c, a, overlay));
-    STARG_TRY(starg_mesh_create(context, c->now.data, overlay->vertex_count, overlay->faces,
-                                overlay->face_count, &divided));
+    TRY(make_morph(context, a, images, STARG_MORPH_ARAP, &first));
+    TRY(solids_fill_first(first, density, c, &solid, &surface));
+    TRY(spread_exactly(first, c));
+    TRY(solids_divide(c, a, overlay));
+    TRY(starg_mesh_create(context, c->now.data, overlay->vertex_count, overlay->faces,
+                          overlay->face_count, &divided));
     starg_overlay_positions(overlay, b, 1, images);
-    starg_release(context, surface);
-    STARG_NEW(context, STAGE, surface, overlay->vertex_count);
+    RELEASE(surface);
+    NEW(context, STAGE, surface, overlay->vertex_count);
     for (uint32_t v = 0; v < overlay->vertex_count; v++)
         surface[v] = v;
     c->surface = surface;
-    STARG_TRY(make_morph(context, divided, images, STARG_MORPH_LINEAR, &last));
-    STARG_TRY(solids_check_last(last));
-    STARG_TRY(unfold_at_end(last, c, &inverted));
-    if (inverted > 0)
-        status = fail_inverted(c->context, c->tetrahedra.count / 4, inverted);
-done:
-    starg_morph_free(first);
-    starg_morph_free(last);
-    starg_mesh_free(divided);
-    starg_solid_free(solid);
-    RELEASE(images, surface);
+    TRY(make_morph(context, divided, images, STARG_MORPH_LINEAR, &last));
+    TRY(solids_check_last(last));
+    TRY(unfold_at_end(last, c, &inverted));
     c->surface = NULL;
-    return status;
+    return inverted > 0 ? fail_inverted(c->context, c->tetrahedra.count / 4, inverted) : STARG_OK;
 }
 
 /* Cones about a point of each kernel, or else in pieces. */
 static starg_status spread_cones(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                  const starg_map *map, deform_mesh *c, cone_labels *out) {
-    starg_status status = STARG_OK;
     const starg_overlay *overlay = &map->overlay;
-    starg_mesh *divided = NULL;
-    double *places[2] = {NULL, NULL};
-    uint32_t *surface = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *divided = NULL;
+    SCOPED double *first = NULL, *second = NULL;
+    SCOPED uint32_t *surface = NULL;
     bool found;
-    for (int end = 0; end < 2; end++) {
-        STARG_NEW(context, STAGE, places[end], 3 * overlay->vertex_count);
-        starg_overlay_positions(overlay, end == 0 ? a : b, end, places[end]);
-    }
-    STARG_TRY(starg_mesh_create(context, places[0], overlay->vertex_count, overlay->faces,
-                                overlay->face_count, &divided));
-    STARG_TRY(stars_fill(divided, places[1], map->centers, c, &surface, &found));
+    NEW(context, STAGE, first, 3 * overlay->vertex_count);
+    NEW(context, STAGE, second, 3 * overlay->vertex_count);
+    starg_overlay_positions(overlay, a, 0, first);
+    starg_overlay_positions(overlay, b, 1, second);
+    TRY(starg_mesh_create(context, first, overlay->vertex_count, overlay->faces,
+                          overlay->face_count, &divided));
+    TRY(stars_fill(divided, second, map->centers, c, &surface, &found));
     c->surface = NULL;
     if (found) {
-        STARG_NEW_ZERO(context, STAGE, out->labels, c->tetrahedra.count / 4);
+        NEW_ZERO(context, STAGE, out->labels, c->tetrahedra.count / 4);
         out->count = 1;
     } else if (map->kind != STARG_MAP_SAME) {
-        STARG_TRY(spread_pieces(divided, places[1], c, out));
+        TRY(spread_pieces(divided, second, c, out));
     }
-done:
-    starg_mesh_free(divided);
-    RELEASE(places[0], places[1], surface);
-    return status;
+    return STARG_OK;
 }
 
 /* Is the overlay that of equal faces, at whose vertices nothing is divided? */
@@ -510,25 +484,19 @@ static bool divides_nothing(const starg_overlay *overlay, const starg_mesh *a,
 static starg_status make_overlay(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                  const starg_map *map, const starg_solid_map_options *options,
                                  starg_solid_map **out) {
-    starg_status status = STARG_OK;
     starg_solid_map_options defaults;
     cone_labels cones = {0};
-    deform_mesh c = {.context = context};
-    STARG_TRY(check_options(context, &options, &defaults));
-    if (map->overlay.face_count == 0) {
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "the map has no overlay; starg_map_overlay makes one");
-        goto done;
-    }
+    SCOPED_BY(deform_free) deform_mesh c = {.context = context};
+    TRY(check_options(context, &options, &defaults));
+    if (map->overlay.face_count == 0)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the map has no overlay; starg_map_overlay makes one");
     if (divides_nothing(&map->overlay, a, b))
         return make_map(context, a, b->vertices, ENDS_THERE, options, out);
-    STARG_TRY(spread_cones(context, a, b, map, &c, &cones));
+    TRY(spread_cones(context, a, b, map, &c, &cones));
     if (cones.labels == NULL)
-        STARG_TRY(spread_overlay(context, a, b, map, options->density, &c));
-    STARG_TRY(finish_spread(&c, &cones, options->steps, out));
-done:
-    deform_free(&c);
-    return status;
+        TRY(spread_overlay(context, a, b, map, options->density, &c));
+    return finish_spread(&c, &cones, options->steps, out);
 }
 
 starg_status starg_solid_map_overlay(starg_context *context, const starg_mesh *a,
@@ -536,10 +504,8 @@ starg_status starg_solid_map_overlay(starg_context *context, const starg_mesh *a
                                      const starg_solid_map_options *options,
                                      starg_solid_map **out) {
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = make_overlay(context, a, b, map, options, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return make_overlay(context, a, b, map, options, out);
 }
 
 starg_status starg_solid_map_to(starg_context *context, const starg_mesh *a,

@@ -27,3 +27,7 @@ void solid_map_exponents(const starg_solid_map *map, int out[2]);
  * those units. */
 double solid_map_ratio(const starg_solid_map *map, size_t t, const int exponents[2],
                        double *volume);
+
+static inline void starg_solid_map_drop(starg_solid_map **map) {
+    starg_solid_map_free(NULL, *map);
+}

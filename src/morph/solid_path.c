@@ -137,21 +137,20 @@ void morph_frame_solid(const starg_morph *m, double t, double *positions) {
 }
 
 starg_status starg_morph_solid_map(const starg_morph *m, starg_solid_map **out) {
-    starg_status status = STARG_OK;
     const solid_path *own = m->solid;
-    starg_solid_map *map = NULL;
+    SCOPED_BY(starg_solid_map_drop) starg_solid_map *map = NULL;
     *out = NULL;
     if (own == NULL)
         return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE,
                           "only morphs of method solid have a map of their solids");
-    starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
+    TIME_RULE(m->context, STARG_TIME_FAILS);
     if (own->labels != NULL)
-        STARG_TRY(solid_map_finish_cones(m->context, &own->mesh, own->labels, 1, &map));
+        TRY(solid_map_finish_cones(m->context, &own->mesh, own->labels, 1, &map));
     else
-        STARG_TRY(solid_map_finish(m->context, &own->mesh, false, &map));
+        TRY(solid_map_finish(m->context, &own->mesh, false, &map));
     map->key_count = own->keys.times.count - 1; /* the last one is B */
-    STARG_NEW(m->context, STAGE, map->times, map->key_count);
-    STARG_NEW(m->context, STAGE, map->keys, map->key_count * own->mesh.rest.count);
+    NEW(m->context, STAGE, map->times, map->key_count);
+    NEW(m->context, STAGE, map->keys, map->key_count * own->mesh.rest.count);
     if (map->key_count > 0) {
         memcpy(map->times, own->keys.times.data, map->key_count * sizeof *map->times);
         memcpy(map->keys, own->keys.places.data,
@@ -159,10 +158,7 @@ starg_status starg_morph_solid_map(const starg_morph *m, starg_solid_map **out) 
     }
     *out = map;
     map = NULL;
-done:
-    starg_time_end(m->context, former);
-    starg_solid_map_free(m->context, map);
-    return status;
+    return STARG_OK;
 }
 
 size_t starg_morph_tetrahedron_count(const starg_morph *m) {

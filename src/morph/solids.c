@@ -142,21 +142,17 @@ starg_status solids_place(const deform_mesh *c, const double *places, starg_tetm
 /* ---- pieces ---- */
 
 static starg_status cut(const starg_morph *m, const deform_mesh *c, starg_decomposition *out[2]) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *meshes[2] = {NULL, NULL};
-    STARG_TRY(solids_place(c, c->rest.data, &meshes[0]));
-    STARG_TRY(solids_place(c, c->now.data, &meshes[1]));
-    STARG_TRY(compatible_decompose(m->context, meshes[0], meshes[1], true, out));
+    SCOPED_BY(starg_tetmesh_drop) starg_tetmesh *first = NULL, *last = NULL;
+    TRY(solids_place(c, c->rest.data, &first));
+    TRY(solids_place(c, c->now.data, &last));
+    TRY(compatible_decompose(m->context, first, last, true, out));
     for (int end = 0; end < 2; end++) {
         out[end]->model_vertices = m->mesh->vertex_count;
         out[end]->model_faces = m->mesh->face_count;
         out[end]->model_tetrahedra = 0;
         out[end]->tetra.generator = STARG_TETRA_TETGEN;
     }
-done:
-    starg_tetmesh_free(meshes[0]);
-    starg_tetmesh_free(meshes[1]);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2]) {

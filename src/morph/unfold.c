@@ -97,10 +97,6 @@ bool unfold_is_positive(const unfold_problem *p, size_t tetrahedron) {
     return is_positive(p, p->now, tetrahedron);
 }
 
-size_t unfold_count(const unfold_problem *p) {
-    return count_inverted(p, p->now);
-}
-
 /* ---- preparation ---- */
 
 static void edges_of(const unfold_problem *p, const double *places, size_t t, matrix out) {
@@ -139,12 +135,11 @@ static size_t surface_of(const unfold_problem *p) {
 
 /* The logarithm of how much the surface grows about each of its vertices, in length. */
 static starg_status find_growth_outside(const unfold_problem *p, double *growth) {
-    starg_status status = STARG_OK;
-    double *areas[2] = {NULL, NULL};
+    SCOPED double *block = NULL;
     size_t surface = surface_of(p);
     const double *places[2] = {p->rest, p->springs.count > 0 ? p->springs.targets : p->now};
-    for (int end = 0; end < 2; end++)
-        STARG_NEW_ZERO(p->context, STAGE, areas[end], p->vertex_count);
+    NEW_ZERO(p->context, STAGE, block, 2 * p->vertex_count);
+    double *areas[2] = {block, block + p->vertex_count};
     for (size_t i = 0; i < 4 * p->count; i++) {
         const uint32_t *corners = p->tetrahedra + i / 4 * 4;
         uint32_t v[3];
@@ -163,10 +158,7 @@ static starg_status find_growth_outside(const unfold_problem *p, double *growth)
     for (size_t v = 0; v < surface; v++)
         if (areas[0][v] > 0 && areas[1][v] > 0)
             growth[v] = log(areas[1][v] / areas[0][v]) / 2;
-done:
-    for (int end = 0; end < 2; end++)
-        starg_release(p->context, areas[end]);
-    return status;
+    return STARG_OK;
 }
 
 /* Extends it to the inside: each vertex takes the mean over its tetrahedra. */
@@ -449,7 +441,7 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
     SCOPED_BY(descent_free) descent d = {.p = p};
     size_t least = SIZE_MAX;
     int idle = 0, most_idle = p->springs.count > 0 ? ROUNDS_IDLE_SPRINGS : ROUNDS_IDLE;
-    *inverted = unfold_count(p);
+    *inverted = count_inverted(p, p->now);
     if (*inverted == 0 || p->fixed >= p->vertex_count)
         return STARG_OK;
     TRY(prepare(&d));
@@ -459,7 +451,7 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
          done_steps += ROUND) {
         double before = evaluate(&d, p->now, NULL), after;
         TRY(go_down(&d, ROUND, &after));
-        *inverted = unfold_count(p);
+        *inverted = count_inverted(p, p->now);
         d.epsilon = lowered(&d, before);
         if (p->springs.move != NULL)
             p->springs.move(p->springs.user);

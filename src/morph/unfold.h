@@ -28,9 +28,6 @@ typedef struct unfold_problem {
 /* Is a tetrahedron positive where it is now, exactly? */
 bool unfold_is_positive(const unfold_problem *p, size_t tetrahedron);
 
-/* Number of tetrahedra that are not positive where they are now, exactly. */
-size_t unfold_count(const unfold_problem *p);
-
 /* Moves vertices until all tetrahedra are positive, or for so many steps of descent; *inverted is
  * the number of those left. Errors: MEMORY, CANCELLED. */
 starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted);

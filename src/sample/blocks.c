@@ -102,28 +102,25 @@ static cube_place middle_of(const blocks *b) {
 }
 
 static starg_status grow_polycube(blocks *b, size_t squares) {
-    starg_status status = STARG_OK;
     cube_place place = middle_of(b);
     fill(b, &place);
-    STARG_PUSH(b->context, STAGE, &b->open, place);
+    PUSH(b->context, STAGE, &b->open, place);
     for (size_t tries = 0; b->squares < squares && tries < 100 * squares; tries++) {
         size_t i = (size_t)starg_rng_below(&b->rng, b->open.count);
         place = beyond(&b->open.data[i], (int)starg_rng_below(&b->rng, 6), 1);
         if (!may_fill(b, &place))
             continue;
         fill(b, &place);
-        STARG_PUSH(b->context, STAGE, &b->open, place);
+        PUSH(b->context, STAGE, &b->open, place);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* Two cubes on from the last place, or back where there is no way. */
 static starg_status dig_maze(blocks *b, size_t squares) {
-    starg_status status = STARG_OK;
     cube_place place = middle_of(b);
     fill(b, &place);
-    STARG_PUSH(b->context, STAGE, &b->open, place);
+    PUSH(b->context, STAGE, &b->open, place);
     while (b->squares < squares && b->open.count > 0) {
         const cube_place last = b->open.data[b->open.count - 1];
         int first = (int)starg_rng_below(&b->rng, 6), way = first;
@@ -141,10 +138,9 @@ static starg_status dig_maze(blocks *b, size_t squares) {
         }
         fill(b, &near);
         fill(b, &far);
-        STARG_PUSH(b->context, STAGE, &b->open, far);
+        PUSH(b->context, STAGE, &b->open, far);
     }
-done:
-    return status;
+    return STARG_OK;
 }
 
 /* A slab of 2 n - 1 times 2 n - 1 places, and n * n teeth of 1 to 5 cubes. */
@@ -211,7 +207,6 @@ static bool wants_spike(blocks *b, const cube_place *place, int way) {
 
 static starg_status add_spike(blocks *b, mesh_builder *m, const uint32_t corner[4],
                               const int at[4][3], int way) {
-    starg_status status = STARG_OK;
     int k = way / 2;
     double apex[3], height = 1 + 4 * starg_rng_unit(&b->rng);
     uint32_t tip;
@@ -220,32 +215,28 @@ static starg_status add_spike(blocks *b, mesh_builder *m, const uint32_t corner[
     for (int j = 0; j < 3; j++)
         apex[j] += j == k ? STEPS[way][k] * height : 0.8 * (starg_rng_unit(&b->rng) - 0.5);
     uint64_t name = UINT64_C(1) << 62 | (uint64_t)m->names.count;
-    STARG_TRY(builder_vertex(m, name, apex, &tip));
+    TRY(builder_vertex(m, name, apex, &tip));
     for (int i = 0; i < 4; i++)
-        STARG_TRY(builder_triangle(m, corner[i], corner[(i + 1) % 4], tip));
-done:
-    return status;
+        TRY(builder_triangle(m, corner[i], corner[(i + 1) % 4], tip));
+    return STARG_OK;
 }
 
 static starg_status add_square(blocks *b, mesh_builder *m, const cube_place *place, int way,
                                bool spiked) {
-    starg_status status = STARG_OK;
     int at[4][3];
     uint32_t corner[4];
     square_corners(place, way, at);
     for (int i = 0; i < 4; i++)
-        STARG_TRY(corner_vertex(m, at[i], &corner[i]));
+        TRY(corner_vertex(m, at[i], &corner[i]));
     if (spiked && wants_spike(b, place, way))
-        STARG_TRY(add_spike(b, m, corner, (const int(*)[3])at, way));
+        TRY(add_spike(b, m, corner, (const int(*)[3])at, way));
     else
-        STARG_TRY(builder_quad(m, corner[0], corner[1], corner[2], corner[3]));
-done:
-    return status;
+        TRY(builder_quad(m, corner[0], corner[1], corner[2], corner[3]));
+    return STARG_OK;
 }
 
 static starg_status make_mesh(blocks *b, bool spiked, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder m = {.context = b->context};
+    SCOPED_BY(builder_free) mesh_builder m = {.context = b->context};
     cube_place place;
     int *at = place.at;
     for (at[0] = 1; at[0] < b->side - 1; at[0]++)
@@ -254,12 +245,9 @@ static starg_status make_mesh(blocks *b, bool spiked, starg_mesh **out) {
                 for (int way = 0; way < 6 && b->solid[index_of(b, at)]; way++) {
                     const cube_place next = beyond(&place, way, 1);
                     if (!b->solid[index_of(b, next.at)])
-                        STARG_TRY(add_square(b, &m, &place, way, spiked));
+                        TRY(add_square(b, &m, &place, way, spiked));
                 }
-    STARG_TRY(builder_finish(&m, out));
-done:
-    builder_free(&m);
-    return status;
+    return builder_finish(&m, out);
 }
 
 starg_status solid_blocks(starg_context *context, blocks_kind kind, int member, size_t vertex_count,
@@ -277,7 +265,6 @@ starg_status solid_blocks(starg_context *context, blocks_kind kind, int member, 
     STARG_TRY(build[kind](&b, squares));
     STARG_TRY(make_mesh(&b, kind == BLOCKS_SPIKES, out));
 done:
-    starg_release(context, b.solid);
-    STARG_ARRAY_FREE(context, &b.open);
+    RELEASE(b.solid, b.open.data);
     return status;
 }

@@ -137,15 +137,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "sample options", .size = sizeof(starg_sample_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_sample_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_sample_options_default(starg_sample_options *options) {
-    *options = (starg_sample_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_sample_options)
 
 static const entry *find_entry(const char *name) {
     for (size_t i = 0; i < COUNT; i++)

@@ -86,10 +86,10 @@ static starg_status make_strip(mesh_builder *builder, size_t ring, size_t rings,
 
 static starg_status make_tube(starg_context *context, curve *c, double radius, size_t vertex_count,
                               starg_mesh **out) {
-    starg_status status = STARG_OK;
-    mesh_builder builder = {.context = context};
-    double *lengths = NULL; /* too large for a small stack */
-    STARG_NEW(context, "sample", lengths, LENGTH_STEPS + 1);
+    SCOPED_BY(builder_free) mesh_builder builder = {.context = context};
+    /* too large for a small stack */
+    SCOPED double *lengths = NULL;
+    NEW(context, "sample", lengths, LENGTH_STEPS + 1);
     measure(c, lengths);
     double length = lengths[LENGTH_STEPS], girth = TURN * radius;
     /* rows of equilateral triangles are 0.87 of their side apart */
@@ -104,15 +104,11 @@ static starg_status make_tube(starg_context *context, curve *c, double radius, s
             step++;
         double part = (wanted - lengths[step]) / (lengths[step + 1] - lengths[step]);
         double t = TURN * ((double)step + part) / LENGTH_STEPS;
-        STARG_TRY(make_ring(&builder, c, t, radius, around, i));
+        TRY(make_ring(&builder, c, t, radius, around, i));
     }
     for (size_t i = 0; i < rings; i++)
-        STARG_TRY(make_strip(&builder, i, rings, around));
-    STARG_TRY(builder_finish(&builder, out));
-done:
-    builder_free(&builder);
-    starg_release(context, lengths);
-    return status;
+        TRY(make_strip(&builder, i, rings, around));
+    return builder_finish(&builder, out);
 }
 
 starg_status solid_torus(starg_context *context, size_t vertex_count, starg_mesh **out) {

@@ -69,11 +69,10 @@ typedef struct motion {
     double residual; /* squared */
 } motion;
 
-static void side_free(starg_context *context, side *s) {
-    starg_release(context, s->vertices);
-    starg_release(context, s->points);
+static void side_free(side *s) {
+    RELEASE(s->vertices, s->points);
     bvh_free(s->surface);
-    kd_tree_free(context, &s->tree);
+    kd_tree_free(&s->tree);
 }
 
 /* ---- surfaces ---- */
@@ -405,7 +404,7 @@ starg_status starg_alignment_measure(starg_context *context, const starg_mesh *a
         out->hand = decide(out->same, out->mirrored, chord);
     }
     for (int i = 0; i < 3; i++)
-        side_free(context, &sides[i]);
+        side_free(&sides[i]);
     return status;
 }
 

@@ -150,41 +150,36 @@ done:
 }
 
 static starg_status read_number(starg_database *d, const char *sql, int *value) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
     bool row;
-    STARG_TRY(database_prepare(d, sql, &statement));
-    STARG_TRY(database_step(d, statement, &row));
+    TRY(database_prepare(d, sql, &statement));
+    TRY(database_step(d, statement, &row));
     *value = row ? sqlite3_column_int(statement, 0) : 0;
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status check_schema(starg_database *d) {
-    starg_status status = STARG_OK;
     int application, version, programs;
-    STARG_TRY(read_number(d, "PRAGMA application_id", &application));
-    STARG_TRY(read_number(d, "PRAGMA user_version", &version));
+    TRY(read_number(d, "PRAGMA application_id", &application));
+    TRY(read_number(d, "PRAGMA user_version", &version));
     /* a file may come from anywhere: reading its tables must not run code of its own */
-    STARG_TRY(read_number(d, "SELECT count(*) FROM sqlite_schema WHERE type IN ('view', 'trigger')",
-                          &programs));
+    TRY(read_number(d, "SELECT count(*) FROM sqlite_schema WHERE type IN ('view', 'trigger')",
+                    &programs));
     if (application != APPLICATION)
-        status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
-                            "'%s' is not a starguard database", d->path);
-    else if (version != SCHEMA_VERSION)
-        status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
-                            "'%s' has schema version %d, this program knows version %d; %s",
-                            d->path, version, SCHEMA_VERSION,
-                            version > SCHEMA_VERSION ? "use a newer starguard"
-                                                     : "create a new one and add the models again");
-    else if (programs > 0)
-        status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
-                            "'%s' has views or triggers, unlike starguard databases; not opened, "
-                            "because they would run",
-                            d->path);
-done:
-    return status;
+        return starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                          "'%s' is not a starguard database", d->path);
+    if (version != SCHEMA_VERSION)
+        return starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                          "'%s' has schema version %d, this program knows version %d; %s", d->path,
+                          version, SCHEMA_VERSION,
+                          version > SCHEMA_VERSION ? "use a newer starguard"
+                                                   : "create a new one and add the models again");
+    if (programs > 0)
+        return starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                          "'%s' has views or triggers, unlike starguard databases; not opened, "
+                          "because they would run",
+                          d->path);
+    return STARG_OK;
 }
 
 starg_status starg_database_open(starg_context *context, const char *path, starg_database **out) {
@@ -258,21 +253,16 @@ static starg_status fill_file(starg_context *context, const char *name, const ch
 }
 
 starg_status starg_database_create(starg_context *context, const char *path) {
-    starg_status status = STARG_OK;
-    char *made = NULL;
+    SCOPED char *made = NULL;
     if (access(path, F_OK) == 0)
         return fail_create(context, path, EEXIST);
-    STARG_NEW(context, DATABASE_STAGE, made, strlen(path) + STARG_FILE_SUFFIX);
+    NEW(context, DATABASE_STAGE, made, strlen(path) + STARG_FILE_SUFFIX);
     int file = starg_file_temporary(path, made);
-    if (file < 0) {
-        status = fail_create(context, path, errno);
-        goto done;
-    }
+    if (file < 0)
+        return fail_create(context, path, errno);
     close(file); /* SQLite accepts an empty file as an empty database */
-    STARG_TRY(fill_file(context, made, path));
-    status = put_in_place(context, made, path);
+    TRY(fill_file(context, made, path));
+    starg_status status = put_in_place(context, made, path);
     unlink(made);
-done:
-    starg_release(context, made);
     return status;
 }

@@ -7,6 +7,10 @@
 #include "core/parallel.h"
 #include "starguard/database.h"
 
+static inline void statement_drop(sqlite3_stmt **statement) {
+    sqlite3_finalize(*statement);
+}
+
 /* SHA-256 (FIPS 180-4) of a block of memory: identifies equal files. */
 
 enum { STARG_SHA256_BYTES = 32 };
@@ -38,7 +42,7 @@ void database_roll_back(starg_database *database);
 
 typedef STARG_ARRAY(starg_database_model) database_models;
 
-void database_models_clear(starg_context *context, database_models *list);
+void database_models_clear(database_models *list);
 
 /* Moves the list to the result. */
 starg_status database_models_hand_over(starg_context *context, database_models *list,
@@ -110,7 +114,7 @@ typedef struct database_files {
 /* For bsearch and qsort. */
 int database_by_digest(const void *a, const void *b);
 
-void database_file_clear(starg_context *context, database_file *file);
+void database_file_clear(database_file *file);
 
 /* Functions of a starg_parallel_loop over `count` files; `shared` is a database_files. An item
  * describes a file. A file's errors go to its message; only MEMORY and CANCELLED end the loop. */

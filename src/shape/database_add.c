@@ -168,7 +168,7 @@ static starg_status store_until(adding *a, size_t end) {
         STARG_TRY(store_item(a, i));
     STARG_TRY(database_commit(a->database));
     for (; a->stored_files < end; a->stored_files++)
-        database_file_clear(a->context, &a->files.files[a->stored_files]);
+        database_file_clear(&a->files.files[a->stored_files]);
 done:
     if (status != STARG_OK)
         database_roll_back(a->database);
@@ -242,7 +242,7 @@ done:
     sqlite3_finalize(a.find_model);
     starg_release(context, a.stored);
     for (size_t i = a.stored_files; a.files.files != NULL && i < count; i++)
-        database_file_clear(context, &a.files.files[i]);
+        database_file_clear(&a.files.files[i]);
     starg_release(context, a.files.files);
     if (status != STARG_OK)
         starg_database_report_free(context, a.report);

@@ -18,10 +18,10 @@ int database_by_digest(const void *a, const void *b) {
     return memcmp(a, b, sizeof(database_digest));
 }
 
-void database_file_clear(starg_context *context, database_file *file) {
+void database_file_clear(database_file *file) {
     RELEASE(file->message, file->warning);
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
-        starg_release(context, file->numbers[kind]);
+        RELEASE(file->numbers[kind]);
     *file = (database_file){0};
 }
 

@@ -143,7 +143,7 @@ static starg_status run(starg_context *context, void *state, size_t first, size_
         STARG_TRY(put_file(context, &files.files[i], reply));
 done:
     for (size_t i = 0; files.files != NULL && i < count; i++)
-        database_file_clear(context, &files.files[i]);
+        database_file_clear(&files.files[i]);
     starg_release(context, files.files);
     return status;
 }

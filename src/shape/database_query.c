@@ -40,39 +40,34 @@ static const char LACKING[] =
 /* Adds the models of a statement, whose first column is the id, with the bound 0. */
 static starg_status add_unbounded(starg_database *d, const char *sql, starg_signature_kind kind,
                                   candidates *list) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
     bool row;
-    STARG_TRY(database_prepare(d, sql, &statement));
+    TRY(database_prepare(d, sql, &statement));
     if (sqlite3_bind_parameter_count(statement) > 0)
         sqlite3_bind_text(statement, 1, starg_signature_name(kind), -1, SQLITE_STATIC);
     for (;;) {
-        STARG_TRY(starg_check_cancel(d->context, DATABASE_STAGE));
-        STARG_TRY(database_step(d, statement, &row));
+        TRY(starg_check_cancel(d->context, DATABASE_STAGE));
+        TRY(database_step(d, statement, &row));
         if (!row)
             break;
         const candidate c = {.id = sqlite3_column_int64(statement, 0)};
-        STARG_PUSH(d->context, DATABASE_STAGE, list, c);
+        PUSH(d->context, DATABASE_STAGE, list, c);
     }
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status add_bounded(starg_database *d, const starg_signature *wanted,
                                 candidates *list) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
     size_t count = sketch_count(wanted->kind);
     sketch own, other;
     bool row;
     sketch_make(wanted->kind, wanted->numbers, wanted->count, &own);
-    STARG_TRY(
-        database_prepare(d, "SELECT model, version, sums FROM sketch WHERE kind = ?", &statement));
+    TRY(database_prepare(d, "SELECT model, version, sums FROM sketch WHERE kind = ?", &statement));
     sqlite3_bind_text(statement, 1, starg_signature_name(wanted->kind), -1, SQLITE_STATIC);
     for (;;) {
-        STARG_TRY(starg_check_cancel(d->context, DATABASE_STAGE));
-        STARG_TRY(database_step(d, statement, &row));
+        TRY(starg_check_cancel(d->context, DATABASE_STAGE));
+        TRY(database_step(d, statement, &row));
         if (!row)
             break;
         candidate c = {.id = sqlite3_column_int64(statement, 0)};
@@ -81,11 +76,9 @@ static starg_status add_bounded(starg_database *d, const starg_signature *wanted
             sketch_load(sqlite3_column_blob(statement, 2), count, &other);
             c.distance = sketch_bound(wanted->kind, &own, &other);
         }
-        STARG_PUSH(d->context, DATABASE_STAGE, list, c);
+        PUSH(d->context, DATABASE_STAGE, list, c);
     }
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 /* All models, by ascending bound. */
@@ -132,9 +125,8 @@ done:
 
 static starg_status refine(starg_database *d, const starg_signature *wanted,
                            const candidates *bounded, size_t capacity, candidates *nearest) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
-    STARG_TRY(database_prepare(
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
+    TRY(database_prepare(
         d,
         "SELECT id, version, numbers FROM model LEFT JOIN signature ON model = id AND kind = ? "
         "WHERE id = ?",
@@ -142,47 +134,39 @@ static starg_status refine(starg_database *d, const starg_signature *wanted,
     sqlite3_bind_text(statement, 1, starg_signature_name(wanted->kind), -1, SQLITE_STATIC);
     for (size_t i = 0; i < bounded->count; i++) {
         candidate c = bounded->data[i];
-        STARG_TRY(starg_check_cancel(d->context, DATABASE_STAGE));
+        TRY(starg_check_cancel(d->context, DATABASE_STAGE));
         if (nearest->count == capacity && c.distance > nearest->data[capacity - 1].distance)
             break;
-        STARG_TRY(measure(d, statement, wanted, &c));
+        TRY(measure(d, statement, wanted, &c));
         consider(nearest, capacity, c);
     }
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- public function ---- */
 
 static starg_status count_models(starg_database *d, size_t *count) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
     bool row;
-    STARG_TRY(database_prepare(d, "SELECT count(*) FROM model", &statement));
-    STARG_TRY(database_step(d, statement, &row));
+    TRY(database_prepare(d, "SELECT count(*) FROM model", &statement));
+    TRY(database_step(d, statement, &row));
     *count = row ? (size_t)sqlite3_column_int64(statement, 0) : 0;
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 /* Reads the models of the shortlist. */
 static starg_status fetch(starg_database *d, const candidates *nearest, database_models *list) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
-    STARG_TRY(database_prepare(d, "SELECT id, path, hash, vertices, faces FROM model WHERE id = ?",
-                               &statement));
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
+    TRY(database_prepare(d, "SELECT id, path, hash, vertices, faces FROM model WHERE id = ?",
+                         &statement));
     for (size_t i = 0; i < nearest->count; i++) {
         size_t known = list->count;
         sqlite3_bind_int64(statement, 1, nearest->data[i].id);
-        STARG_TRY(database_read_rows(d, statement, -1, list));
+        TRY(database_read_rows(d, statement, -1, list));
         if (list->count > known)
             list->data[known].distance = nearest->data[i].distance;
     }
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_database_query(starg_database *d, const starg_signature *signature,
@@ -207,6 +191,6 @@ starg_status starg_database_query(starg_database *d, const starg_signature *sign
 done:
     database_roll_back(d);
     RELEASE(bounded.data, nearest.data);
-    database_models_clear(d->context, &list);
+    database_models_clear(&list);
     return status;
 }

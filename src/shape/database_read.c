@@ -7,22 +7,21 @@
 
 #include "shape/database.h"
 
-static void clear_model(starg_context *context, starg_database_model *model) {
-    starg_release(context, model->path);
-    starg_signature_free(context, model->signature);
+static void clear_model(starg_database_model *model) {
+    RELEASE(model->path);
+    starg_signature_free(NULL, model->signature);
 }
 
-void database_models_clear(starg_context *context, database_models *list) {
+void database_models_clear(database_models *list) {
     for (size_t i = 0; i < list->count; i++)
-        clear_model(context, &list->data[i]);
-    STARG_ARRAY_FREE(context, list);
+        clear_model(&list->data[i]);
+    RELEASE(list->data);
 }
 
 void starg_database_models_free(starg_context *context, starg_database_models *models) {
     if (models == NULL)
         return;
-    database_models_clear(context,
-                          &(database_models){.data = models->items, .count = models->count});
+    database_models_clear(&(database_models){.data = models->items, .count = models->count});
     starg_release(context, models);
 }
 
@@ -106,44 +105,36 @@ static int by_name(const void *a, const void *b) {
 
 starg_status database_read_rows(starg_database *d, sqlite3_stmt *statement, int kind,
                                 database_models *list) {
-    starg_status status = STARG_OK;
-    starg_database_model model = {0};
+    SCOPED_BY(clear_model) starg_database_model model = {0};
     bool row;
     for (;;) {
-        STARG_TRY(starg_check_cancel(d->context, DATABASE_STAGE));
-        STARG_TRY(database_step(d, statement, &row));
+        TRY(starg_check_cancel(d->context, DATABASE_STAGE));
+        TRY(database_step(d, statement, &row));
         if (!row)
             break;
-        STARG_TRY(read_model(d, statement, &model));
+        TRY(read_model(d, statement, &model));
         if (kind >= 0)
-            STARG_TRY(database_read_signature(d, statement, 5, (starg_signature_kind)kind,
-                                              &model.signature));
-        STARG_PUSH(d->context, DATABASE_STAGE, list, model);
+            TRY(database_read_signature(d, statement, 5, (starg_signature_kind)kind,
+                                        &model.signature));
+        PUSH(d->context, DATABASE_STAGE, list, model);
         model = (starg_database_model){0};
     }
-done:
-    clear_model(d->context, &model);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_list(starg_database *d, const char *sql, int kind,
                               starg_database_models **out) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
-    database_models list = {0};
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
+    SCOPED_BY(database_models_clear) database_models list = {0};
     *out = NULL;
-    STARG_TRY(database_prepare(d, sql, &statement));
+    TRY(database_prepare(d, sql, &statement));
     if (kind >= 0)
         sqlite3_bind_text(statement, 1, starg_signature_name((starg_signature_kind)kind), -1,
                           SQLITE_STATIC);
-    STARG_TRY(database_read_rows(d, statement, kind, &list));
+    TRY(database_read_rows(d, statement, kind, &list));
     if (list.count > 0)
         qsort(list.data, list.count, sizeof *list.data, by_name);
-    STARG_TRY(database_models_hand_over(d->context, &list, out));
-done:
-    sqlite3_finalize(statement);
-    database_models_clear(d->context, &list);
-    return status;
+    return database_models_hand_over(d->context, &list, out);
 }
 
 starg_status starg_database_list(starg_database *d, starg_database_models **out) {

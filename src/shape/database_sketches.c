@@ -18,14 +18,10 @@ const char DATABASE_INSERT_SKETCH[] =
     "INSERT OR REPLACE INTO sketch (kind, model, version, sums) VALUES (?, ?, ?, ?)";
 
 starg_status database_has_sketches(starg_database *d, bool *yes) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
-    STARG_TRY(database_prepare(
-        d, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'sketch'", &statement));
-    STARG_TRY(database_step(d, statement, yes));
-done:
-    sqlite3_finalize(statement);
-    return status;
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
+    TRY(database_prepare(d, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'sketch'",
+                         &statement));
+    return database_step(d, statement, yes);
 }
 
 starg_status database_store_sketch(starg_database *d, sqlite3_stmt *statement, int64_t model,
@@ -52,25 +48,22 @@ starg_status database_store_sketch(starg_database *d, sqlite3_stmt *statement, i
 }
 
 static starg_status add_kind(starg_database *d, sqlite3_stmt *insert, starg_signature_kind kind) {
-    starg_status status = STARG_OK;
-    sqlite3_stmt *statement = NULL;
+    SCOPED_BY(statement_drop) sqlite3_stmt *statement = NULL;
     bool row;
-    STARG_TRY(database_prepare(
-        d, "SELECT model, numbers FROM signature WHERE kind = ? AND version = ?", &statement));
+    TRY(database_prepare(d, "SELECT model, numbers FROM signature WHERE kind = ? AND version = ?",
+                         &statement));
     sqlite3_bind_text(statement, 1, starg_signature_name(kind), -1, SQLITE_STATIC);
     sqlite3_bind_int(statement, 2, starg_signature_version(kind));
     for (;;) {
-        STARG_TRY(starg_check_cancel(d->context, DATABASE_STAGE));
-        STARG_TRY(database_step(d, statement, &row));
+        TRY(starg_check_cancel(d->context, DATABASE_STAGE));
+        TRY(database_step(d, statement, &row));
         if (!row)
             break;
         const uint8_t *bytes = sqlite3_column_blob(statement, 1);
-        STARG_TRY(database_store_sketch(d, insert, sqlite3_column_int64(statement, 0), kind, bytes,
-                                        (size_t)sqlite3_column_bytes(statement, 1)));
+        TRY(database_store_sketch(d, insert, sqlite3_column_int64(statement, 0), kind, bytes,
+                                  (size_t)sqlite3_column_bytes(statement, 1)));
     }
-done:
-    sqlite3_finalize(statement);
-    return status;
+    return STARG_OK;
 }
 
 starg_status database_add_sketches(starg_database *d) {

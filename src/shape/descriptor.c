@@ -109,15 +109,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "descriptor options", .size = sizeof(starg_descriptor_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_descriptor_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_descriptor_options_default(starg_descriptor_options *options) {
-    *options = (starg_descriptor_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_descriptor_options)
 
 /* Equal steps in height give equal areas; the golden angle separates neighbours. */
 void starg_descriptor_direction(size_t count, size_t index, double out[3]) {
@@ -158,10 +150,10 @@ typedef struct subject {
     const starg_mesh *surface; /* before it was cut; NULL if holes were filled */
 } subject;
 
-static void subject_free(starg_context *context, subject *s) {
+static void subject_free(subject *s) {
     starg_mesh_free(s->level);
     starg_mesh_free(s->coarse);
-    starg_decomposition_free(context, s->pieces);
+    starg_decomposition_free(NULL, s->pieces);
 }
 
 /* The spectrum needs more vertices than the pieces, whose views come from inside. If nothing is
@@ -171,9 +163,9 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
     starg_status status = STARG_OK;
     bool closed = false, found = false;
     if (options->detail > 0)
-        STARG_TRY(level_create(context, mesh, options->detail, &out->level));
+        TRY(level_create(context, mesh, options->detail, &out->level));
     if (out->level != NULL)
-        STARG_TRY(level_coarsen(context, out->level, options->detail / FINER, &out->coarse));
+        TRY(level_coarsen(context, out->level, options->detail / FINER, &out->coarse));
     const starg_mesh *const levels[] = {out->coarse, out->level, mesh};
     for (size_t i = 0; i < 3 && !found; i++) {
         if (levels[i] == NULL)
@@ -188,7 +180,6 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
         starg_log(context, STARG_LOG_WARNING,
                   "the surface bounds no solid; isosurface stuffing closes its holes, and the "
                   "filled solid is described");
-done:
     return status;
 }
 
@@ -320,32 +311,27 @@ static void add_head(const starg_mesh *mesh, const starg_descriptor_options *opt
 starg_status starg_descriptor_create(starg_context *context, const starg_mesh *mesh,
                                      const starg_descriptor_options *options,
                                      starg_descriptor **out) {
-    starg_status status = STARG_OK;
     starg_descriptor_options defaults;
-    subject s = {0};
-    starg_descriptor *d = NULL;
-    ray_caster caster = {0};
+    SCOPED_BY(subject_free) subject s = {0};
+    SCOPED_BY(starg_descriptor_drop) starg_descriptor *d = NULL;
+    SCOPED_BY(ray_caster_free) ray_caster caster = {0};
     starg_descriptor_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
     *out = NULL;
-    STARG_TRY(check_options(context, options));
-    STARG_TRY(decompose(context, mesh, options, &s));
-    STARG_NEW_ZERO(context, STAGE, d, 1);
+    TRY(check_options(context, options));
+    TRY(decompose(context, mesh, options, &s));
+    NEW_ZERO(context, STAGE, d, 1);
     add_head(mesh, options, s.pieces, d);
-    STARG_TRY(add_guards(context, s.pieces, d));
-    STARG_TRY(add_edges(context, s.pieces, d));
-    STARG_TRY(ray_caster_create(context, s.pieces->mesh, &caster));
-    STARG_TRY(add_distances(context, &caster, d));
-    STARG_TRY(views_measure(context, s.pieces->mesh, &caster, &d->views[0][0]));
-    STARG_TRY(vibrations_measure(context, s.pieces->mesh, s.surface, d));
+    TRY(add_guards(context, s.pieces, d));
+    TRY(add_edges(context, s.pieces, d));
+    TRY(ray_caster_create(context, s.pieces->mesh, &caster));
+    TRY(add_distances(context, &caster, d));
+    TRY(views_measure(context, s.pieces->mesh, &caster, &d->views[0][0]));
+    TRY(vibrations_measure(context, s.pieces->mesh, s.surface, d));
     *out = d;
-done:
-    ray_caster_free(context, &caster);
-    subject_free(context, &s);
-    if (status != STARG_OK)
-        starg_descriptor_free(context, d);
-    return status;
+    d = NULL;
+    return STARG_OK;
 }
 
 void starg_descriptor_free(starg_context *context, starg_descriptor *descriptor) {

@@ -58,21 +58,17 @@ static void tell_version(starg_context *context, const char *name, const json_t 
 
 starg_status starg_descriptor_read_memory(starg_context *context, const void *bytes, size_t size,
                                           const char *name, starg_descriptor **out) {
-    starg_status status = STARG_OK;
-    starg_descriptor *descriptor = NULL;
-    json_t *root = NULL;
+    SCOPED_BY(starg_descriptor_drop) starg_descriptor *descriptor = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
     *out = NULL;
-    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
-    STARG_NEW_ZERO(context, STAGE, descriptor, 1);
-    STARG_TRY(record_read(context, name, root, &descriptor_file_fields, descriptor));
-    STARG_TRY(check_edges(context, name, descriptor));
+    TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
+    NEW_ZERO(context, STAGE, descriptor, 1);
+    TRY(record_read(context, name, root, &descriptor_file_fields, descriptor));
+    TRY(check_edges(context, name, descriptor));
     tell_version(context, name, root);
     *out = descriptor;
-done:
-    json_decref(root);
-    if (status != STARG_OK)
-        starg_descriptor_free(context, descriptor);
-    return status;
+    descriptor = NULL;
+    return STARG_OK;
 }
 
 starg_status starg_descriptor_read(starg_context *context, const char *path,

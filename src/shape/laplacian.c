@@ -104,7 +104,7 @@ static starg_status subdivide(surface *s) {
 done:
     if (status != STARG_OK)
         surface_free(&fine);
-    edge_table_free(s->context, &table);
+    edge_table_free(&table);
     return status;
 }
 
@@ -211,27 +211,21 @@ static starg_status assemble(const surface *s, laplacian *l) {
         l->masses[i] /= sum.area;
     STARG_TRY(store_columns(context, &sum, l));
 done:
-    edge_table_free(context, &sum.edges);
+    edge_table_free(&sum.edges);
     RELEASE(sum.weights, sum.diagonal);
     return status;
 }
 
 starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, laplacian *out) {
-    starg_status status = STARG_OK;
-    surface s = {.context = context};
+    SCOPED_BY(surface_free) surface s = {.context = context};
     *out = (laplacian){0};
-    STARG_TRY(copy_surface(mesh, &s));
-    STARG_TRY(renumber(&s, &out->row_of));
+    TRY(copy_surface(mesh, &s));
+    TRY(renumber(&s, &out->row_of));
     while (s.vertex_count < ENOUGH_VERTICES && s.face_count < ENOUGH_FACES) {
-        STARG_TRY(starg_check_cancel(context, STAGE));
-        STARG_TRY(subdivide(&s));
+        TRY(starg_check_cancel(context, STAGE));
+        TRY(subdivide(&s));
     }
-    STARG_TRY(assemble(&s, out));
-done:
-    surface_free(&s);
-    if (status != STARG_OK)
-        laplacian_free(out);
-    return status;
+    return assemble(&s, out);
 }
 
 /* The matrix plus masses on the diagonal, which comes first in each column. */

@@ -29,7 +29,7 @@ typedef struct ray_caster {
 
 /* The mesh must outlive it. Errors: MEMORY. */
 starg_status ray_caster_create(starg_context *context, const starg_tetmesh *mesh, ray_caster *out);
-void ray_caster_free(starg_context *context, ray_caster *caster);
+void ray_caster_free(ray_caster *caster);
 
 /* From a point strictly inside to the first boundary point; at most `length`. */
 double ray_length(const ray_caster *caster, const double from[3], const double direction[3]);
@@ -51,3 +51,7 @@ enum { DESCRIPTOR_VERSION = 5 };
 
 /* The file as a starg_descriptor. */
 extern const starg_fields descriptor_file_fields;
+
+static inline void starg_descriptor_drop(starg_descriptor **descriptor) {
+    starg_descriptor_free(NULL, *descriptor);
+}

@@ -525,29 +525,25 @@ static starg_status prepare(starg_context *context, fitting *f) {
     return STARG_OK;
 }
 
-static void free_fitting(starg_context *context, fitting *f) {
-    kd_tree_free(context, &f->tree);
+static void free_fitting(fitting *f) {
+    kd_tree_free(&f->tree);
     RELEASE(f->places, f->maps, f->moved, f->match, f->weight, f->target, f->right, f->residual,
             f->step, f->image);
 }
 
 /* One direction. */
 static starg_status fit(starg_context *context, const double *a, const double *b, double *out) {
-    starg_status status = STARG_OK;
-    fitting f = {.from = graph_of(a), .to = graph_of(b)};
-    double *x = NULL;
-    STARG_TRY(prepare(context, &f));
-    STARG_NEW(context, STAGE, x, MAP * f.from.guards);
+    SCOPED_BY(free_fitting) fitting f = {.from = graph_of(a), .to = graph_of(b)};
+    SCOPED double *x = NULL;
+    TRY(prepare(context, &f));
+    NEW(context, STAGE, x, MAP * f.from.guards);
     double energy = move(&f);
     for (int round = 0; round < ROUNDS && energy > 0; round++) {
         improve(&f, x);
         energy = move(&f);
     }
     *out = energy + HISTOGRAM * histogram_error(&f);
-done:
-    free_fitting(context, &f);
-    starg_release(context, x);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status compare(starg_context *context, const double *a, size_t a_count,

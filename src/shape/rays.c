@@ -54,8 +54,8 @@ starg_status ray_caster_create(starg_context *context, const starg_tetmesh *mesh
     return status;
 }
 
-void ray_caster_free(starg_context *context, ray_caster *caster) {
-    tet_sight_free(context, &caster->sight);
+void ray_caster_free(ray_caster *caster) {
+    tet_sight_free(&caster->sight);
 }
 
 /* The boundary is usually near: tries short segments first. */

@@ -150,7 +150,7 @@ starg_status starg_descriptor_reconstruct(starg_context *context,
 done:
     starg_release(context, c.points);
     bvh_free(c.surface);
-    kd_tree_free(context, &c.tree);
+    kd_tree_free(&c.tree);
     RELEASE(c.sums, c.to, c.from);
     return status;
 }

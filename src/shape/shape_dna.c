@@ -21,22 +21,18 @@ enum { EIGENVALUES = 50 };
 
 static starg_status compute(starg_context *context, const starg_mesh *mesh, double **numbers,
                             size_t *count) {
-    starg_status status = STARG_OK;
-    double *values = NULL;
-    laplacian l = {0};
-    STARG_TRY(laplacian_create(context, mesh, &l));
-    STARG_NEW(context, STAGE, values, EIGENVALUES + 1);
-    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values, NULL));
+    SCOPED double *values = NULL;
+    SCOPED_BY(laplacian_free) laplacian l = {0};
+    TRY(laplacian_create(context, mesh, &l));
+    NEW(context, STAGE, values, EIGENVALUES + 1);
+    TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values, NULL));
     memmove(values, values + 1, EIGENVALUES * sizeof *values);
     for (size_t i = 0; i < EIGENVALUES; i++)
         values[i] = fmax(values[i], 0); /* rounding of zeros */
     *numbers = values;
+    values = NULL;
     *count = EIGENVALUES;
-done:
-    laplacian_free(&l);
-    if (status != STARG_OK)
-        starg_release(context, values);
-    return status;
+    return STARG_OK;
 }
 
 static bool check(const double *numbers, size_t count) {

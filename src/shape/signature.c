@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/parallel.h"
+#include "shape/measures.h"
 #include "shape/signature_kinds.h"
 
 static const char STAGE[] = "signature";
@@ -92,17 +93,13 @@ static starg_status create(starg_context *context, const starg_mesh *mesh,
 
 starg_status starg_signature_create(starg_context *context, const starg_mesh *mesh,
                                     starg_signature_kind kind, starg_signature **out) {
-    starg_status status = STARG_OK;
-    starg_descriptor *descriptor = NULL;
+    SCOPED_BY(starg_descriptor_drop) starg_descriptor *descriptor = NULL;
     *out = NULL;
     if (method_of(kind) == NULL)
         return fail_kind(context, kind);
     if (starg_signature_needs_descriptor(kind))
-        STARG_TRY(starg_descriptor_create(context, mesh, NULL, &descriptor));
-    STARG_TRY(create(context, mesh, descriptor, kind, out));
-done:
-    starg_descriptor_free(context, descriptor);
-    return status;
+        TRY(starg_descriptor_create(context, mesh, NULL, &descriptor));
+    return create(context, mesh, descriptor, kind, out);
 }
 
 starg_status starg_signature_create_all(starg_context *context, const starg_mesh *mesh,

@@ -58,19 +58,17 @@ static starg_status choose_order(sparse_factors *f, const char *stage, const spa
 
 static starg_status fill_factors(sparse_factors *f, const char *stage, const sparse_matrix *a,
                                  making *m) {
-    starg_status status = STARG_OK;
     ldl_l_symbolic(f->size, a->starts, a->rows, f->starts, m->parents, m->sizes, m->flags, f->order,
                    m->inverse);
-    STARG_NEW(f->context, stage, f->rows, (size_t)f->starts[f->size]);
-    STARG_NEW(f->context, stage, f->values, (size_t)f->starts[f->size]);
+    NEW(f->context, stage, f->rows, (size_t)f->starts[f->size]);
+    NEW(f->context, stage, f->values, (size_t)f->starts[f->size]);
     if (ldl_l_numeric(f->size, a->starts, a->rows, a->values, f->starts, m->parents, m->sizes,
                       f->rows, f->values, f->diagonal, m->row, m->pattern, m->flags, f->order,
                       m->inverse) != f->size)
-        status = starg_fail(
+        return starg_fail(
             f->context, STARG_ERROR_SOLVER, stage,
             "a linear system cannot be solved: some faces are too thin; try 'starguard repair'");
-done:
-    return status;
+    return STARG_OK;
 }
 
 starg_status sparse_factorise(starg_context *context, const char *stage,

@@ -333,7 +333,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
     complex = NULL;
 done:
     RELEASE(b.node_of, b.centre_in, b.poor);
-    edge_table_free(context, &b.edges);
+    edge_table_free(&b.edges);
     complex_free(complex);
     return status;
 }

@@ -447,18 +447,15 @@ static uint32_t terminal_edge(const conformer *c, uint32_t h) {
 }
 
 static starg_status cut_and_pierce(conformer *c) {
-    starg_status status = STARG_OK;
-    bool *cut = NULL; /* faces with a lost edge */
-    STARG_NEW_ZERO(c->context, STAGE, cut, c->mesh.net.corners.count / 3);
+    /* faces with a lost edge */
+    SCOPED bool *cut = NULL;
+    NEW_ZERO(c->context, STAGE, cut, c->mesh.net.corners.count / 3);
     for (size_t i = 0; i < c->lost_edges.count; i++) {
         uint32_t h = find_edge(c, &c->lost_edges.data[i]);
         cut[h / 3] = cut[twin(c, h) / 3] = true;
     }
-    STARG_TRY(pierce_lost_faces(c, cut));
-    STARG_TRY(cut_lost_edges(c));
-done:
-    starg_release(c->context, cut);
-    return status;
+    TRY(pierce_lost_faces(c, cut));
+    return cut_lost_edges(c);
 }
 
 static starg_status bisect_lost_faces(conformer *c) {

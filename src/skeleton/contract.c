@@ -175,14 +175,13 @@ static starg_status give_up(contractor *k) {
 
 /* Numbers clusters by their first nodes. */
 static starg_status take_nodes(contractor *k) {
-    starg_status status = STARG_OK;
     medial_complex *c = k->complex;
-    uint32_t *numbers = NULL; /* of leaders */
-    double(*centres)[3] = NULL, *radii = NULL;
+    SCOPED uint32_t *numbers = NULL; /* of leaders */
+    SCOPED double(*centres)[3] = NULL, *radii = NULL;
     size_t count = 0;
-    STARG_NEW(k->context, STAGE, numbers, c->node_count);
-    STARG_NEW(k->context, STAGE, centres, c->node_count);
-    STARG_NEW(k->context, STAGE, radii, c->node_count);
+    NEW(k->context, STAGE, numbers, c->node_count);
+    NEW(k->context, STAGE, centres, c->node_count);
+    NEW(k->context, STAGE, radii, c->node_count);
     memset(numbers, 0xff, c->node_count * sizeof *numbers);
     for (uint32_t v = 0; v < c->node_count; v++) {
         uint32_t leader = k->given_up[k->leader[v]] ? v : k->leader[v];
@@ -196,9 +195,7 @@ static starg_status take_nodes(contractor *k) {
     memcpy(c->centres, centres, count * sizeof *centres);
     memcpy(c->radii, radii, count * sizeof *radii);
     c->node_count = count;
-done:
-    RELEASE(numbers, centres, radii);
-    return status;
+    return STARG_OK;
 }
 
 /* Keeps the links between different nodes and all but the contracted sheets. */

@@ -330,12 +330,11 @@ static starg_status place_branches(curve *c, size_t wanted) {
 
 /* Moves nodes of degree two towards the midpoint of their neighbours if that is inside. */
 static starg_status smooth_nodes(curve *c) {
-    starg_status status = STARG_OK;
     size_t count = c->positions.count / 3;
-    uint32_t(*neighbours)[2] = NULL, *degrees = NULL;
+    SCOPED uint32_t(*neighbours)[2] = NULL, *degrees = NULL;
     double *p = c->positions.data, moved[3];
-    STARG_NEW(c->context, STAGE, neighbours, count);
-    STARG_NEW_ZERO(c->context, STAGE, degrees, count);
+    NEW(c->context, STAGE, neighbours, count);
+    NEW_ZERO(c->context, STAGE, degrees, count);
     for (size_t e = 0; e < c->edges.count; e++) {
         uint32_t v = c->edges.data[e];
         if (degrees[v] < 2)
@@ -353,9 +352,7 @@ static starg_status smooth_nodes(curve *c) {
             if (starg_solid_contains(c->solid, moved))
                 vec3_copy(moved, p + 3 * v);
         }
-done:
-    RELEASE(neighbours, degrees);
-    return status;
+    return STARG_OK;
 }
 
 static uint32_t nearest_node(const curve *c, const double p[3]) {

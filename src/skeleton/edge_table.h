@@ -17,20 +17,17 @@ typedef struct edge_table {
 /* Room for `capacity` edges. Errors: MEMORY (stage named). */
 static inline starg_status edge_table_make(starg_context *context, const char *stage,
                                            size_t capacity, edge_table *table) {
-    starg_status status = STARG_OK;
     size_t slots = 16;
     while (slots < 2 * capacity)
         slots *= 2;
     *table = (edge_table){.mask = slots - 1};
-    STARG_NEW_ZERO(context, stage, table->keys, slots);
-    STARG_NEW(context, stage, table->numbers, slots);
-done:
-    return status;
+    NEW_ZERO(context, stage, table->keys, slots);
+    NEW(context, stage, table->numbers, slots);
+    return STARG_OK;
 }
 
-static inline void edge_table_free(starg_context *context, edge_table *table) {
-    starg_release(context, table->keys);
-    starg_release(context, table->numbers);
+static inline void edge_table_free(edge_table *table) {
+    RELEASE(table->keys, table->numbers);
 }
 
 static inline size_t edge_table_slot(const edge_table *table, uint32_t u, uint32_t v) {

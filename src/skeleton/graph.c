@@ -8,10 +8,9 @@ static const char STAGE[] = "curve graph";
 
 starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*links)[2],
                           const bool *marked, size_t link_count, curve_graph *graph) {
-    starg_status status = STARG_OK;
     *graph = (curve_graph){.node_count = node_count};
-    STARG_NEW_ZERO(context, STAGE, graph->first, node_count + 2);
-    STARG_NEW(context, STAGE, graph->next, 2 * link_count);
+    NEW_ZERO(context, STAGE, graph->first, node_count + 2);
+    NEW(context, STAGE, graph->next, 2 * link_count);
     uint32_t *end = graph->first + 1; /* of each list as it fills */
     for (size_t l = 0; l < link_count; l++)
         for (int k = 0; (marked == NULL || marked[l]) && k < 2; k++)
@@ -21,10 +20,7 @@ starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*
     for (size_t l = 0; l < link_count; l++)
         for (int k = 0; (marked == NULL || marked[l]) && k < 2; k++)
             graph->next[end[links[l][k]]++] = links[l][1 - k];
-done:
-    if (status != STARG_OK)
-        graph_free(graph);
-    return status;
+    return STARG_OK;
 }
 
 void graph_free(curve_graph *graph) {

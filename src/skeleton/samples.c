@@ -120,27 +120,23 @@ static size_t count_added(const surface_samples *samples, const edge_table *tabl
 /* Splits long edges at their midpoints, and their faces; *splits is their number. */
 static starg_status refine(starg_context *context, surface_samples *samples, double longest,
                            size_t *splits) {
-    starg_status status = STARG_OK;
-    edge_table table = {0};
-    surface_samples finer = {0};
+    SCOPED_BY(edge_table_free) edge_table table = {0};
+    SCOPED_BY(samples_free) surface_samples finer = {0};
     *splits = 0;
-    STARG_TRY(number_splits(context, samples, longest, &table));
+    TRY(number_splits(context, samples, longest, &table));
     if (table.count == 0)
-        goto done;
+        return STARG_OK;
     finer.point_count = samples->point_count + table.count;
     finer.face_count = samples->face_count + count_added(samples, &table);
-    STARG_NEW(context, STAGE, finer.points, 3 * finer.point_count);
-    STARG_NEW(context, STAGE, finer.faces, 3 * finer.face_count);
+    NEW(context, STAGE, finer.points, 3 * finer.point_count);
+    NEW(context, STAGE, finer.faces, 3 * finer.face_count);
     place_points(samples, &table, finer.points);
     finer.face_count = cut_faces(samples, &table, finer.points, finer.faces);
     *splits = table.count;
     samples_free(samples);
     *samples = finer;
     finer = (surface_samples){0};
-done:
-    samples_free(&finer);
-    edge_table_free(context, &table);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status copy_mesh(starg_context *context, const starg_mesh *mesh,
@@ -182,23 +178,19 @@ static void move_points(surface_samples *samples) {
 
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
                             bool moved, surface_samples *samples) {
-    starg_status status = STARG_OK;
     *samples = (surface_samples){0};
-    STARG_TRY(copy_mesh(context, solid->mesh, samples));
+    TRY(copy_mesh(context, solid->mesh, samples));
     /* twice the edge of equilateral triangles that share the area evenly */
     double longest = 2 * sqrt(1.1547 * solid->check->area / (double)wanted);
     size_t splits = 1;
     size_t most = solid->mesh->vertex_count + MOST_ADDED * wanted;
     for (int round = 0; splits > 0 && samples->point_count < most && round < MAX_ROUNDS; round++) {
-        STARG_TRY(starg_check_cancel(context, STAGE));
-        STARG_TRY(refine(context, samples, longest, &splits));
+        TRY(starg_check_cancel(context, STAGE));
+        TRY(refine(context, samples, longest, &splits));
     }
     if (moved)
         move_points(samples);
-done:
-    if (status != STARG_OK)
-        samples_free(samples);
-    return status;
+    return STARG_OK;
 }
 
 void samples_free(surface_samples *samples) {

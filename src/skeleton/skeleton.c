@@ -255,15 +255,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "skeleton options", .size = sizeof(starg_skeleton_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_skeleton_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_skeleton_options_default(starg_skeleton_options *options) {
-    *options = (starg_skeleton_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_skeleton_options)
 
 starg_status starg_skeleton_create(starg_context *context, const starg_solid *solid,
                                    const starg_skeleton_options *options, starg_skeleton **out) {

@@ -105,8 +105,7 @@ static bool place_near(const sphere *s, const ring *around, double out[3]) {
     return false;
 }
 
-void sphere_work_free(starg_context *context, sphere_work *work) {
-    (void)context;
+void sphere_work_free(sphere_work *work) {
     RELEASE(work->rows.data, work->order.data);
 }
 
@@ -203,25 +202,19 @@ starg_status sphere_even(starg_context *context, const starg_mesh *mesh, const d
 }
 
 starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out) {
-    starg_status status = STARG_OK;
-    sphere *s = NULL;
-    sphere_work work = {0};
+    SCOPED_BY(sphere_drop) sphere *s = NULL;
+    SCOPED_BY(sphere_work_free) sphere_work work = {0};
     *out = NULL;
-    STARG_TRY(begin(context, mesh, &s));
-    STARG_TRY(rings_reduce(s->rings, &(rings_limits){.least = BASE}));
+    TRY(begin(context, mesh, &s));
+    TRY(rings_reduce(s->rings, &(rings_limits){.least = BASE}));
     place_base(s);
-    STARG_TRY(refine(s, &work));
-    if (!sphere_is_positive(s)) {
-        status = starg_fail(context, STARG_ERROR_SOLVER, STAGE,
-                            "the surface cannot be mapped to the sphere in double precision");
-        goto done;
-    }
+    TRY(refine(s, &work));
+    if (!sphere_is_positive(s))
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE,
+                          "the surface cannot be mapped to the sphere in double precision");
     *out = s;
     s = NULL;
-done:
-    sphere_work_free(context, &work);
-    sphere_free(s);
-    return status;
+    return STARG_OK;
 }
 
 void sphere_free(sphere *s) {

@@ -101,7 +101,7 @@ typedef struct sphere_work {
     STARG_ARRAY(double) rows;
     STARG_ARRAY(uint32_t) order;
 } sphere_work;
-void sphere_work_free(starg_context *context, sphere_work *work) STARG_PRIVATE(sphere_work_free);
+void sphere_work_free(sphere_work *work) STARG_PRIVATE(sphere_work_free);
 
 /* Restores the last removed vertex, at the centre of the kernel of its polygon, and appends it to
  * `alive`. Errors: SOLVER (no room in doubles), MEMORY. */

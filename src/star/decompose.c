@@ -2,6 +2,7 @@
 /* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
 
 #include "geometry/vec3.h"
+#include "mesh/examine.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
 #include "tetra/fields.h"
@@ -113,15 +114,7 @@ const starg_fields decompose_file_options = {.name = "options",
                                              .fields = OPTIONS,
                                              .count = sizeof OPTIONS / sizeof *OPTIONS -
                                                       TETRA_MACHINE_FIELDS};
-
-const starg_fields *starg_decompose_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_decompose_options_default(starg_decompose_options *options) {
-    *options = (starg_decompose_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_decompose_options)
 
 /* Strict pieces are made of their surfaces: where tetrahedra are needed, they may be few. */
 static starg_tetra_options tetra_options(const starg_decompose_options *o) {
@@ -181,28 +174,24 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
                          const starg_mesh *surface, const starg_decompose_options *options,
                          starg_tetra_report *report, starg_tetmesh **out) {
     const starg_tetra_options tetra = tetra_options(options);
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    starg_status status = solid != NULL
-                              ? starg_tetmesh_from_solid(context, solid, &tetra, report, out)
-                              : starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
-    starg_time_end(context, former);
-    return status;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    return solid != NULL ? starg_tetmesh_from_solid(context, solid, &tetra, report, out)
+                         : starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
 }
 
 /* Where a surface is more hole than surface, or turns to and fro, what it winds around has little
  * to do with it. */
 static starg_status check_filling(starg_context *context, const starg_mesh *surface,
                                   const starg_tetra_report *report) {
-    starg_status status = STARG_OK;
-    starg_check *check = NULL;
+    SCOPED_BY(starg_check_drop) starg_check *check = NULL;
     double lower[3], upper[3], off = fmax(report->to_surface, report->from_surface) + report->step;
     starg_mesh_bounds(surface, lower, upper);
     double share = off / vec3_distance(lower, upper);
     if (share <= STARG_DECOMPOSE_FILL_MOST)
         return STARG_OK;
-    STARG_TRY(starg_mesh_check(context, surface, &check));
+    TRY(starg_mesh_check(context, surface, &check));
     bool holes = check->findings[STARG_FINDING_OPEN_EDGE].count > 0;
-    status = starg_fail(
+    return starg_fail(
         context, STARG_ERROR_MESH, STAGE,
         "the volume that fills the surface is up to %.2g of its diagonal away from it, more than "
         "%g: %s with 'starguard repair', or set --fill",
@@ -210,9 +199,6 @@ static starg_status check_filling(starg_context *context, const starg_mesh *surf
         holes ? "its holes are too large; close them"
               : "edges with more than two faces, or faces that are turned differently, leave open "
                 "what is inside; mend them");
-done:
-    starg_check_free(context, check);
-    return status;
 }
 
 static starg_status decompose_filled(starg_context *context, const starg_solid *solid,
@@ -233,14 +219,11 @@ static starg_status decompose_filled(starg_context *context, const starg_solid *
  * no interior. */
 static starg_status bound_by_parts(starg_context *context, const starg_solid *solid,
                                    starg_decomposition *d) {
-    starg_status status = STARG_OK;
-    solid_parts parts = {0};
-    STARG_TRY(solid_parts_find(context, solid, &parts));
-    STARG_TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
+    SCOPED_BY(solid_parts_free) solid_parts parts = {0};
+    TRY(solid_parts_find(context, solid, &parts));
+    TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
     d->optimal = d->lower_bound == d->piece_count;
-done:
-    solid_parts_free(&parts);
-    return status;
+    return STARG_OK;
 }
 
 /* Nothing but the surface is needed where that bounds the solid as it is; else *out stays NULL. */

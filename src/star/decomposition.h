@@ -100,3 +100,7 @@ starg_status certified_decompose_surface(starg_context *context, const kernel_fa
 starg_status certified_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
                                          const starg_decompose_options *options,
                                          starg_decomposition **out);
+
+static inline void starg_decomposition_drop(starg_decomposition **decomposition) {
+    starg_decomposition_free(NULL, *decomposition);
+}

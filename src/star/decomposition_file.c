@@ -45,47 +45,41 @@ static starg_status check_report(starg_context *context, const char *name,
 
 static starg_status read_report(starg_context *context, const starg_file_bytes *file,
                                 starg_decomposition *d) {
-    starg_status status = STARG_OK;
-    json_t *root = NULL;
-    STARG_TRY(starg_json_parse(context, STAGE, file->name, file->bytes, file->size, &root));
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
+    TRY(starg_json_parse(context, STAGE, file->name, file->bytes, file->size, &root));
     starg_decompose_options_default(&d->options);
     d->options_known = json_object_get(root, "options") != NULL;
-    STARG_TRY(record_read(context, file->name, root, &decomposition_file_fields, d));
-    STARG_TRY(check_report(context, file->name, d));
+    TRY(record_read(context, file->name, root, &decomposition_file_fields, d));
+    TRY(check_report(context, file->name, d));
     d->tetra.generator = d->tetra.surface_kept ? STARG_TETRA_AUTO : STARG_TETRA_STUFFING;
     d->tetra.to_surface = d->tetra.distance;
     d->tetra.from_surface = d->tetra.distance_back;
-done:
-    json_decref(root);
-    return status;
+    return STARG_OK;
 }
 
 /* The piece of each tetrahedron; a mesh with the same label everywhere has none of its own. */
 static starg_status take_labels(starg_context *context, const starg_file_bytes *report,
                                 starg_decomposition *d) {
-    starg_status status = STARG_OK;
     const int32_t *regions = starg_tetmesh_regions(d->mesh);
-    size_t *left = NULL;
+    SCOPED size_t *left = NULL;
     if (d->mesh->count != d->tetrahedra)
         return reject(context, report->name, "tetrahedra", "the number of cells of PIECES.vtk");
-    STARG_NEW_ZERO(context, STAGE, d->labels, d->tetrahedra);
-    STARG_NEW_ZERO(context, STAGE, left, d->piece_count);
+    NEW_ZERO(context, STAGE, d->labels, d->tetrahedra);
+    NEW_ZERO(context, STAGE, left, d->piece_count);
     for (size_t p = 0; p < d->piece_count; p++)
         left[p] = d->pieces[p].tetrahedra;
-    for (size_t t = 0; t < d->tetrahedra && status == STARG_OK; t++) {
+    for (size_t t = 0; t < d->tetrahedra; t++) {
         int32_t label = regions != NULL ? regions[t] : 0;
         d->labels[t] = label;
         uint64_t index = t;
         if (label < 0 || (size_t)label >= d->piece_count || left[label]-- == 0)
-            status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON,
-                                   &index, 1,
-                                   "tetrahedron %zu has the label %d, which does not match "
-                                   "'%.200s'; the files belong to different decompositions",
-                                   t, label, report->name);
+            return starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON,
+                                 &index, 1,
+                                 "tetrahedron %zu has the label %d, which does not match "
+                                 "'%.200s'; the files belong to different decompositions",
+                                 t, label, report->name);
     }
-done:
-    starg_release(context, left);
-    return status;
+    return STARG_OK;
 }
 
 /* Images of corners, which the tetrahedral mesh has kept. */
@@ -105,22 +99,19 @@ static starg_status take_balls(starg_context *context, const starg_file_bytes *p
 starg_status starg_decomposition_read_memory(starg_context *context, const starg_file_bytes *pieces,
                                              const starg_file_bytes *report,
                                              starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_decomposition *d = NULL;
+    SCOPED_BY(starg_decomposition_drop) starg_decomposition *d = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, d, 1);
-    STARG_TRY(read_report(context, report, d));
+    NEW_ZERO(context, STAGE, d, 1);
+    TRY(read_report(context, report, d));
     if (pieces != NULL) {
-        STARG_TRY(starg_tetmesh_read_memory(context, pieces->bytes, pieces->size, pieces->name,
-                                            &d->mesh));
-        STARG_TRY(take_labels(context, report, d));
-        STARG_TRY(take_balls(context, pieces, d));
+        TRY(starg_tetmesh_read_memory(context, pieces->bytes, pieces->size, pieces->name,
+                                      &d->mesh));
+        TRY(take_labels(context, report, d));
+        TRY(take_balls(context, pieces, d));
     }
     *out = d;
-done:
-    if (status != STARG_OK)
-        starg_decomposition_free(context, d);
-    return status;
+    d = NULL;
+    return STARG_OK;
 }
 
 starg_status starg_decomposition_read(starg_context *context, const char *pieces_path,
@@ -231,20 +222,16 @@ static starg_pieces_report report_of(starg_decomposition *d) {
 
 starg_status starg_pieces_report_read_memory(starg_context *context, const void *bytes, size_t size,
                                              const char *name, starg_pieces_report **out) {
-    starg_status status = STARG_OK;
-    starg_decomposition *d = NULL;
-    json_t *root = NULL;
+    SCOPED_BY(starg_decomposition_drop) starg_decomposition *d = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, d, 1);
-    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
-    STARG_TRY(record_read(context, name, root, &decomposition_file_fields, d));
-    STARG_TRY(require_keys(context, name, root, d));
-    STARG_NEW(context, STAGE, *out, 1);
+    NEW_ZERO(context, STAGE, d, 1);
+    TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
+    TRY(record_read(context, name, root, &decomposition_file_fields, d));
+    TRY(require_keys(context, name, root, d));
+    NEW(context, STAGE, *out, 1);
     **out = report_of(d);
-done:
-    json_decref(root);
-    starg_decomposition_free(context, d);
-    return status;
+    return STARG_OK;
 }
 
 void starg_pieces_report_free(starg_context *context, starg_pieces_report *report) {

@@ -111,6 +111,6 @@ starg_status decomposition_find_sight(starg_context *context, starg_decompositio
     d->visible_vertices = (double)c.seen / (double)c.total;
 done:
     STARG_ARRAY_FREE(context, &c.pairs);
-    tet_sight_free(context, &sight);
+    tet_sight_free(&sight);
     return status;
 }

@@ -84,21 +84,14 @@ static void write_groups(FILE *stream, const starg_mesh *mesh, const uint32_t *f
 starg_status starg_decomposition_write_groups(starg_context *context,
                                               const starg_decomposition *decomposition,
                                               const char *path) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    uint32_t *first = NULL;
-    starg_output output = {0};
-    starg_c_locale locale = {0};
-    STARG_TRY(starg_decomposition_surfaces(context, decomposition, &mesh, &first));
-    STARG_TRY(starg_c_locale_enter(context, &locale));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED uint32_t *first = NULL;
+    SCOPED_BY(starg_output_discard) starg_output output = {0};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
+    TRY(starg_decomposition_surfaces(context, decomposition, &mesh, &first));
+    TRY(starg_c_locale_enter(context, &locale));
+    TRY(starg_output_open(context, STAGE, path, &output));
     write_groups(output.stream, mesh, first, decomposition->piece_count);
-    STARG_TRY(starg_check_cancel(context, STAGE));
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_output_discard(&output);
-    starg_c_locale_leave(&locale);
-    starg_tetmesh_map_free(context, first);
-    starg_mesh_free(mesh);
-    return status;
+    TRY(starg_check_cancel(context, STAGE));
+    return starg_output_commit(&output);
 }

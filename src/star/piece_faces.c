@@ -71,26 +71,21 @@ starg_status piece_faces_add(starg_context *context, const starg_tetmesh *mesh,
 static const char STAGE_SIGHT[] = "sight";
 
 starg_status tet_sight_create(starg_context *context, const starg_tetmesh *mesh, tet_sight *out) {
-    starg_status status = STARG_OK;
     size_t count = 0;
     *out = (tet_sight){0};
     for (size_t f = 0; f < 4 * mesh->count; f++)
         count += mesh->neighbours[f] == STARG_TETMESH_NONE;
-    STARG_NEW(context, STAGE_SIGHT, out->faces, 3 * count);
+    NEW(context, STAGE_SIGHT, out->faces, 3 * count);
     count = 0;
     for (size_t f = 0; f < 4 * mesh->count; f++)
         if (mesh->neighbours[f] == STARG_TETMESH_NONE)
             piece_face_corners(mesh, f, out->faces + 3 * count++);
-    STARG_TRY(bvh_create(context, mesh->vertices, out->faces, count, &out->tree));
-done:
-    if (status != STARG_OK)
-        tet_sight_free(context, out);
-    return status;
+    return bvh_create(context, mesh->vertices, out->faces, count, &out->tree);
 }
 
-void tet_sight_free(starg_context *context, tet_sight *sight) {
+void tet_sight_free(tet_sight *sight) {
     bvh_free(sight->tree);
-    starg_release(context, sight->faces);
+    RELEASE(sight->faces);
     *sight = (tet_sight){0};
 }
 

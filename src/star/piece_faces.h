@@ -50,7 +50,7 @@ typedef struct tet_sight {
 /* The mesh must outlive it; vertices inside may move. Errors: MEMORY. */
 starg_status tet_sight_create(starg_context *context, const starg_tetmesh *mesh, tet_sight *out)
     STARG_PRIVATE(tet_sight_create);
-void tet_sight_free(starg_context *context, tet_sight *sight) STARG_PRIVATE(tet_sight_free);
+void tet_sight_free(tet_sight *sight) STARG_PRIVATE(tet_sight_free);
 
 /* Is p strictly inside of the mesh? Exact. */
 bool tet_sight_contains(const tet_sight *sight, const double p[3]);

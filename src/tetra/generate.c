@@ -26,15 +26,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "tetrahedra options", .size = sizeof(starg_tetra_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_tetra_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_tetra_options_default(starg_tetra_options *options) {
-    *options = (starg_tetra_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_tetra_options)
 
 /* Wanted number of tetrahedra; 0: as few as possible. */
 static double wanted(const starg_mesh *mesh, const starg_tetra_options *o) {

@@ -29,11 +29,6 @@ starg_status tetra_by_tetgen(starg_context *context, const starg_solid *solid, d
 starg_status tetra_by_stuffing(starg_context *context, const tetra_shape *shape, double *spacing,
                                starg_tetmesh **out);
 
-/* Largest distance from one surface to another, at points at most `step` apart. Errors: MEMORY,
- * CANCELLED. */
-starg_status tetra_measure_one_way(starg_context *context, const starg_mesh *from, const bvh *to,
-                                   double step, double *out);
-
 /* Largest distances between the boundary of a mesh and the surface of a shape, in both directions,
  * at points at most `step` apart. Errors: MEMORY, CANCELLED. */
 starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
@@ -57,10 +52,6 @@ typedef struct lattice_point {
 } lattice_point;
 
 enum { LATTICE_EDGES = 14, LATTICE_OWNED = 7 };
-
-/* Steps to the neighbours; the first LATTICE_OWNED lead along edges that a point owns, the others
- * are their opposites in the same order. Steps 0 to 2 of each half are long. */
-extern const int LATTICE_STEP[LATTICE_EDGES][3];
 
 typedef enum lattice_side { LATTICE_OUTSIDE = -1, LATTICE_ON = 0, LATTICE_INSIDE = 1 } lattice_side;
 

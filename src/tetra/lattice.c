@@ -27,7 +27,9 @@ static const double WARP_LONG = 0.24999, WARP_SHORT = 0.41189;
 
 enum { MARGIN = 2, MOST_WINDING = 100 }; /* cubes around the solid */
 
-const int LATTICE_STEP[LATTICE_EDGES][3] = {
+/* To the neighbours; the first LATTICE_OWNED lead along edges that a point owns, the others are
+ * their opposites in the same order. Steps 0 to 2 of each half are long. */
+static const int LATTICE_STEP[LATTICE_EDGES][3] = {
     {2, 0, 0},  {0, 2, 0},  {0, 0, 2},  {1, 1, 1},    {-1, 1, 1},  {1, -1, 1},  {-1, -1, 1},
     {-2, 0, 0}, {0, -2, 0}, {0, 0, -2}, {-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}};
 
@@ -199,7 +201,6 @@ static starg_status find_insides(lattice *l) {
 
 starg_status lattice_create(starg_context *context, const tetra_shape *shape, double spacing,
                             lattice *out) {
-    starg_status status = STARG_OK;
     double lower[3], extent[3];
     *out = (lattice){.context = context, .shape = shape, .half = 0.5 * spacing};
     shape_extent(shape, lower, extent);
@@ -212,15 +213,11 @@ starg_status lattice_create(starg_context *context, const tetra_shape *shape, do
         (size_t)(out->cubes[0] + 1) * (size_t)(out->cubes[1] + 1) * (size_t)(out->cubes[2] + 1);
     out->points =
         out->corners + (size_t)out->cubes[0] * (size_t)out->cubes[1] * (size_t)out->cubes[2];
-    STARG_NEW_ZERO(context, STAGE, out->winding, out->points);
-    STARG_NEW(context, STAGE, out->side, out->points);
-    STARG_NEW(context, STAGE, out->node, out->points);
+    NEW_ZERO(context, STAGE, out->winding, out->points);
+    NEW(context, STAGE, out->side, out->points);
+    NEW(context, STAGE, out->node, out->points);
     memset(out->node, 0xff, out->points * sizeof *out->node);
-    STARG_TRY(find_insides(out));
-done:
-    if (status != STARG_OK)
-        lattice_free(out);
-    return status;
+    return find_insides(out);
 }
 
 void lattice_free(lattice *l) {

@@ -62,8 +62,8 @@ static starg_status survey_face(starg_context *context, void *shared, void *scra
     return STARG_OK;
 }
 
-starg_status tetra_measure_one_way(starg_context *context, const starg_mesh *from, const bvh *to,
-                                   double step, double *out) {
+static starg_status measure_one_way(starg_context *context, const starg_mesh *from, const bvh *to,
+                                    double step, double *out) {
     survey s = {.from = from, .to = to, .step = step};
     starg_parallel_loop loop = {
         .stage = STAGE, .count = from->face_count, .shared = &s, .item = survey_face};
@@ -79,6 +79,6 @@ starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
     SCOPED_BY(bvh_drop) bvh *tree = NULL;
     TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
     TRY(bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
-    TRY(tetra_measure_one_way(context, boundary, shape->tree, step, to_surface));
-    return tetra_measure_one_way(context, shape->mesh, tree, step, from_surface);
+    TRY(measure_one_way(context, boundary, shape->tree, step, to_surface));
+    return measure_one_way(context, shape->mesh, tree, step, from_surface);
 }

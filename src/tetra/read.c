@@ -30,32 +30,24 @@ bool starg_tetmesh_recognized(const void *bytes, size_t size, const char *name) 
 /* Runs a reader on sources with shortened names. */
 static starg_status read_source(const starg_source *source, const starg_source *elements,
                                 starg_tetmesh **out) {
-    starg_status status = STARG_OK;
-    tet_builder builder = {.points = {.source = source}};
-    starg_c_locale locale = {0};
+    SCOPED_BY(tet_builder_free) tet_builder builder = {.points = {.source = source}};
+    SCOPED_BY(starg_c_locale_leave) starg_c_locale locale = {0};
     const struct format *format = NULL;
-    starg_progress_begin(source->context, "read");
-    STARG_TRY(starg_check_cancel(source->context, STARG_MESH_FILE));
-    STARG_TRY(starg_c_locale_enter(source->context, &locale));
+    IN_STAGE(source->context, "read");
+    TRY(starg_check_cancel(source->context, STARG_MESH_FILE));
+    TRY(starg_c_locale_enter(source->context, &locale));
     if (elements != NULL) {
-        STARG_TRY(tet_tetgen_read(&builder, elements));
+        TRY(tet_tetgen_read(&builder, elements));
     } else {
         format = detect(source);
-        if (format == NULL) {
-            status = starg_source_fail(source, starg_at_file(),
-                                       "unknown format; use MEDIT .mesh, legacy .vtk, Gmsh .msh, "
-                                       "or TetGen .node and .ele; 'meshio convert IN out.vtk' "
-                                       "converts others");
-            goto done;
-        }
-        STARG_TRY(format->read(&builder));
+        if (format == NULL)
+            return starg_source_fail(source, starg_at_file(),
+                                     "unknown format; use MEDIT .mesh, legacy .vtk, Gmsh .msh, "
+                                     "or TetGen .node and .ele; 'meshio convert IN out.vtk' "
+                                     "converts others");
+        TRY(format->read(&builder));
     }
-    STARG_TRY(tet_builder_finish(&builder, out));
-done:
-    starg_c_locale_leave(&locale);
-    tet_builder_free(&builder);
-    starg_progress_end(source->context);
-    return status;
+    return tet_builder_finish(&builder, out);
 }
 
 starg_status starg_tetmesh_read_memory(starg_context *context, const void *bytes, size_t size,

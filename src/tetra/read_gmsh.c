@@ -116,32 +116,29 @@ static starg_status read_nodes2(gmsh_reader *gmsh) {
 
 /* Nodes of one entity: all tags, then all positions (with parameters if present). */
 static starg_status read_node_block(gmsh_reader *gmsh) {
-    starg_status status = STARG_OK;
-    int64_t dimension, entity, parametric, count, *tags = NULL;
-    STARG_TRY(integer(gmsh, NUMBER_INT32, "a dimension", &dimension));
-    STARG_TRY(integer(gmsh, NUMBER_INT32, "the tag of an entity", &entity));
-    STARG_TRY(integer(gmsh, NUMBER_INT32, "0 or 1", &parametric));
-    STARG_TRY(size(gmsh, "the number of nodes in a block", &count));
+    int64_t dimension, entity, parametric, count;
+    SCOPED int64_t *tags = NULL;
+    TRY(integer(gmsh, NUMBER_INT32, "a dimension", &dimension));
+    TRY(integer(gmsh, NUMBER_INT32, "the tag of an entity", &entity));
+    TRY(integer(gmsh, NUMBER_INT32, "0 or 1", &parametric));
+    TRY(size(gmsh, "the number of nodes in a block", &count));
     size_t bytes = numbers_least_bytes(&gmsh->numbers, gmsh->size_type) +
                    3 * numbers_least_bytes(&gmsh->numbers, NUMBER_FLOAT64);
-    STARG_TRY(numbers_check_count(&gmsh->numbers, count, bytes, "nodes"));
+    TRY(numbers_check_count(&gmsh->numbers, count, bytes, "nodes"));
     if (dimension < 0 || dimension > 3)
         return starg_source_fail(source_of(gmsh), numbers_place(&gmsh->numbers),
                                  "an entity has the dimension %lld", (long long)dimension);
-    STARG_NEW(source_of(gmsh)->context, STAGE, tags, (size_t)count);
+    NEW(source_of(gmsh)->context, STAGE, tags, (size_t)count);
     for (int64_t i = 0; i < count; i++)
-        STARG_TRY(size(gmsh, "the tag of a node", &tags[i]));
+        TRY(size(gmsh, "the tag of a node", &tags[i]));
     for (int64_t i = 0; i < count; i++) {
         double point[3], ignored;
-        STARG_TRY(read_point(gmsh, point));
+        TRY(read_point(gmsh, point));
         for (int64_t k = 0; parametric != 0 && k < dimension; k++)
-            STARG_TRY(
-                numbers_real(&gmsh->numbers, NUMBER_FLOAT64, "a parameter of a node", &ignored));
-        STARG_TRY(add_node(gmsh, tags[i], point));
+            TRY(numbers_real(&gmsh->numbers, NUMBER_FLOAT64, "a parameter of a node", &ignored));
+        TRY(add_node(gmsh, tags[i], point));
     }
-done:
-    starg_release(source_of(gmsh)->context, tags);
-    return status;
+    return STARG_OK;
 }
 
 /* Header of version 4 sections: blocks, items, least and greatest tag. */

@@ -222,15 +222,10 @@ static starg_status compare_surfaces(run *r, const starg_mesh *boundary, const u
 }
 
 static starg_status check_boundary(run *r, const starg_tetmesh *mesh) {
-    starg_status status = STARG_OK;
-    starg_mesh *boundary = NULL;
-    uint32_t *map = NULL;
-    STARG_TRY(starg_tetmesh_surface(r->context, mesh, &boundary, &map));
-    STARG_TRY(compare_surfaces(r, boundary, map));
-done:
-    starg_tetmesh_map_free(r->context, map);
-    starg_mesh_free(boundary);
-    return status;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *boundary = NULL;
+    SCOPED uint32_t *map = NULL;
+    TRY(starg_tetmesh_surface(r->context, mesh, &boundary, &map));
+    return compare_surfaces(r, boundary, map);
 }
 
 /* Positive tetrahedra with an embedded boundary cannot overlap, so the overlap check is skipped;

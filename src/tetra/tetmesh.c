@@ -128,50 +128,45 @@ done:
 starg_status starg_tetmesh_create(starg_context *context, const double *vertices,
                                   size_t vertex_count, const uint32_t *tetrahedra, size_t count,
                                   const int32_t *regions, starg_tetmesh **out) {
-    starg_status status = STARG_OK;
-    double *own_vertices = NULL;
-    uint32_t *own_tetrahedra = NULL;
-    int32_t *own_regions = NULL;
+    SCOPED double *own_vertices = NULL;
+    SCOPED uint32_t *own_tetrahedra = NULL;
+    SCOPED int32_t *own_regions = NULL;
     *out = NULL;
-    STARG_TRY(check_counts(context, vertex_count, count));
-    STARG_NEW(context, STAGE, own_vertices, 3 * vertex_count);
-    STARG_NEW(context, STAGE, own_tetrahedra, 4 * count);
+    TRY(check_counts(context, vertex_count, count));
+    NEW(context, STAGE, own_vertices, 3 * vertex_count);
+    NEW(context, STAGE, own_tetrahedra, 4 * count);
     memcpy(own_tetrahedra, tetrahedra, 4 * count * sizeof *tetrahedra);
     if (vertex_count > 0)
         memcpy(own_vertices, vertices, 3 * vertex_count * sizeof *vertices);
     if (regions != NULL) {
-        STARG_NEW(context, STAGE, own_regions, count);
+        NEW(context, STAGE, own_regions, count);
         memcpy(own_regions, regions, count * sizeof *regions);
     }
-    STARG_TRY(tetmesh_adopt(context, own_vertices, vertex_count, own_tetrahedra, count, own_regions,
-                            false, out));
-done:
-    if (status != STARG_OK) {
-        RELEASE(own_vertices, own_tetrahedra, own_regions);
-    }
-    return status;
+    TRY(tetmesh_adopt(context, own_vertices, vertex_count, own_tetrahedra, count, own_regions,
+                      false, out));
+    own_vertices = NULL;
+    own_tetrahedra = NULL;
+    own_regions = NULL;
+    return STARG_OK;
 }
 
 starg_status tetmesh_copy(starg_context *context, const starg_tetmesh *mesh, starg_tetmesh **out) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *copy = NULL;
+    SCOPED_BY(starg_tetmesh_drop) starg_tetmesh *copy = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, copy, 1);
+    NEW_ZERO(context, STAGE, copy, 1);
     copy->context = context;
     copy->vertex_count = mesh->vertex_count;
     copy->count = mesh->count;
     copy->turned = mesh->turned;
-    STARG_NEW(context, STAGE, copy->vertices, 3 * mesh->vertex_count);
-    STARG_NEW(context, STAGE, copy->tetrahedra, 4 * mesh->count);
-    STARG_NEW(context, STAGE, copy->neighbours, 4 * mesh->count);
+    NEW(context, STAGE, copy->vertices, 3 * mesh->vertex_count);
+    NEW(context, STAGE, copy->tetrahedra, 4 * mesh->count);
+    NEW(context, STAGE, copy->neighbours, 4 * mesh->count);
     memcpy(copy->vertices, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
     memcpy(copy->tetrahedra, mesh->tetrahedra, 4 * mesh->count * sizeof *mesh->tetrahedra);
     memcpy(copy->neighbours, mesh->neighbours, 4 * mesh->count * sizeof *mesh->neighbours);
     *out = copy;
-done:
-    if (status != STARG_OK)
-        starg_tetmesh_free(copy);
-    return status;
+    copy = NULL;
+    return STARG_OK;
 }
 
 void starg_tetmesh_free(starg_tetmesh *mesh) {

@@ -83,8 +83,8 @@ static void claim_simple(const verify_context *own, const verify_nearness *nearn
         verify_claim(own->verdict, false,
                      "no two faces of the boundary pass through one another: %zu pairs do, first "
                      "%s and one of tetrahedron %u",
-                     nearness->crossings, verify_outer_words(own, nearness->first).text,
-                     own->pieces->outer_facets[nearness->second] / 4);
+                     nearness->crossings, verify_outer_words(own, nearness->pair[0]).text,
+                     own->pieces->outer_facets[nearness->pair[1]] / 4);
     if (nearness->multiple == 0)
         verify_claim(own->verdict, true,
                      "the boundary winds once around the inside of its %zu shells",

@@ -4,18 +4,15 @@
 #include <stdio.h>
 
 starg_status verify_verdict_create(starg_context *context, starg_verdict **out) {
-    starg_status status = STARG_OK;
-    starg_verdict *verdict = NULL;
+    SCOPED_BY(starg_verdict_drop) starg_verdict *verdict = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, "verify", verdict, 1);
+    NEW_ZERO(context, "verify", verdict, 1);
     verdict->passed = true;
-    STARG_NEW_ZERO(context, "verify", verdict->claims, VERIFY_CLAIMS);
-    STARG_NEW_ZERO(context, "verify", verdict->not_checked, VERIFY_UNCHECKED);
+    NEW_ZERO(context, "verify", verdict->claims, VERIFY_CLAIMS);
+    NEW_ZERO(context, "verify", verdict->not_checked, VERIFY_UNCHECKED);
     *out = verdict;
-done:
-    if (status != STARG_OK)
-        starg_verdict_free(context, verdict);
-    return status;
+    verdict = NULL;
+    return STARG_OK;
 }
 
 void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {

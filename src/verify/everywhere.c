@@ -270,7 +270,8 @@ static void claim_witnesses(starg_verdict *verdict, const verify_facts *known,
                      c->witness_count, name, unseen, first);
 }
 
-bool verify_box_holds(const verify_box *box, const verify_surface *surface) {
+/* Is all of the surface in the box? */
+static bool box_holds(const verify_box *box, const verify_surface *surface) {
     for (int k = 0; k < 3; k++)
         if (!(box->lower[k] <= surface->lower[k] && surface->upper[k] <= box->upper[k]))
             return false;
@@ -299,7 +300,7 @@ static const char *word_of(char kind) {
 starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *known,
                                 const starg_certificate *c) {
     size_t cell, reason;
-    if (!verify_box_holds(&c->cells[0].box, known->surface)) {
+    if (!box_holds(&c->cells[0].box, known->surface)) {
         verify_claim(verdict, false, "the cells of the certificate hold all of the model");
         return STARG_OK;
     }

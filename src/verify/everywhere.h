@@ -170,9 +170,6 @@ typedef struct everywhere_words {
 starg_status verify_check_bound(const starg_certificate *certificate, bool *follows,
                                 everywhere_words *why);
 
-/* Is all of the surface in the box? */
-bool verify_box_holds(const verify_box *box, const verify_surface *surface);
-
 /* Is it of the surface with these faces? */
 bool verify_certificate_is_of(const starg_certificate *certificate, const verify_surface *surface);
 

@@ -41,11 +41,11 @@ static bool is_within(const uint64_t *a, const uint64_t *b, size_t words) {
 
 starg_status verify_visit_leaves(const starg_certificate *own, everywhere_visit *visit, void *user,
                                  bool *all) {
-    starg_status status = STARG_OK;
     starg_context *context = own->context;
-    uint64_t *open = NULL; /* rows of cells that are still to come, the next one on top */
+    /* rows of cells that are still to come, the next one on top */
+    SCOPED uint64_t *open = NULL;
     size_t words = own->words, top = 0;
-    STARG_NEW_ZERO(context, STAGE, open, (EVERYWHERE_DEPTH + 2) * words);
+    NEW_ZERO(context, STAGE, open, (EVERYWHERE_DEPTH + 2) * words);
     for (size_t j = 0; j < own->witness_count; j++)
         starg_bit_set(open, j);
     *all = true;
@@ -64,11 +64,9 @@ starg_status verify_visit_leaves(const starg_certificate *own, everywhere_visit 
         *all = visit(user, i, row);
         top -= top > 0;
         if (i % 4096 == 0)
-            STARG_TRY(starg_check_cancel(context, STAGE));
+            TRY(starg_check_cancel(context, STAGE));
     }
-done:
-    starg_release(context, open);
-    return status;
+    return STARG_OK;
 }
 
 static bool is_in_row(void *user, size_t cell, const uint64_t *open) {

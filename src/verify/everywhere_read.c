@@ -375,46 +375,37 @@ static starg_status read_cell(certificate_reader *r, everywhere_cell *cell,
 /* A cell is followed by all of its lower half, then the upper one. Cells that are still to come
  * stand on a stack, the next one on top. */
 static starg_status read_cells(certificate_reader *r, const verify_box *root) {
-    starg_status status = STARG_OK;
     starg_certificate *own = r->own;
-    struct {
+    SCOPED struct {
         everywhere_cell cell;
         int depth;
     } *stack = NULL;
     size_t left = 1;
-    STARG_TRY(certificate_take_count(r, "cells ", 2, &own->cell_count));
+    TRY(certificate_take_count(r, "cells ", 2, &own->cell_count));
     own->cell_line = (size_t)r->line;
-    STARG_NEW(r->context, STAGE, own->cells, own->cell_count);
-    STARG_NEW(r->context, STAGE, stack, EVERYWHERE_DEPTH + 2);
+    NEW(r->context, STAGE, own->cells, own->cell_count);
+    NEW(r->context, STAGE, stack, EVERYWHERE_DEPTH + 2);
     stack[0].cell = (everywhere_cell){.box = *root, .parts = {0, UINT32_MAX}};
     stack[0].depth = 0;
     for (size_t i = 0; i < own->cell_count; i++) {
         everywhere_cell *cell = &own->cells[i];
         everywhere_cell halves[2];
-        if (left == 0) {
-            status =
-                certificate_reject(r, "the cells before this one fill the root: none may follow");
-            goto done;
-        }
+        if (left == 0)
+            return certificate_reject(r,
+                                      "the cells before this one fill the root: none may follow");
         *cell = stack[--left].cell;
         int depth = stack[left].depth + 1;
-        STARG_TRY(read_cell(r, cell, halves));
+        TRY(read_cell(r, cell, halves));
         if (!is_cut(cell))
             continue;
-        if (depth > EVERYWHERE_DEPTH) {
-            status = certificate_reject(r, "cells are cut too often");
-            goto done;
-        }
+        if (depth > EVERYWHERE_DEPTH)
+            return certificate_reject(r, "cells are cut too often");
         for (int k = 1; k >= 0; k--) {
             stack[left].cell = halves[k];
             stack[left++].depth = depth;
         }
     }
-    if (left > 0)
-        status = certificate_reject(r, "halves of cells are missing");
-done:
-    starg_release(r->context, stack);
-    return status;
+    return left > 0 ? certificate_reject(r, "halves of cells are missing") : STARG_OK;
 }
 
 /* ---- branches ---- */

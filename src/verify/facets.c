@@ -70,30 +70,26 @@ static void insert(verify_facets *facets, uint32_t *slots, size_t mask, uint32_t
 
 starg_status verify_facets_create(starg_context *context, const uint32_t *tetrahedra, size_t count,
                                   verify_facets **out) {
-    starg_status status = STARG_OK;
-    verify_facets *facets = NULL;
-    uint32_t *slots = NULL;
+    SCOPED_BY(verify_facets_drop) verify_facets *facets = NULL;
+    SCOPED uint32_t *slots = NULL;
     size_t mask = 1;
     *out = NULL;
     while (mask < 6 * count)
         mask = 2 * mask + 1;
-    STARG_NEW_ZERO(context, STAGE, facets, 1);
+    NEW_ZERO(context, STAGE, facets, 1);
     *facets = (verify_facets){.context = context, .tetrahedra = tetrahedra, .count = count};
-    STARG_NEW(context, STAGE, facets->mate, 4 * count);
-    STARG_NEW_ZERO(context, STAGE, slots, mask + 1);
+    NEW(context, STAGE, facets->mate, 4 * count);
+    NEW_ZERO(context, STAGE, slots, mask + 1);
     for (size_t f = 0; f < 4 * count; f++)
         facets->mate[f] = VERIFY_NONE;
     for (size_t f = 0; f < 4 * count; f++) {
         if (f % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(context, STAGE));
+            TRY(starg_check_cancel(context, STAGE));
         insert(facets, slots, mask, (uint32_t)f);
     }
     *out = facets;
-done:
-    starg_release(context, slots);
-    if (status != STARG_OK)
-        verify_facets_free(facets);
-    return status;
+    facets = NULL;
+    return STARG_OK;
 }
 
 void verify_facets_free(verify_facets *facets) {

@@ -223,36 +223,29 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
 starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,
                                       const starg_guards_evidence *evidence,
                                       const starg_guards *guards, starg_verdict **out) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
-    starg_verdict *verdict = NULL;
-    verify_zones *zones = NULL;
-    verify_facts known = {.guards = guards};
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
+    SCOPED_BY(starg_verdict_drop) starg_verdict *verdict = NULL;
+    SCOPED_BY(verify_zones_drop) verify_zones *zones = NULL;
+    SCOPED_BY(verify_facts_free) verify_facts known = {.guards = guards};
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(is_plain(guards) && evidence->obstacle_count == 0
-                  ? verify_surface_create(context, mesh, &surface)
-                  : verify_space_create(context, mesh, evidence->obstacles,
-                                        evidence->obstacle_count, guards, &surface));
-    STARG_TRY(verify_zones_create(context, guards, evidence->zones, &zones));
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(is_plain(guards) && evidence->obstacle_count == 0
+            ? verify_surface_create(context, mesh, &surface)
+            : verify_space_create(context, mesh, evidence->obstacles, evidence->obstacle_count,
+                                  guards, &surface));
+    TRY(verify_zones_create(context, guards, evidence->zones, &zones));
     known.zones = zones;
-    STARG_TRY(verify_facts_find(surface, &known));
+    TRY(verify_facts_find(surface, &known));
 
-    STARG_TRY(verify_verdict_create(context, &verdict));
+    TRY(verify_verdict_create(context, &verdict));
     claim_model(verdict, &known);
     claim_options(verdict, guards);
-    STARG_TRY(verify_claim_places(verdict, &known));
+    TRY(verify_claim_places(verdict, &known));
     verify_claim_tour(verdict, &known);
-    STARG_TRY(verify_claim_coverage(verdict, &known));
-    STARG_TRY(verify_claim_count(verdict, &known, evidence->certificate));
-    STARG_TRY(verify_claim_tables(verdict, &known, evidence));
+    TRY(verify_claim_coverage(verdict, &known));
+    TRY(verify_claim_count(verdict, &known, evidence->certificate));
+    TRY(verify_claim_tables(verdict, &known, evidence));
     *out = verdict;
     verdict = NULL;
-done:
-    starg_time_end(context, former);
-    starg_verdict_free(context, verdict);
-    verify_facts_free(&known);
-    verify_zones_free(zones);
-    verify_surface_free(surface);
-    return status;
+    return STARG_OK;
 }

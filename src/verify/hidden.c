@@ -642,11 +642,7 @@ starg_status verify_watch_create(const verify_scene *scene, verify_watch **out) 
 void verify_watch_free(verify_watch *w) {
     if (w == NULL)
         return;
-    starg_context *context = w->scene->surface->context;
-    STARG_ARRAY_FREE(context, &w->met);
-    starg_release(context, w->visit);
-    starg_release(context, w->stack);
-    starg_release(context, w);
+    RELEASE(w->met.data, w->visit, w->stack, w);
 }
 
 starg_status verify_watch_make(starg_context *context, void *shared, void **scratch) {
@@ -664,35 +660,26 @@ void verify_watch_drop(starg_context *context, void *scratch) {
 
 starg_status verify_scene_create(const verify_surface *surface, const verify_tree *tree,
                                  bool embedding, verify_scene *out) {
-    starg_status status = STARG_OK;
     *out = (verify_scene){.surface = surface, .tree = tree};
-    STARG_TRY(verify_find_twins(surface, &out->twin));
-    STARG_NEW(surface->context, "verify", out->outgoing, surface->vertex_count);
+    TRY(verify_find_twins(surface, &out->twin));
+    NEW(surface->context, "verify", out->outgoing, surface->vertex_count);
     for (size_t v = 0; v < surface->vertex_count; v++)
         out->outgoing[v] = UINT32_MAX;
     for (size_t e = 3 * surface->face_count; e-- > 0;)
         out->outgoing[surface->faces[e]] = (uint32_t)e;
-    STARG_NEW_ZERO(surface->context, "verify", out->sound, surface->face_count);
-    STARG_NEW_ZERO(surface->context, "verify", out->sound_about, surface->vertex_count);
+    NEW_ZERO(surface->context, "verify", out->sound, surface->face_count);
+    NEW_ZERO(surface->context, "verify", out->sound_about, surface->vertex_count);
     if (embedding) {
-        STARG_TRY(verify_find_sound(out, out->sound, &out->embedded));
+        TRY(verify_find_sound(out, out->sound, &out->embedded));
         memset(out->sound_about, 1, surface->vertex_count);
         for (size_t e = 0; e < 3 * surface->face_count; e++)
             if (!out->sound[e / 3])
                 out->sound_about[surface->faces[e]] = 0;
     }
-done:
-    if (status != STARG_OK)
-        verify_scene_free(out);
-    return status;
+    return STARG_OK;
 }
 
 void verify_scene_free(verify_scene *scene) {
-    if (scene->surface == NULL)
-        return;
-    starg_release(scene->surface->context, scene->twin);
-    starg_release(scene->surface->context, scene->outgoing);
-    starg_release(scene->surface->context, scene->sound);
-    starg_release(scene->surface->context, scene->sound_about);
+    RELEASE(scene->twin, scene->outgoing, scene->sound, scene->sound_about);
     *scene = (verify_scene){0};
 }

@@ -118,43 +118,6 @@ static starg_status claim_ends(const verify_morph *own, const starg_mesh *a, con
 
 /* ---- every frame ---- */
 
-typedef struct crossing {
-    const verify_surface *surface;
-    uint32_t face;
-    size_t count;
-} crossing;
-
-static bool cross_face(void *data, uint32_t other) {
-    crossing *own = data;
-    const double *s[3], *t[3];
-    if (other <= own->face)
-        return true;
-    verify_corners(own->surface, own->face, s);
-    verify_corners(own->surface, other, t);
-    own->count += verify_cross(s, t);
-    return true;
-}
-
-static starg_status count_crossings(const verify_surface *surface, size_t *count) {
-    SCOPED_BY(verify_tree_drop) verify_tree *tree = NULL;
-    crossing own = {.surface = surface};
-    TRY(verify_tree_create(surface, &tree));
-    for (own.face = 0; own.face < surface->face_count; own.face++) {
-        const double *t[3];
-        double lower[3], upper[3];
-        if (own.face % CANCEL_STEP == 0)
-            TRY(starg_check_cancel(surface->context, STAGE));
-        verify_corners(surface, own.face, t);
-        for (int k = 0; k < 3; k++) {
-            lower[k] = fmin(fmin(t[0][k], t[1][k]), t[2][k]);
-            upper[k] = fmax(fmax(t[0][k], t[1][k]), t[2][k]);
-        }
-        verify_tree_visit(tree, lower, upper, cross_face, &own);
-    }
-    *count = own.count;
-    return STARG_OK;
-}
-
 /* What was found of a frame, and where it differs from the report. */
 typedef struct found {
     size_t wrong, first, told, count; /* frames; crossings of the first */
@@ -185,10 +148,12 @@ static bool compare_sizes(const starg_mesh *mesh, const verify_surface *surface,
 
 static starg_status examine(const verify_morph *own, size_t i, found *f, double sizes[2]) {
     SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
+    SCOPED_BY(verify_tree_drop) verify_tree *tree = NULL;
     const verify_frame *told = &own->report->frames[i];
-    size_t count;
+    size_t count, pair[2];
     TRY(verify_surface_welded(own->context, own->frames[i], &surface));
-    TRY(count_crossings(surface, &count));
+    TRY(verify_tree_create(surface, &tree));
+    TRY(verify_find_crossings(surface, tree, &count, pair));
     bool even = compare_sizes(own->frames[i], surface, told, sizes);
     if (count != told->intersections && f->wrong++ == 0) {
         f->first = i;
@@ -243,23 +208,20 @@ static starg_status claim_measures(const verify_morph *own) {
 starg_status starg_verify_morph(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                 const starg_mesh *const *frames, size_t frame_count,
                                 const starg_morph_report *report, starg_verdict **out) {
-    starg_status status = STARG_OK;
-    verify_morph own = {context, frames, frame_count, report, NULL};
+    SCOPED_BY(starg_verdict_drop) starg_verdict *verdict = NULL;
     *out = NULL;
     if (frame_count < 2)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "a morph has at least two frames");
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(verify_verdict_create(context, &own.verdict));
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(verify_verdict_create(context, &verdict));
+    const verify_morph own = {context, frames, frame_count, report, verdict};
     bool whole = claim_frames(&own);
-    STARG_TRY(claim_ends(&own, a, b));
+    TRY(claim_ends(&own, a, b));
     if (whole && report != NULL)
-        STARG_TRY(claim_measures(&own));
+        TRY(claim_measures(&own));
     if (report == NULL)
-        verify_leave(own.verdict, "what frames between the ends are like: there is no report");
-    *out = own.verdict;
-    own.verdict = NULL;
-done:
-    starg_time_end(context, former);
-    starg_verdict_free(context, own.verdict);
-    return status;
+        verify_leave(verdict, "what frames between the ends are like: there is no report");
+    *out = verdict;
+    verdict = NULL;
+    return STARG_OK;
 }

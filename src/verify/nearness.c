@@ -63,9 +63,8 @@ static starg_status measure_reach(const verify_surface *surface, const verify_tr
 /* ---- crossings ---- */
 
 typedef struct crossing {
-    const verify_surface *outer;
-    size_t face;
-    verify_nearness *nearness;
+    const verify_surface *surface;
+    size_t face, *count, *pair;
 } crossing;
 
 static bool cross_face(void *data, uint32_t other) {
@@ -73,30 +72,30 @@ static bool cross_face(void *data, uint32_t other) {
     const double *s[3], *t[3];
     if (other <= own->face)
         return true;
-    verify_corners(own->outer, own->face, s);
-    verify_corners(own->outer, other, t);
-    if (verify_cross(s, t) && own->nearness->crossings++ == 0) {
-        own->nearness->first = own->face;
-        own->nearness->second = other;
+    verify_corners(own->surface, own->face, s);
+    verify_corners(own->surface, other, t);
+    if (verify_cross(s, t) && (*own->count)++ == 0) {
+        own->pair[0] = own->face;
+        own->pair[1] = other;
     }
     return true;
 }
 
-static starg_status find_crossings(const verify_pieces *pieces, const verify_tree *tree,
-                                   verify_nearness *nearness) {
-    const verify_surface *outer = pieces->outer;
-    for (size_t f = 0; f < outer->face_count; f++) {
-        crossing own = {outer, f, nearness};
+starg_status verify_find_crossings(const verify_surface *surface, const verify_tree *tree,
+                                   size_t *count, size_t pair[2]) {
+    *count = 0;
+    for (size_t f = 0; f < surface->face_count; f++) {
+        crossing own = {surface, f, count, pair};
         const double *t[3];
         double lower[3], upper[3];
-        verify_corners(outer, f, t);
+        verify_corners(surface, f, t);
         for (int k = 0; k < 3; k++) {
             lower[k] = fmin(fmin(t[0][k], t[1][k]), t[2][k]);
             upper[k] = fmax(fmax(t[0][k], t[1][k]), t[2][k]);
         }
         verify_tree_visit(tree, lower, upper, cross_face, &own);
         if (f % CANCEL_STEP == 0)
-            TRY(starg_check_cancel(pieces->context, STAGE));
+            TRY(starg_check_cancel(surface->context, STAGE));
     }
     return STARG_OK;
 }
@@ -152,6 +151,6 @@ starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_s
     TRY(verify_tree_create(model, &model_tree));
     TRY(measure_reach(pieces->outer, model_tree, pieces->scale, &nearness->to));
     TRY(measure_reach(model, tree, pieces->scale, &nearness->from));
-    TRY(find_crossings(pieces, tree, nearness));
+    TRY(verify_find_crossings(pieces->outer, tree, &nearness->crossings, nearness->pair));
     return wind_shells(pieces, tree, nearness);
 }

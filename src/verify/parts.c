@@ -186,11 +186,11 @@ static bool are_joined(part_search *own, size_t a, size_t b) {
 
 /* Cavities join the innermost shell around them. */
 static starg_status join_cavities(part_search *own) {
-    starg_status status = STARG_OK;
     starg_context *context = own->surface->context;
-    STARG_ARRAY(uint32_t) around = {0}; /* pairs: a shell, and one that holds it */
+    /* pairs: a shell, and one that holds it */
+    SCOPED STARG_ARRAY(uint32_t) around = {0};
     for (uint32_t s = 0; s < own->count; s++) {
-        STARG_TRY(starg_check_cancel(context, STAGE));
+        TRY(starg_check_cancel(context, STAGE));
         for (uint32_t t = 0; t < own->count; t++) {
             bool crossing = false;
             if (are_joined(own, s, t) || !boxes_meet(own, s, t))
@@ -200,8 +200,8 @@ static starg_status join_cavities(part_search *own) {
                 verify_join(own->part, own->roots[s], own->roots[t]);
             if (crossing || !within)
                 continue;
-            STARG_PUSH(context, STAGE, &around, s);
-            STARG_PUSH(context, STAGE, &around, t);
+            PUSH(context, STAGE, &around, s);
+            PUSH(context, STAGE, &around, t);
             own->depth[s]++;
         }
     }
@@ -213,9 +213,7 @@ static starg_status join_cavities(part_search *own) {
         if (own->depth[s] % 2 == 1)
             verify_join(own->part, own->roots[s], own->roots[innermost]);
     }
-done:
-    STARG_ARRAY_FREE(context, &around);
-    return status;
+    return STARG_OK;
 }
 
 static void number_parts(part_search *own) {

@@ -109,8 +109,7 @@ starg_status verify_parts_add(verify_parts *own, const verify_part *part) {
 }
 
 void verify_parts_free(verify_parts *own) {
-    STARG_ARRAY_FREE(own->surface->context, &own->list);
-    STARG_ARRAY_FREE(own->surface->context, &own->mixes);
+    RELEASE(own->list.data, own->mixes.data);
 }
 
 /* ---- down to a length ---- */
@@ -206,12 +205,8 @@ starg_status verify_patches_set(const verify_parts *own, verify_surface *surface
 void verify_patches_free(verify_patches *patches) {
     if (patches == NULL)
         return;
-    RELEASE(patches->first);
-    RELEASE(patches->face);
-    RELEASE(patches->corner);
-    RELEASE(patches->share);
-    RELEASE(patches->points);
-    RELEASE(patches);
+    RELEASE(patches->first, patches->face, patches->corner, patches->share, patches->points,
+            patches);
 }
 
 verify_spot verify_spot_of(const verify_surface *surface, uint32_t index) {

@@ -63,30 +63,30 @@ starg_status verify_check_arrays(starg_context *context, const starg_pieces_mesh
 
 /* `given` has the model, and what is to be compared with it. */
 static starg_status verify_against(const verify_context *given, starg_verdict **out) {
-    starg_status status = STARG_OK;
+    SCOPED_BY(verify_pieces_drop) verify_pieces *pieces = NULL;
+    SCOPED_BY(starg_verdict_drop) starg_verdict *verdict = NULL;
     verify_context own = *given;
     starg_context *context = own.context;
     const starg_pieces_report *report = own.report;
-    STARG_TRY(verify_check_arrays(context, own.mesh, report));
-    STARG_TRY(verify_pieces_create(context, own.mesh, report, &own.pieces));
-    STARG_TRY(verify_verdict_create(context, &own.verdict));
-    STARG_TRY(verify_claim_tetrahedra(&own));
-    STARG_TRY(verify_claim_boundary(&own));
+    TRY(verify_check_arrays(context, own.mesh, report));
+    TRY(verify_pieces_create(context, own.mesh, report, &pieces));
+    TRY(verify_verdict_create(context, &verdict));
+    own.pieces = pieces;
+    own.verdict = verdict;
+    TRY(verify_claim_tetrahedra(&own));
+    TRY(verify_claim_boundary(&own));
     if (report != NULL) {
-        STARG_TRY(verify_claim_numbers(&own));
-        STARG_TRY(verify_claim_angles(&own));
-        STARG_TRY(verify_claim_stars(&own));
-        STARG_TRY(verify_claim_fewest(&own));
-        STARG_TRY(verify_claim_balls(&own));
+        TRY(verify_claim_numbers(&own));
+        TRY(verify_claim_angles(&own));
+        TRY(verify_claim_stars(&own));
+        TRY(verify_claim_fewest(&own));
+        TRY(verify_claim_balls(&own));
     } else {
-        verify_leave(own.verdict, "guards, star-shapedness and numbers: there is no report");
+        verify_leave(verdict, "guards, star-shapedness and numbers: there is no report");
     }
-    *out = own.verdict;
-    own.verdict = NULL;
-done:
-    verify_pieces_free(own.pieces);
-    starg_verdict_free(context, own.verdict);
-    return status;
+    *out = verdict;
+    verdict = NULL;
+    return STARG_OK;
 }
 
 /* The model as it is: where the boundary is only near it, it need not be closed. */
@@ -106,26 +106,20 @@ starg_status starg_verify_pieces_with(starg_context *context, const starg_mesh *
                                       const starg_certificate *certificate,
                                       const starg_pieces_mesh *pieces,
                                       const starg_pieces_report *report, starg_verdict **out) {
-    starg_status status = STARG_OK;
-    verify_surface *closed = NULL, *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *closed = NULL, *surface = NULL;
     verify_context own = {
         .context = context, .mesh = pieces, .report = report, .certificate = certificate};
     bool approximated = report != NULL && report->approximated;
     *out = NULL;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    status = verify_surface_create(context, model, &closed);
+    TIME_RULE(context, STARG_TIME_FAILS);
+    starg_status status = verify_surface_create(context, model, &closed);
     if (status != STARG_ERROR_MESH || !approximated)
-        STARG_TRY(status);
+        TRY(status);
     if (approximated)
-        STARG_TRY(wrap_model(context, model, &surface));
+        TRY(wrap_model(context, model, &surface));
     own.model = approximated ? surface : closed;
     own.solid = closed;
-    STARG_TRY(verify_against(&own, out));
-done:
-    starg_time_end(context, former);
-    verify_surface_free(surface);
-    verify_surface_free(closed);
-    return status;
+    return verify_against(&own, out);
 }
 
 starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model,
@@ -137,20 +131,15 @@ starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model
 /* The boundary of the model's tetrahedra. */
 static starg_status wrap_boundary(starg_context *context, const starg_tetmesh *model,
                                   verify_surface **out) {
-    starg_status status = STARG_OK;
-    verify_facets *facets = NULL;
-    uint32_t *outer = NULL, *faces = NULL;
+    SCOPED_BY(verify_facets_drop) verify_facets *facets = NULL;
+    SCOPED uint32_t *outer = NULL;
+    uint32_t *faces = NULL;
     size_t count;
-    STARG_TRY(verify_facets_create(context, starg_tetmesh_tetrahedra(model),
-                                   starg_tetmesh_count(model), &facets));
-    STARG_TRY(verify_facets_outer(facets, &outer, &faces, &count));
-    status = verify_surface_wrap(context, starg_tetmesh_vertices(model),
-                                 starg_tetmesh_vertex_count(model), faces, count, out);
-    faces = NULL;
-done:
-    RELEASE(outer, faces);
-    verify_facets_free(facets);
-    return status;
+    TRY(verify_facets_create(context, starg_tetmesh_tetrahedra(model), starg_tetmesh_count(model),
+                             &facets));
+    TRY(verify_facets_outer(facets, &outer, &faces, &count));
+    return verify_surface_wrap(context, starg_tetmesh_vertices(model),
+                               starg_tetmesh_vertex_count(model), faces, count, out);
 }
 
 starg_status starg_verify_pieces_of_tetmesh(starg_context *context, const starg_tetmesh *model,

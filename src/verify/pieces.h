@@ -31,6 +31,7 @@ typedef struct verify_facets {
 starg_status verify_facets_create(starg_context *context, const uint32_t *tetrahedra, size_t count,
                                   verify_facets **out);
 void verify_facets_free(verify_facets *facets);
+STARG_DROP(verify_facets, verify_facets)
 
 /* The corners of a facet, counter-clockwise seen from outside of a positive tetrahedron. */
 static inline void verify_facet_corners(const uint32_t *tetrahedra, uint32_t facet,
@@ -79,6 +80,7 @@ starg_status verify_check_arrays(starg_context *context, const starg_pieces_mesh
 starg_status verify_pieces_create(starg_context *context, const starg_pieces_mesh *mesh,
                                   const starg_pieces_report *report, verify_pieces **out);
 void verify_pieces_free(verify_pieces *pieces);
+STARG_DROP(verify_pieces, verify_pieces)
 
 static inline const double *verify_point(const starg_pieces_mesh *mesh, uint32_t vertex) {
     return mesh->vertices + 3 * (size_t)vertex;
@@ -125,7 +127,7 @@ typedef struct verify_reach {
 typedef struct verify_nearness {
     verify_reach to, from;   /* from the boundary to the model, and back      */
     size_t crossings;        /* pairs of outer faces that cross               */
-    size_t first, second;    /* the first pair                                */
+    size_t pair[2];          /* the first pair                                */
     size_t shells, multiple; /* shells; those about whose inside the boundary does not wind
                                 once                                          */
     size_t shell;            /* an outer face of the first of these           */
@@ -135,6 +137,10 @@ typedef struct verify_nearness {
  * CANCELLED. */
 starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
                                      verify_nearness *nearness);
+
+/* How many pairs of faces cross, and the first of them? Errors: MEMORY, CANCELLED. */
+starg_status verify_find_crossings(const verify_surface *surface, const verify_tree *tree,
+                                   size_t *count, size_t pair[2]);
 
 /* Points that were drawn, off the surface. */
 typedef struct verify_enclosed {

@@ -74,30 +74,24 @@ static starg_status gather_walls(verify_pieces *pieces) {
 
 starg_status verify_pieces_create(starg_context *context, const starg_pieces_mesh *mesh,
                                   const starg_pieces_report *report, verify_pieces **out) {
-    starg_status status = STARG_OK;
-    verify_pieces *pieces = NULL;
+    SCOPED_BY(verify_pieces_drop) verify_pieces *pieces = NULL;
     uint32_t *faces = NULL;
     size_t count;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, pieces, 1);
+    NEW_ZERO(context, STAGE, pieces, 1);
     *pieces = (verify_pieces){.context = context, .mesh = mesh};
-    STARG_TRY(verify_facets_create(context, mesh->tetrahedra, mesh->count, &pieces->facets));
-    STARG_TRY(verify_facets_outer(pieces->facets, &pieces->outer_facets, &faces, &count));
-    status = verify_surface_wrap(context, mesh->vertices, mesh->vertex_count, faces, count,
-                                 &pieces->outer);
-    faces = NULL;
-    STARG_TRY(status);
+    TRY(verify_facets_create(context, mesh->tetrahedra, mesh->count, &pieces->facets));
+    TRY(verify_facets_outer(pieces->facets, &pieces->outer_facets, &faces, &count));
+    TRY(verify_surface_wrap(context, mesh->vertices, mesh->vertex_count, faces, count,
+                            &pieces->outer));
     pieces->scale = verify_scale(pieces->outer);
     find_piece_count(pieces, report);
-    STARG_TRY(count_labels(pieces));
+    TRY(count_labels(pieces));
     if (pieces->labels.good)
-        STARG_TRY(gather_walls(pieces));
+        TRY(gather_walls(pieces));
     *out = pieces;
-done:
-    starg_release(context, faces);
-    if (status != STARG_OK)
-        verify_pieces_free(pieces);
-    return status;
+    pieces = NULL;
+    return STARG_OK;
 }
 
 void verify_pieces_free(verify_pieces *pieces) {

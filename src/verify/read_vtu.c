@@ -385,12 +385,9 @@ done:
 }
 
 void starg_solid_map_free(starg_context *context, starg_solid_map *map) {
+    (void)context;
     if (map == NULL)
         return;
-    void *const blocks[] = {map->vertices, map->images, map->tetrahedra,
-                            map->labels,   map->guards, map->guard_images,
-                            map->ratios,   map->times,  map->keys};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
-        starg_release(context, blocks[i]);
-    starg_release(context, map);
+    RELEASE(map->vertices, map->images, map->tetrahedra, map->labels, map->guards,
+            map->guard_images, map->ratios, map->times, map->keys, map);
 }

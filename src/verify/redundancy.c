@@ -123,20 +123,17 @@ static size_t least_times(const verify_facts *known, const uint32_t *held, size_
 }
 
 starg_status verify_count_met(const verify_facts *known, size_t *met) {
-    starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
-    uint32_t *held = NULL;
+    SCOPED uint32_t *held = NULL;
     *met = 0;
-    STARG_TRY(verify_count_held(known, known->patches, &held));
+    TRY(verify_count_held(known, known->patches, &held));
     for (size_t i = 0; i < guards->need_count; i++) {
         size_t face = guards->needs[i].face;
         *met += face < known->surface->model_faces &&
                 least_times(known, held, face) >=
                     verify_times(known, verify_first_patch(known->surface, face));
     }
-done:
-    starg_release(known->surface->context, held);
-    return status;
+    return STARG_OK;
 }
 
 starg_status verify_count_often(const verify_facts *known, size_t most, size_t *often) {

@@ -68,10 +68,10 @@ static starg_status take_end(starg_context *context, const starg_solid_map *map,
     return verify_pieces_create(context, &e->mesh, &e->report, &e->own.pieces);
 }
 
-static void free_end(starg_context *context, end *e) {
+static void free_end(end *e) {
     verify_pieces_free(e->own.pieces);
-    starg_verdict_free(context, e->own.verdict);
-    starg_release(context, e->report.pieces);
+    starg_verdict_free(NULL, e->own.verdict);
+    RELEASE(e->report.pieces);
 }
 
 /* ---- claims ---- */
@@ -305,7 +305,7 @@ done:
     starg_time_end(context, former);
     starg_mesh_free(polyhedron);
     for (int side = 0; side < 2; side++)
-        free_end(context, &ends[side]);
+        free_end(&ends[side]);
     starg_verdict_free(context, verdict);
     return status;
 }

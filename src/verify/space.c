@@ -53,40 +53,33 @@ static int volume_sign(const verify_surface *surface) {
 }
 
 static starg_status add_model(gathering *g, const starg_mesh *mesh, const starg_guards *guards) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     uint32_t first;
     bool keeps = guards->space.orientation == STARG_ORIENTATION_KEEP;
     if (guards->space.soup)
         return add_sheet(g, mesh, BACK); /* what faces out of the free space */
-    STARG_TRY(verify_surface_facing(g->context, mesh,
-                                    keeps                   ? VERIFY_AS_GIVEN
-                                    : guards->space.outside ? VERIFY_OUTWARD
-                                                            : VERIFY_NESTED,
-                                    &surface));
+    TRY(verify_surface_facing(g->context, mesh,
+                              keeps                   ? VERIFY_AS_GIVEN
+                              : guards->space.outside ? VERIFY_OUTWARD
+                                                      : VERIFY_NESTED,
+                              &surface));
     bool inward = keeps && volume_sign(surface) < 0;
-    STARG_TRY(add_vertices(g, surface, &first));
-    status =
-        add_faces(g, surface->faces, surface->face_count, first, inward != guards->space.outside);
-done:
-    verify_surface_free(surface);
-    return status;
+    TRY(add_vertices(g, surface, &first));
+    return add_faces(g, surface->faces, surface->face_count, first,
+                     inward != guards->space.outside);
 }
 
 /* Is it closed? Then its faces are added, reversed. */
 static starg_status add_closed(gathering *g, const starg_mesh *mesh, bool *closed) {
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     uint32_t first;
     starg_status status = verify_surface_create(g->context, mesh, &surface);
     *closed = status != STARG_ERROR_MESH;
     if (!*closed)
         return STARG_OK;
-    STARG_TRY(status);
-    STARG_TRY(add_vertices(g, surface, &first));
-    STARG_TRY(add_faces(g, surface->faces, surface->face_count, first, true));
-done:
-    verify_surface_free(surface);
-    return status;
+    TRY(status);
+    TRY(add_vertices(g, surface, &first));
+    return add_faces(g, surface->faces, surface->face_count, first, true);
 }
 
 /* Those that are closed, then the fronts of the others, then the backs of these and of a soup. */

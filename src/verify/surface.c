@@ -430,43 +430,38 @@ static starg_status weld(verify_surface *surface) {
 
 static starg_status copy_faces(starg_context *context, const starg_mesh *mesh,
                                verify_surface **out) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     size_t face_count = starg_mesh_face_count(mesh);
     *out = NULL;
     if (face_count == 0)
         return starg_fail(context, STARG_ERROR_MESH, STAGE, "the model has no faces");
-    STARG_NEW_ZERO(context, STAGE, surface, 1);
+    NEW_ZERO(context, STAGE, surface, 1);
     surface->context = context;
     surface->vertex_count = surface->model_vertices = starg_mesh_vertex_count(mesh);
     surface->face_count = surface->model_faces = face_count;
     surface->vertices = starg_mesh_vertices(mesh);
-    STARG_NEW(context, STAGE, surface->faces, 3 * face_count);
+    NEW(context, STAGE, surface->faces, 3 * face_count);
     memcpy(surface->faces, starg_mesh_faces(mesh), 3 * face_count * sizeof *surface->faces);
     find_bounds(surface);
     *out = surface;
-done:
-    if (status != STARG_OK)
-        verify_surface_free(surface);
-    return status;
+    surface = NULL;
+    return STARG_OK;
 }
 
 starg_status verify_surface_facing(starg_context *context, const starg_mesh *mesh,
                                    verify_facing facing, verify_surface **out) {
-    starg_status status = STARG_OK;
-    verify_surface *surface = NULL;
+    SCOPED_BY(verify_surface_drop) verify_surface *surface = NULL;
     *out = NULL;
-    STARG_TRY(copy_faces(context, mesh, &surface));
-    status = orient(surface, facing);
+    TRY(copy_faces(context, mesh, &surface));
+    starg_status status = orient(surface, facing);
     if (status == STARG_ERROR_MESH) { /* nothing has been reversed yet */
-        STARG_TRY(weld(surface));
-        STARG_TRY(orient(surface, facing));
+        TRY(weld(surface));
+        status = orient(surface, facing);
     }
-    *out = status == STARG_OK ? surface : NULL;
-done:
-    if (status != STARG_OK)
-        verify_surface_free(surface);
-    return status;
+    TRY(status);
+    *out = surface;
+    surface = NULL;
+    return STARG_OK;
 }
 
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,

@@ -141,26 +141,23 @@ static void find_centers(verify_tree *tree) {
 
 starg_status verify_tree_create(const verify_surface *surface, verify_tree **out) {
     starg_context *context = surface->context;
-    starg_status status = STARG_OK;
-    verify_tree *tree = NULL;
+    SCOPED_BY(verify_tree_drop) verify_tree *tree = NULL;
     size_t node_count = 2;
     *out = NULL;
     for (size_t most = surface->face_count; most > LEAF; most = most / 2 + most % 2)
         node_count *= 2;
-    STARG_NEW_ZERO(context, STAGE, tree, 1);
+    NEW_ZERO(context, STAGE, tree, 1);
     tree->surface = surface;
-    STARG_NEW(context, STAGE, tree->order, surface->face_count);
-    STARG_NEW(context, STAGE, tree->boxes, node_count);
-    STARG_NEW(context, STAGE, tree->centers, 3 * surface->face_count);
+    NEW(context, STAGE, tree->order, surface->face_count);
+    NEW(context, STAGE, tree->boxes, node_count);
+    NEW(context, STAGE, tree->centers, 3 * surface->face_count);
     find_centers(tree);
     build(tree, root_of(tree));
     starg_release(context, tree->centers);
     tree->centers = NULL;
     *out = tree;
-done:
-    if (status != STARG_OK)
-        verify_tree_free(tree);
-    return status;
+    tree = NULL;
+    return STARG_OK;
 }
 
 void verify_tree_free(verify_tree *tree) {

@@ -129,33 +129,29 @@ static void choose_parents(const visibility_scene *scene, visibility_adjacency *
 
 starg_status adjacency_create(starg_context *context, const visibility_scene *scene,
                               visibility_adjacency **out) {
-    starg_status status = STARG_OK;
-    visibility_adjacency *adjacency = NULL;
-    uint32_t *place = NULL;
+    SCOPED_BY(adjacency_drop) visibility_adjacency *adjacency = NULL;
+    SCOPED uint32_t *place = NULL;
     size_t n = scene->vertex_count, corners = 3 * scene->face_count;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, adjacency, 1);
+    NEW_ZERO(context, STAGE, adjacency, 1);
     adjacency->context = context;
-    STARG_NEW(context, STAGE, adjacency->edges, corners / 2);
-    STARG_NEW_ZERO(context, STAGE, adjacency->fan_start, n + 1);
-    STARG_NEW_ZERO(context, STAGE, adjacency->neighbour, corners + FAN);
-    STARG_NEW_ZERO(context, STAGE, adjacency->fan_face, corners + FAN);
-    STARG_NEW(context, STAGE, adjacency->parents, CHOICES * n);
-    STARG_NEW(context, STAGE, adjacency->first_face, n);
-    STARG_NEW(context, STAGE, adjacency->order, n);
-    STARG_NEW(context, STAGE, adjacency->shell_start, n + 1);
-    STARG_NEW(context, STAGE, place, n);
+    NEW(context, STAGE, adjacency->edges, corners / 2);
+    NEW_ZERO(context, STAGE, adjacency->fan_start, n + 1);
+    NEW_ZERO(context, STAGE, adjacency->neighbour, corners + FAN);
+    NEW_ZERO(context, STAGE, adjacency->fan_face, corners + FAN);
+    NEW(context, STAGE, adjacency->parents, CHOICES * n);
+    NEW(context, STAGE, adjacency->first_face, n);
+    NEW(context, STAGE, adjacency->order, n);
+    NEW(context, STAGE, adjacency->shell_start, n + 1);
+    NEW(context, STAGE, place, n);
     fill_fans(scene, adjacency);
     order_fans(scene, adjacency);
     list_edges(scene, adjacency);
     order_slots(scene, adjacency, place);
     choose_parents(scene, adjacency, place);
     *out = adjacency;
-done:
-    starg_release(context, place);
-    if (status != STARG_OK)
-        adjacency_free(adjacency);
-    return status;
+    adjacency = NULL;
+    return STARG_OK;
 }
 
 void adjacency_free(visibility_adjacency *adjacency) {

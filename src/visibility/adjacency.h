@@ -33,5 +33,6 @@ typedef struct visibility_adjacency {
 starg_status adjacency_create(starg_context *context, const visibility_scene *scene,
                               visibility_adjacency **out);
 void adjacency_free(visibility_adjacency *adjacency);
+STARG_DROP(adjacency, visibility_adjacency)
 
 #endif

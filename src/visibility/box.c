@@ -73,12 +73,11 @@ static size_t target_count(const box_scene *scene) {
 }
 
 starg_status box_scene_create(starg_context *context, const starg_solid *solid, box_scene **out) {
-    starg_status status = STARG_OK;
-    box_scene *scene = NULL;
-    mesh_topology *topology = NULL;
+    SCOPED_BY(box_scene_drop) box_scene *scene = NULL;
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     *out = NULL;
-    STARG_TRY(wings_create(context, solid->mesh, &topology));
-    STARG_NEW_ZERO(context, STAGE, scene, 1);
+    TRY(wings_create(context, solid->mesh, &topology));
+    NEW_ZERO(context, STAGE, scene, 1);
     scene->context = context;
     scene->solid = solid;
     scene->tree = solid->tree;
@@ -91,19 +90,16 @@ starg_status box_scene_create(starg_context *context, const starg_solid *solid, 
         scene->centre[k] = 0.5 * all->lower[k] + 0.5 * all->upper[k];
         scene->extent = fmax(scene->extent, all->upper[k] - all->lower[k]);
     }
-    STARG_NEW(context, STAGE, scene->triangles, scene->face_count);
-    STARG_NEW(context, STAGE, scene->rank_of, scene->face_count);
-    STARG_NEW(context, STAGE, scene->outgoing, scene->vertex_count);
+    NEW(context, STAGE, scene->triangles, scene->face_count);
+    NEW(context, STAGE, scene->rank_of, scene->face_count);
+    NEW(context, STAGE, scene->outgoing, scene->vertex_count);
     make_triangles(scene, topology);
-    STARG_TRY(make_points(scene));
-    STARG_TRY(box_find_sound(scene));
-    STARG_TRY(box_tree_create(context, scene->tree, scene->centre, scene->extent, &scene->boxes));
+    TRY(make_points(scene));
+    TRY(box_find_sound(scene));
+    TRY(box_tree_create(context, scene->tree, scene->centre, scene->extent, &scene->boxes));
     *out = scene;
-done:
-    topology_free(topology);
-    if (status != STARG_OK)
-        box_scene_free(scene);
-    return status;
+    scene = NULL;
+    return STARG_OK;
 }
 
 void box_scene_free(box_scene *scene) {

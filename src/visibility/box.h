@@ -40,6 +40,7 @@ typedef struct box_scene box_scene;
  * Errors: MEMORY. */
 starg_status box_scene_create(starg_context *context, const starg_solid *solid, box_scene **out);
 void box_scene_free(box_scene *scene);
+STARG_DROP(box_scene, box_scene)
 
 /* Memory for one thread. Errors: MEMORY (without detail: it is called by parallel loops). */
 typedef struct box_worker box_worker;

@@ -20,6 +20,7 @@ typedef struct box_tree box_tree;
 starg_status box_tree_create(starg_context *context, const bvh *tree, const double centre[3],
                              double extent, box_tree **out);
 void box_tree_free(box_tree *tree);
+STARG_DROP(box_tree, box_tree)
 
 /* bvh_query_segment for p and q in the bounding box; triangles come one by one where their own
  * boxes may be met, in an order that the tree and the segment give. */

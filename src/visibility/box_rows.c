@@ -70,20 +70,19 @@ static starg_status check_arguments(starg_context *context, const double *boxes,
 starg_status starg_visibility_region(starg_context *context, const starg_solid *solid,
                                      const double *boxes, size_t count,
                                      const starg_visibility_options *options, starg_bits **out) {
-    starg_status status = STARG_OK;
     starg_visibility_options defaults;
-    box_scene *scene = NULL;
-    starg_bits *rows = NULL;
+    SCOPED_BY(box_scene_drop) box_scene *scene = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
     *out = NULL;
     starg_visibility_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
-    STARG_TRY(check_arguments(context, boxes, count, options));
-    STARG_TRY(box_scene_create(context, solid, &scene));
-    STARG_TRY(starg_bits_create(context, count,
-                                options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
-                                                                         : solid->mesh->face_count,
-                                &rows));
+    TRY(check_arguments(context, boxes, count, options));
+    TRY(box_scene_create(context, solid, &scene));
+    TRY(starg_bits_create(context, count,
+                          options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
+                                                                   : solid->mesh->face_count,
+                          &rows));
     job all = {.solid = solid, .scene = scene, .options = options, .boxes = boxes, .rows = rows};
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = count,
@@ -91,11 +90,8 @@ starg_status starg_visibility_region(starg_context *context, const starg_solid *
                                       .item = find_row,
                                       .make_scratch = make_worker,
                                       .free_scratch = free_worker};
-    STARG_TRY(starg_parallel_in_time(context, &loop));
+    TRY(starg_parallel_in_time(context, &loop));
     *out = rows;
-done:
-    box_scene_free(scene);
-    if (status != STARG_OK)
-        starg_bits_free(rows);
-    return status;
+    rows = NULL;
+    return STARG_OK;
 }

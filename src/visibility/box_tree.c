@@ -104,21 +104,18 @@ static uint32_t fold(box_tree *tree, const bvh *from, uint32_t index) {
 
 starg_status box_tree_create(starg_context *context, const bvh *from, const double centre[3],
                              double extent, box_tree **out) {
-    starg_status status = STARG_OK;
-    box_tree *tree = NULL;
+    SCOPED_BY(box_tree_drop) box_tree *tree = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, tree, 1);
+    NEW_ZERO(context, STAGE, tree, 1);
     tree->context = context;
     tree->scale = 1 / extent;
     for (int k = 0; k < 3; k++)
         tree->centre[k] = centre[k];
-    STARG_NEW(context, STAGE, tree->nodes, from->node_count);
+    NEW(context, STAGE, tree->nodes, from->node_count);
     fold(tree, from, 0);
     *out = tree;
-done:
-    if (status != STARG_OK)
-        box_tree_free(tree);
-    return status;
+    tree = NULL;
+    return STARG_OK;
 }
 
 void box_tree_free(box_tree *tree) {

@@ -61,9 +61,8 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     contours_scratch *s = scratch;
     if (s == NULL)
         return;
-    starg_context *context = scene->context;
     visibility_grid.free_scratch(scene, s->grid);
-    cube_free(context, &s->directions);
+    cube_free(&s->directions);
     RELEASE(s->grade, s->followed, s->parent, s->tree_edges, s->contours, s->contour_edges, s->rows,
             s->cell_start, s->pieces, s->sorted.low, s->sorted.a, s->layers, s);
 }

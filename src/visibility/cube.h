@@ -34,14 +34,8 @@ typedef struct cube_directions {
     double bound;    /* error bound of determinants; infinite: always exact */
 } cube_directions;
 
-static inline void cube_free(starg_context *context, cube_directions *d) {
-    starg_release(context, d->x);
-    starg_release(context, d->y);
-    starg_release(context, d->z);
-    starg_release(context, d->u);
-    starg_release(context, d->v);
-    starg_release(context, d->nearness);
-    starg_release(context, d->face);
+static inline void cube_free(cube_directions *d) {
+    RELEASE(d->x, d->y, d->z, d->u, d->v, d->nearness, d->face);
 }
 
 /* False when out of memory; cube_free is required in any case. */

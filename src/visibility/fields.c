@@ -31,12 +31,4 @@ static const starg_field ROWS[] = {
 };
 static const starg_fields TABLE = {
     .name = "visibility options", .size = sizeof(starg_visibility_options), FIELD_ROWS(ROWS)};
-
-const starg_fields *starg_visibility_options_fields(void) {
-    return &TABLE;
-}
-
-void starg_visibility_options_default(starg_visibility_options *options) {
-    *options = (starg_visibility_options){0};
-    starg_fields_default(&TABLE, options);
-}
+OPTIONS_BY(TABLE, starg_visibility_options)

@@ -34,14 +34,13 @@
 #include "core/memory.h"
 
 static void free_scratch(const visibility_scene *scene, void *scratch) {
+    (void)scene;
     grid_scratch *g = scratch;
     if (g == NULL)
         return;
-    starg_context *context = scene->context;
-    RELEASE(g->rows, g->cell_start);
-    cube_free(context, &g->at);
-    RELEASE(g->in_use, g->used, g->front_facing, g->place, g->slot, g->sx, g->sy, g->sz, g->hider,
-            g->hidden, g->chunks, g);
+    cube_free(&g->at);
+    RELEASE(g->rows, g->cell_start, g->in_use, g->used, g->front_facing, g->place, g->slot, g->sx,
+            g->sy, g->sz, g->hider, g->hidden, g->chunks, g);
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {

@@ -97,11 +97,6 @@ static void make_row(const finder *f, size_t face, double row[ROW]) {
     row[4] = length > 0 ? vec3_dot(row, a) : SEARCH_RADIUS;
 }
 
-static void make_rows(const finder *f) {
-    for (size_t face = 0; face < f->surface->count; face++)
-        make_row(f, face, f->rows + ROW * face);
-}
-
 /* ---- candidates ---- */
 
 static void solve(const finder *f, uint64_t seed, linear_solution *solution) {
@@ -279,7 +274,8 @@ starg_status kernel_find(starg_context *context, const kernel_faces *surface,
     if (find_flat_face(&f, result))
         goto done;
     find_frame(&f);
-    make_rows(&f);
+    for (size_t face = 0; face < surface->count; face++)
+        make_row(&f, face, f.rows + ROW * face);
     for (uint64_t attempt = 0; attempt < TRIES; attempt++) {
         linear_solution solution;
         STARG_TRY(starg_check_cancel(context, STAGE));
@@ -307,9 +303,8 @@ static int edge_balance(const starg_mesh *mesh, const mesh_topology *topology, u
 }
 
 static starg_status check_closed(starg_context *context, const starg_mesh *mesh) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    STARG_TRY(topology_create(context, mesh, &topology));
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    TRY(topology_create(context, mesh, &topology));
     for (uint32_t h = 0; h < 3 * mesh->face_count; h++) {
         uint32_t a = mesh->faces[h], b = mesh->faces[corner_next(h)], twin = topology->twin[h];
         bool balanced = a == b || (twin != TOPOLOGY_NONE ? mesh->faces[twin] == b && a != b
@@ -317,16 +312,13 @@ static starg_status check_closed(starg_context *context, const starg_mesh *mesh)
         if (balanced)
             continue;
         uint64_t edge[2] = {a, b};
-        status = starg_fail_at(
+        return starg_fail_at(
             context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, edge, 2,
             "the mesh is not closed: the faces at the edge between vertices %u and %u do not "
             "match; run 'starguard check' for details, or try 'starguard repair'",
             a, b);
-        goto done;
     }
-done:
-    topology_free(topology);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_kernel(starg_context *context, const starg_mesh *mesh,

@@ -179,11 +179,10 @@ static starg_status begin(starg_context *context, starg_bytes_reader *bytes, voi
 
 static starg_status run(starg_context *context, void *state, size_t first, size_t count,
                         starg_bytes *reply) {
-    starg_status status = STARG_OK, filled;
     const remote_job *all = state;
     starg_visibility_options options = all->options;
-    starg_bits *rows = NULL;
-    uint8_t *finished = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
+    SCOPED uint8_t *finished = NULL;
     size_t columns = target_columns(all->solid, options.target);
     if (count > all->count || first > all->count - count)
         return STARG_ERROR_RANK;
@@ -191,24 +190,20 @@ static starg_status run(starg_context *context, void *state, size_t first, size_
         options.directions = all->directions + 3 * first;
     if (all->ups != NULL)
         options.ups = all->ups + 3 * first;
-    STARG_TRY(starg_bits_create(context, count, columns, &rows));
-    STARG_NEW_ZERO(context, STAGE, finished, count);
+    TRY(starg_bits_create(context, count, columns, &rows));
+    NEW_ZERO(context, STAGE, finished, count);
     const visibility_job job = {.scene = all->scene,
                                 .options = &options,
                                 .points = all->points + 3 * first,
                                 .count = count,
                                 .rows = rows,
                                 .finished = finished};
-    filled = visibility_fill(context, &job, NULL);
+    starg_status filled = visibility_fill(context, &job, NULL);
     if (filled != STARG_ERROR_TIME)
-        STARG_TRY(filled);
-    STARG_TRY(starg_bytes_put(context, reply, finished, count, 1));
-    STARG_TRY(starg_bytes_put(context, reply, rows->data, count * rows->words, sizeof *rows->data));
-    status = filled;
-done:
-    starg_release(context, finished);
-    starg_bits_free(rows);
-    return status;
+        TRY(filled);
+    TRY(starg_bytes_put(context, reply, finished, count, 1));
+    TRY(starg_bytes_put(context, reply, rows->data, count * rows->words, sizeof *rows->data));
+    return filled;
 }
 
 const ranks_work visibility_ranks_work = {begin, run, end};

@@ -181,10 +181,9 @@ static sides_run *choose_sides(void) {
 
 starg_status scene_create(starg_context *context, const starg_solid *solid,
                           visibility_scene **out) {
-    starg_status status = STARG_OK;
-    visibility_scene *scene = NULL;
+    SCOPED_BY(scene_drop) visibility_scene *scene = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, "visibility", scene, 1);
+    NEW_ZERO(context, "visibility", scene, 1);
     scene->context = context;
     scene->solid = solid;
     scene->mesh = solid->mesh;
@@ -196,28 +195,26 @@ starg_status scene_create(starg_context *context, const starg_solid *solid,
     solid_extent(solid, &scene->all);
     size_t n = solid->mesh->vertex_count, m = scene->face_count;
     size_t slots = n + (solid->patches != NULL ? solid->patches->points.count : 0);
-    STARG_NEW(context, "visibility", scene->vertex_of, n);
-    STARG_NEW(context, "visibility", scene->slot_of, n);
-    STARG_NEW(context, "visibility", scene->rank_of, m);
-    STARG_NEW(context, "visibility", scene->x, slots);
-    STARG_NEW(context, "visibility", scene->y, slots);
-    STARG_NEW(context, "visibility", scene->z, slots);
-    STARG_NEW(context, "visibility", scene->corners, 3 * m);
-    STARG_NEW(context, "visibility", scene->nx, m);
-    STARG_NEW(context, "visibility", scene->ny, m);
-    STARG_NEW(context, "visibility", scene->nz, m);
-    STARG_NEW(context, "visibility", scene->offset, m);
+    NEW(context, "visibility", scene->vertex_of, n);
+    NEW(context, "visibility", scene->slot_of, n);
+    NEW(context, "visibility", scene->rank_of, m);
+    NEW(context, "visibility", scene->x, slots);
+    NEW(context, "visibility", scene->y, slots);
+    NEW(context, "visibility", scene->z, slots);
+    NEW(context, "visibility", scene->corners, 3 * m);
+    NEW(context, "visibility", scene->nx, m);
+    NEW(context, "visibility", scene->ny, m);
+    NEW(context, "visibility", scene->nz, m);
+    NEW(context, "visibility", scene->offset, m);
     for (size_t rank = 0; rank < m; rank++)
         scene->rank_of[scene->face_of[rank]] = (uint32_t)rank;
     order_vertices(scene);
-    STARG_TRY(add_points(scene));
+    TRY(add_points(scene));
     compute_planes(scene);
-    STARG_TRY(find_least(scene));
+    TRY(find_least(scene));
     *out = scene;
-done:
-    if (status != STARG_OK)
-        scene_free(scene);
-    return status;
+    scene = NULL;
+    return STARG_OK;
 }
 
 starg_status scene_limit(visibility_scene *scene, double range, bool directed) {

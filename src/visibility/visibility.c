@@ -337,37 +337,32 @@ static starg_status fill_shared(starg_context *context, const job *all) {
 starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
                              size_t count, const starg_visibility_options *options,
                              uint8_t *finished, starg_bits **out) {
-    starg_status status = STARG_OK;
     starg_visibility_options defaults;
-    visibility_scene *scene = NULL;
-    starg_bits *rows = NULL;
+    SCOPED_BY(scene_drop) visibility_scene *scene = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *rows = NULL;
     *out = NULL;
     starg_visibility_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
-    STARG_TRY(check_arguments(context, points, count, options));
-    STARG_TRY(sensor_check(context, STAGE, count, options));
-    STARG_TRY(visibility_scene_for(context, solid, options, count, &scene));
-    STARG_TRY(starg_bits_create(context, count, target_columns(solid, options->target), &rows));
+    TRY(check_arguments(context, points, count, options));
+    TRY(sensor_check(context, STAGE, count, options));
+    TRY(visibility_scene_for(context, solid, options, count, &scene));
+    TRY(starg_bits_create(context, count, target_columns(solid, options->target), &rows));
     const job all = {.scene = scene,
                      .options = options,
                      .points = points,
                      .count = count,
                      .rows = rows,
                      .finished = finished};
-    status = fill_shared(context, &all);
-    if (status == STARG_ERROR_TIME && finished != NULL)
-        status = STARG_OK;
-    STARG_TRY(status);
+    starg_status status = fill_shared(context, &all);
+    if (status != STARG_ERROR_TIME || finished == NULL)
+        TRY(status);
     for (size_t i = 0; i < count && options->target != STARG_TARGET_CORNERS; i++)
         solid_finish_row(solid, options->target == STARG_TARGET_VERTICES,
                          starg_bits_row_mutable(rows, i));
     *out = rows;
-done:
-    scene_free(scene);
-    if (status != STARG_OK)
-        starg_bits_free(rows);
-    return status;
+    rows = NULL;
+    return STARG_OK;
 }
 
 /* A vertex that parts share is seen if one of its copies is; these have no columns. */

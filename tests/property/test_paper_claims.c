@@ -176,7 +176,7 @@ static void drop_guard(world *w) {
 
 static void world_free(world *w) {
     tet_rings_free(&w->state.rings);
-    tet_sight_free(w->state.context, &w->state.sight);
+    tet_sight_free(&w->state.sight);
     starg_tetmesh_free(w->state.mesh);
     free(w->all.tetrahedra);
     free(w->all.vertices);

@@ -50,7 +50,7 @@ static void finds_the_nearest(void **state) {
             assert_int_equal(found, nearest_of_all(points, count, dimension, p, &expected));
             assert_true(squared == expected);
         }
-        kd_tree_free(context, &tree);
+        kd_tree_free(&tree);
     }
     test_context_free(context);
 }
@@ -64,7 +64,7 @@ static void memory_may_give_out(void **state) {
     starg_context *context = test_scarce_context(1, &left);
     left = 0;
     assert_int_equal(kd_tree_create(context, point, 1, 3, &tree), STARG_ERROR_MEMORY);
-    kd_tree_free(context, &tree);
+    kd_tree_free(&tree);
     test_context_free(context);
 }
 

@@ -260,7 +260,7 @@ static void test_smoothing(void **state) {
                 decomposition_finish(context, STARG_DECOMPOSE_PAPER, copy, labels, guards, 2, &a));
         test_ok(context, smooth_borders(&s));
         check_mesh(context, before, s.mesh);
-        tet_sight_free(context, &s.sight);
+        tet_sight_free(&s.sight);
         tet_rings_free(&s.rings);
         test_ok(context, decomposition_finish(context, STARG_DECOMPOSE_PAPER, s.mesh, s.labels,
                                               guards, 2, &b));

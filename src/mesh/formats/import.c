@@ -45,8 +45,9 @@ static const char *find_program(char room[PATH_ROOM]) {
     return access(room, X_OK) == 0 ? room : PROGRAM;
 }
 
-starg_status starg_import_read(starg_context *context, const char *path, size_t file_size,
-                               char **bytes, size_t *size) {
+/* What that program makes of it: a PLY. */
+static starg_status import(starg_context *context, const char *path, size_t file_size, char **bytes,
+                           size_t *size) {
     char room[PATH_ROOM], safe[PATH_ROOM], shown[256], complaint[200] = "", reason[200];
     const char *program = find_program(room);
     size_t memory = file_size < MOST_MEMORY / MEMORY_PER_BYTE ? MEMORY_PER_BYTE * file_size : 0;
@@ -97,5 +98,5 @@ starg_status starg_mesh_bytes(starg_context *context, const char *path, char **b
     *up = up_of(*bytes, *size, path);
     starg_release(context, *bytes);
     *bytes = NULL;
-    return starg_import_read(context, path, file_size, bytes, size);
+    return import(context, path, file_size, bytes, size);
 }

@@ -136,9 +136,6 @@ starg_status starg_polygon_clip(starg_context *context, const double *vertices,
 
 /* Is it a scene that another program has to read? */
 bool starg_import_recognized(const char *bytes, size_t size, const char *name);
-/* What that program makes of it: a PLY. Errors: FORMAT, READ, MEMORY, CANCELLED. */
-starg_status starg_import_read(starg_context *context, const char *path, size_t file_size,
-                               char **bytes, size_t *size);
 /* Reads a file for starg_mesh_read_with; of a scene that is a PLY. *up: which axis the scene's
  * format says is up, in words, or NULL. */
 starg_status starg_mesh_bytes(starg_context *context, const char *path, char **bytes, size_t *size,

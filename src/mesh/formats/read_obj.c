@@ -179,7 +179,6 @@ static void take_names(starg_scan *scan, starg_word keyword, starg_face_values *
 static starg_status collect_names(starg_scan *scan, starg_word keyword, starg_context *context,
                                   starg_face_values *values, double held[KEYWORDS]) {
     static const char *const keywords[KEYWORDS] = {"g", "o", "usemtl"};
-    starg_status status = STARG_OK;
     for (int k = 0; k < KEYWORDS; k++) {
         starg_word name;
         if (!starg_word_is(keyword, keywords[k]))
@@ -191,14 +190,12 @@ static starg_status collect_names(starg_scan *scan, starg_word keyword, starg_co
         }
         held[k] = 0;
         if (begin != NULL)
-            STARG_TRY(
-                starg_values_collect(context, values, begin, (size_t)(end - begin), &held[k]));
+            TRY(starg_values_collect(context, values, begin, (size_t)(end - begin), &held[k]));
     }
     values->current = held[GROUP] > 0    ? held[GROUP]
                       : held[OBJECT] > 0 ? held[OBJECT]
                                          : held[MATERIAL];
-done:
-    return status;
+    return STARG_OK;
 }
 
 static starg_status read_faces(starg_mesh_builder *builder, const numbers *texture) {

@@ -155,26 +155,23 @@ static starg_status read_data(starg_scan *scan, const off_header *header, size_t
  * makes no sense without them, what follows a position on its line is passed over. If that fails
  * too, the first error is reported. */
 starg_status starg_off_read(starg_mesh_builder *builder) {
-    starg_status status = STARG_OK;
     starg_scan scan = starg_scan_make(builder->source);
     off_header header;
     size_t vertices = 0, faces = 0;
-    STARG_TRY(read_keyword(&scan, &header));
+    TRY(read_keyword(&scan, &header));
     builder->left_out = header.texture ? STARG_MESH_TEXTURE : 0;
-    STARG_TRY(read_counts(&scan, &vertices, &faces));
+    TRY(read_counts(&scan, &vertices, &faces));
     const starg_scan begin = scan;
-    status = read_data(&scan, &header, vertices, faces, builder);
+    starg_status status = read_data(&scan, &header, vertices, faces, builder);
     if (status != STARG_ERROR_FORMAT || header.vertex_extras)
-        goto done;
+        return status;
     off_header other = header;
     other.vertex_extras = true;
     scan = begin;
     status = read_data(&scan, &other, vertices, faces, builder);
     builder->left_out |= status == STARG_OK ? STARG_MESH_COLORS : 0;
     if (status != STARG_ERROR_FORMAT)
-        goto done;
+        return status;
     scan = begin;
-    status = read_data(&scan, &header, vertices, faces, builder);
-done:
-    return status;
+    return read_data(&scan, &header, vertices, faces, builder);
 }

@@ -89,7 +89,7 @@ starg_status vtk_read_header(vtk_file *vtk, starg_word *dataset) {
     return starg_scan_expect(scan, "a kind of data set", dataset);
 }
 
-starg_status vtk_type(vtk_file *vtk, number_type *type) {
+static starg_status read_type(vtk_file *vtk, number_type *type) {
     static const struct {
         const char *name;
         number_type type;
@@ -120,7 +120,7 @@ starg_status vtk_read_points(vtk_file *vtk) {
     int64_t count;
     TRY(vtk_expect(vtk, "POINTS"));
     TRY(vtk_count(vtk, "the number of points", &count));
-    TRY(vtk_type(vtk, &type));
+    TRY(read_type(vtk, &type));
     if (!is_real(type))
         return starg_source_fail(source_of(vtk), numbers_place(&vtk->numbers),
                                  "the points must be of type double or float");
@@ -185,7 +185,7 @@ static starg_status read_list(vtk_file *vtk, int64_t cells, int64_t size) {
 static starg_status read_array(vtk_file *vtk, const char *name, int64_t count, int64_t **out) {
     number_type type;
     TRY(vtk_expect(vtk, name));
-    TRY(vtk_type(vtk, &type));
+    TRY(read_type(vtk, &type));
     vtk_begin_data(vtk);
     TRY(numbers_check_count(&vtk->numbers, count, numbers_least_bytes(&vtk->numbers, type),
                             "numbers of cells"));
@@ -197,22 +197,17 @@ static starg_status read_array(vtk_file *vtk, const char *name, int64_t count, i
 
 /* From version 5 on: offsets (one more than cells) and connectivity. */
 static starg_status read_offsets(vtk_file *vtk, int64_t offsets, int64_t size) {
-    starg_status status = STARG_OK;
-    int64_t *starts = NULL;
-    STARG_TRY(read_array(vtk, "OFFSETS", offsets, &starts));
-    STARG_TRY(read_array(vtk, "CONNECTIVITY", size, &vtk->indices.data));
+    SCOPED int64_t *starts = NULL;
+    TRY(read_array(vtk, "OFFSETS", offsets, &starts));
+    TRY(read_array(vtk, "CONNECTIVITY", size, &vtk->indices.data));
     vtk->indices.count = vtk->indices.capacity = (size_t)size;
     for (int64_t i = 0; i < offsets; i++) {
         int64_t before = i == 0 ? 0 : starts[i - 1];
-        if (starts[i] < before || starts[i] > size || (i == 0 && starts[i] != 0)) {
-            status = fail_sizes(vtk);
-            goto done;
-        }
-        STARG_PUSH(source_of(vtk)->context, STAGE, &vtk->starts, (size_t)starts[i]);
+        if (starts[i] < before || starts[i] > size || (i == 0 && starts[i] != 0))
+            return fail_sizes(vtk);
+        PUSH(source_of(vtk)->context, STAGE, &vtk->starts, (size_t)starts[i]);
     }
-done:
-    starg_release(source_of(vtk)->context, starts);
-    return status;
+    return STARG_OK;
 }
 
 starg_status vtk_read_cells(vtk_file *vtk) {

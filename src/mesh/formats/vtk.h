@@ -28,7 +28,6 @@ starg_status vtk_read_header(vtk_file *vtk, starg_word *dataset);
 
 /* Counts in keyword lines are text, in binary files too. */
 starg_status vtk_count(vtk_file *vtk, const char *what, int64_t *count);
-starg_status vtk_type(vtk_file *vtk, number_type *type);
 
 /* Binary data begins after the line end, which is one byte. */
 void vtk_begin_data(vtk_file *vtk);

@@ -6,20 +6,17 @@
 enum { CHILDREN = 4 };
 
 starg_status heap_create(starg_context *context, size_t items, mesh_heap **out) {
-    starg_status status = STARG_OK;
-    mesh_heap *heap = NULL;
+    SCOPED_BY(heap_drop) mesh_heap *heap = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, "simplify", heap, 1);
+    NEW_ZERO(context, "simplify", heap, 1);
     heap->context = context;
-    STARG_NEW(context, "simplify", heap->entries, items);
-    STARG_NEW(context, "simplify", heap->slot, items);
+    NEW(context, "simplify", heap->entries, items);
+    NEW(context, "simplify", heap->slot, items);
     for (size_t i = 0; i < items; i++)
         heap->slot[i] = HEAP_NONE;
     *out = heap;
-done:
-    if (status != STARG_OK)
-        heap_free(heap);
-    return status;
+    heap = NULL;
+    return STARG_OK;
 }
 
 void heap_free(mesh_heap *heap) {

@@ -253,13 +253,12 @@ static void end(simplifier *s) {
 
 /* Makes a mesh of the current surface, and maps each input vertex to its vertex there. */
 static starg_status snapshot(const mesh_surface *surface, uint32_t *number, starg_mesh **out) {
-    starg_status status = STARG_OK;
     starg_context *context = surface->context;
-    double *vertices = NULL;
-    uint32_t *faces = NULL;
+    SCOPED double *vertices = NULL;
+    SCOPED uint32_t *faces = NULL;
     *out = NULL;
-    STARG_NEW(context, "simplify", vertices, 3 * surface->vertices_left);
-    STARG_NEW(context, "simplify", faces, 3 * surface->faces_left);
+    NEW(context, "simplify", vertices, 3 * surface->vertices_left);
+    NEW(context, "simplify", faces, 3 * surface->faces_left);
     halfedges_compact(&surface->mesh, number, faces);
     for (size_t v = 0; v < surface->vertex_count; v++)
         if (surface->merged[v] == v)
@@ -271,13 +270,11 @@ static starg_status snapshot(const mesh_surface *surface, uint32_t *number, star
         else if (root != v)
             number[v] = number[sets_find(surface->merged, root)];
     }
-    STARG_TRY(starg_mesh_adopt(context, vertices, surface->vertices_left, faces,
-                               surface->faces_left, out));
-done:
-    if (status != STARG_OK) {
-        RELEASE(vertices, faces);
-    }
-    return status;
+    TRY(starg_mesh_adopt(context, vertices, surface->vertices_left, faces, surface->faces_left,
+                         out));
+    vertices = NULL;
+    faces = NULL;
+    return STARG_OK;
 }
 
 /* ---- public functions ---- */
@@ -289,21 +286,16 @@ void starg_simplify_options_default(starg_simplify_options *options) {
 starg_status starg_mesh_simplify(starg_context *context, const starg_mesh *mesh,
                                  size_t target_vertex_count, const starg_simplify_options *options,
                                  uint32_t *vertex_map, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    simplifier s = {0};
-    uint32_t *own_map = NULL;
+    SCOPED_BY(end) simplifier s = {0};
+    SCOPED uint32_t *own_map = NULL;
     *out = NULL;
-    STARG_TRY(begin(&s, context, mesh, options));
-    STARG_TRY(reduce(&s, target_vertex_count));
+    TRY(begin(&s, context, mesh, options));
+    TRY(reduce(&s, target_vertex_count));
     if (vertex_map == NULL) {
-        STARG_NEW(context, "simplify", own_map, mesh->vertex_count);
+        NEW(context, "simplify", own_map, mesh->vertex_count);
         vertex_map = own_map;
     }
-    STARG_TRY(snapshot(s.surface, vertex_map, out));
-done:
-    starg_release(context, own_map);
-    end(&s);
-    return status;
+    return snapshot(s.surface, vertex_map, out);
 }
 
 /* Levels built so far, from the finest on. */
@@ -342,15 +334,14 @@ static size_t most_levels(const ladder *sizes, size_t vertices) {
 /* Appends the surface as a level, unless it is too similar to the last one. */
 static starg_status add_level(simplifier *s, level_list *list, const ladder *sizes,
                               uint32_t *number) {
-    starg_status status = STARG_OK;
     starg_context *context = s->context;
     size_t finer = list->out->levels[list->out->count - 1].mesh->vertex_count;
-    uint32_t *map = NULL;
+    SCOPED uint32_t *map = NULL;
     starg_mesh *mesh = NULL;
     if (finer - s->surface->vertices_left < least_difference(sizes, finer))
         return STARG_OK;
-    STARG_NEW(context, "simplify", map, finer);
-    STARG_TRY(snapshot(s->surface, number, &mesh));
+    NEW(context, "simplify", map, finer);
+    TRY(snapshot(s->surface, number, &mesh));
     memset(map, 0xff, finer * sizeof *map); /* fills with STARG_NO_VERTEX */
     for (size_t v = 0; v < s->surface->vertex_count; v++) {
         if (list->of_finest[v] != STARG_NO_VERTEX)
@@ -358,28 +349,22 @@ static starg_status add_level(simplifier *s, level_list *list, const ladder *siz
         list->of_finest[v] = number[v];
     }
     list->out->levels[list->out->count++] = (starg_level){mesh, map};
-done:
-    if (status != STARG_OK)
-        starg_release(context, map);
-    return status;
+    map = NULL;
+    return STARG_OK;
 }
 
 static starg_status add_levels(starg_context *context, const starg_mesh *mesh, const ladder *sizes,
                                const starg_simplify_options *options, level_list *list) {
-    starg_status status = STARG_OK;
-    simplifier s = {0};
-    uint32_t *number = NULL;
-    STARG_TRY(begin(&s, context, mesh, options));
-    STARG_NEW(context, "simplify", number, mesh->vertex_count);
+    SCOPED_BY(end) simplifier s = {0};
+    SCOPED uint32_t *number = NULL;
+    TRY(begin(&s, context, mesh, options));
+    NEW(context, "simplify", number, mesh->vertex_count);
     for (size_t target = mesh->vertex_count; target > sizes->coarsest;) {
         target = next_target(sizes, target);
-        STARG_TRY(reduce(&s, target));
-        STARG_TRY(add_level(&s, list, sizes, number));
+        TRY(reduce(&s, target));
+        TRY(add_level(&s, list, sizes, number));
     }
-done:
-    starg_release(context, number);
-    end(&s);
-    return status;
+    return STARG_OK;
 }
 
 /* Reverses the list: coarsest first. */

@@ -68,19 +68,16 @@ static starg_status build(dynamic_bvh *n) {
 
 starg_status dynamic_bvh_create(starg_context *context, const mesh_surface *surface,
                                 dynamic_bvh **out) {
-    starg_status status = STARG_OK;
-    dynamic_bvh *tree = NULL;
+    SCOPED_BY(dynamic_bvh_drop) dynamic_bvh *tree = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, "simplify", tree, 1);
+    NEW_ZERO(context, "simplify", tree, 1);
     tree->context = context;
     tree->surface = surface;
-    STARG_NEW(context, "simplify", tree->leaf, surface->face_count);
-    STARG_TRY(build(tree));
+    NEW(context, "simplify", tree->leaf, surface->face_count);
+    TRY(build(tree));
     *out = tree;
-done:
-    if (status != STARG_OK)
-        dynamic_bvh_free(tree);
-    return status;
+    tree = NULL;
+    return STARG_OK;
 }
 
 void dynamic_bvh_free(dynamic_bvh *tree) {

@@ -20,6 +20,7 @@ typedef struct dynamic_bvh {
 starg_status dynamic_bvh_create(starg_context *context, const mesh_surface *surface,
                                 dynamic_bvh **out);
 void dynamic_bvh_free(dynamic_bvh *tree);
+STARG_DROP(dynamic_bvh, dynamic_bvh)
 
 /* Updates the tree after a face has moved. */
 void dynamic_bvh_update(dynamic_bvh *tree, uint32_t face);

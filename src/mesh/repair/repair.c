@@ -58,15 +58,7 @@ static const starg_field OPTIONS[] = {
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "repair options", .size = sizeof(starg_repair_options), FIELD_ROWS(OPTIONS)};
-
-const starg_fields *starg_repair_options_fields(void) {
-    return &OPTIONS_TABLE;
-}
-
-void starg_repair_options_default(starg_repair_options *options) {
-    *options = (starg_repair_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
-}
+OPTIONS_BY(OPTIONS_TABLE, starg_repair_options)
 
 static size_t found(const starg_check *check, starg_finding_kind kind) {
     return check->findings[kind].count;
@@ -224,63 +216,53 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
 
 /* Checks the result and returns it if it bounds a solid. */
 static starg_status finish(repair_state *state, const starg_check *before, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    starg_check *check = NULL;
-    starg_mesh *mesh = NULL;
+    SCOPED_BY(starg_check_drop) starg_check *check = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
     if (repair_face_count(state) == 0)
         return fail_empty(state);
     starg_mesh view = repair_view(state);
-    STARG_TRY(starg_mesh_create(state->context, view.vertices, view.vertex_count, view.faces,
-                                view.face_count, &mesh));
-    STARG_TRY(starg_mesh_check(state->context, mesh, &check));
+    TRY(starg_mesh_create(state->context, view.vertices, view.vertex_count, view.faces,
+                          view.face_count, &mesh));
+    TRY(starg_mesh_check(state->context, mesh, &check));
     state->report.intersections_after = found(check, STARG_FINDING_SELF_INTERSECTION);
     if (!check->usable)
-        STARG_TRY(fail_unusable(state->context, check));
+        TRY(fail_unusable(state->context, check));
     if (state->options.unite && state->report.intersections_after > 0)
-        STARG_TRY(fail_crossed(state->context, &check->findings[STARG_FINDING_SELF_INTERSECTION]));
+        TRY(fail_crossed(state->context, &check->findings[STARG_FINDING_SELF_INTERSECTION]));
     state->report.in_vain = before->usable && state->report.intersections_after > 0 &&
                             state->report.intersections_after >= state->report.intersections_before;
-    STARG_TRY(describe_vertices(state));
+    TRY(describe_vertices(state));
     describe_faces(state);
     starg_check_describe_grid(check, state->report.grid, sizeof state->report.grid);
     *out = mesh;
     mesh = NULL;
-done:
-    starg_check_free(state->context, check);
-    starg_mesh_free(mesh);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
                                const starg_repair_options *options, starg_mesh **out,
                                starg_repair_report *report) {
-    starg_status status = STARG_OK;
     starg_repair_options defaults;
-    repair_state state = {.context = context};
-    starg_check *before = NULL;
+    SCOPED_BY(repair_end) repair_state state = {.context = context};
+    SCOPED_BY(starg_check_drop) starg_check *before = NULL;
     *out = NULL;
     *report = (starg_repair_report){0};
     starg_repair_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(fields_check(context, REPAIR_STAGE, &OPTIONS_TABLE, options));
-    STARG_TRY(starg_mesh_check(context, mesh, &before));
-    STARG_TRY(repair_begin(&state, context, mesh, options));
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(fields_check(context, REPAIR_STAGE, &OPTIONS_TABLE, options));
+    TRY(starg_mesh_check(context, mesh, &before));
+    TRY(repair_begin(&state, context, mesh, options));
     state.report.intersections_before = found(before, STARG_FINDING_SELF_INTERSECTION);
     if (!needs_nothing(before, options)) {
-        STARG_TRY(mend_surface(&state, before));
-        STARG_TRY(close_surface(&state));
+        TRY(mend_surface(&state, before));
+        TRY(close_surface(&state));
     } else
-        STARG_TRY(
-            repair_measure(&state, &state.report.closed_before, &state.report.enclosed_before));
+        TRY(repair_measure(&state, &state.report.closed_before, &state.report.enclosed_before));
     bool closed;
-    STARG_TRY(repair_measure(&state, &closed, &state.report.enclosed_after));
-    STARG_TRY(finish(&state, before, out));
+    TRY(repair_measure(&state, &closed, &state.report.enclosed_after));
+    TRY(finish(&state, before, out));
     *report = state.report;
-done:
-    starg_time_end(context, former);
-    starg_check_free(context, before);
-    repair_end(&state);
-    return status;
+    return STARG_OK;
 }

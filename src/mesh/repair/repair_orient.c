@@ -49,20 +49,19 @@ static void orient_patch(walk *w, uint32_t first) {
 }
 
 starg_status repair_orient(repair_state *state) {
-    starg_status status = STARG_OK;
-    walk w = {.state = state};
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
+    SCOPED uint8_t *side = NULL;
+    SCOPED uint32_t *queue = NULL;
     starg_mesh view = repair_view(state);
-    STARG_TRY(topology_create(state->context, &view, &w.topology));
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, w.side, view.face_count);
-    STARG_NEW(state->context, REPAIR_STAGE, w.queue, view.face_count);
+    TRY(topology_create(state->context, &view, &topology));
+    NEW_ZERO(state->context, REPAIR_STAGE, side, view.face_count);
+    NEW(state->context, REPAIR_STAGE, queue, view.face_count);
+    walk w = {.state = state, .topology = topology, .side = side, .queue = queue};
     for (uint32_t f = 0; f < view.face_count; f++)
-        if (w.side[f] == 0)
+        if (side[f] == 0)
             orient_patch(&w, f);
     repair_compact(state);
-done:
-    topology_free(w.topology);
-    RELEASE(w.side, w.queue);
-    return status;
+    return STARG_OK;
 }
 
 /* -1 if all shells that lie in no others face inwards, 1 if none does, 0 if some do. */
@@ -112,14 +111,13 @@ static void tell_sheets(repair_state *state) {
 }
 
 starg_status repair_turn_shells(repair_state *state) {
-    starg_status status = STARG_OK;
-    mesh_examination all = {0};
+    SCOPED_BY(mesh_examination_free) mesh_examination all = {0};
     starg_mesh view = repair_view(state);
-    double *area = NULL, *filled = NULL;
-    STARG_TRY(mesh_examine(state->context, &view, &all));
+    SCOPED double *area = NULL, *filled = NULL;
+    TRY(mesh_examine(state->context, &view, &all));
     size_t shells = all.topology->component_count;
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, area, shells);
-    STARG_NEW_ZERO(state->context, REPAIR_STAGE, filled, shells);
+    NEW_ZERO(state->context, REPAIR_STAGE, area, shells);
+    NEW_ZERO(state->context, REPAIR_STAGE, filled, shells);
     measure_fillings(state, &view, all.topology, area, filled);
     int outer = outer_facing(&all);
     for (size_t f = 0; f < view.face_count; f++) {
@@ -133,8 +131,5 @@ starg_status repair_turn_shells(repair_state *state) {
             state->report.sheets_kept += all.shells[shell].first_face == f;
     }
     tell_sheets(state);
-done:
-    RELEASE(area, filled);
-    mesh_examination_free(state->context, &all);
-    return status;
+    return STARG_OK;
 }

@@ -136,15 +136,12 @@ static starg_status split_shared_edges(splitter *s, bool *changed) {
 }
 
 static starg_status split_once(repair_state *state, bool *changed) {
-    starg_status status = STARG_OK;
-    splitter s = {.state = state};
+    SCOPED_BY(topology_drop) mesh_topology *topology = NULL;
     starg_mesh view = repair_view(state);
-    STARG_TRY(wings_create(state->context, &view, &s.topology));
-    STARG_TRY(split_fans(&s));
-    STARG_TRY(split_shared_edges(&s, changed));
-done:
-    topology_free(s.topology);
-    return status;
+    TRY(wings_create(state->context, &view, &topology));
+    splitter s = {.state = state, .topology = topology};
+    TRY(split_fans(&s));
+    return split_shared_edges(&s, changed);
 }
 
 starg_status repair_split(repair_state *state) {

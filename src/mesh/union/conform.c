@@ -678,27 +678,25 @@ static void free_round(conformer *c) {
 
 static starg_status run_round(union_surface *surface, double distance, int exponent, size_t given,
                               conform_report *report, bool *changed, bool *full) {
-    starg_status status = STARG_OK;
+    SCOPED_BY(free_round)
     conformer c = {.context = surface->context,
                    .surface = surface,
                    .distance = ldexp(distance, -exponent),
                    .exponent = exponent,
                    .facts.context = surface->context};
-    STARG_TRY(scale_vertices(&c));
-    STARG_TRY(merge_vertices(&c, given, report));
-    STARG_TRY(near_find(c.context, c.place, surface->faces.data, union_face_count(surface),
-                        c.distance, &c.facts));
+    TRY(scale_vertices(&c));
+    TRY(merge_vertices(&c, given, report));
+    TRY(near_find(c.context, c.place, surface->faces.data, union_face_count(surface), c.distance,
+                  &c.facts));
     *full = c.facts.full;
     if (*full)
-        goto done;
-    STARG_TRY(add_crossings(&c, report));
+        return STARG_OK;
+    TRY(add_crossings(&c, report));
     if (c.facts.on.count > 0 || c.facts.in.count > 0 || c.facts.sheets)
-        STARG_TRY(divide(&c));
+        TRY(divide(&c));
     report->moved += ldexp(fmax(c.moved, c.facts.farthest), exponent);
     *changed = c.changed;
-done:
-    free_round(&c);
-    return status;
+    return STARG_OK;
 }
 
 starg_status surface_conform(union_surface *surface, double distance, conform_report *report) {

@@ -259,14 +259,9 @@ static starg_status add_triangle(partition *p, const fan_plan *plan, const parti
     const uint8_t *takes = plan->takes.data;
     if (takes[one->facet] == takes[two->facet])
         return STARG_OK;
-    facet f = {.corners = {one->b, one->a, apex},
-               .side = {plan->takers[takes[one->facet]], plan->takers[takes[two->facet]]},
-               .plane = (uint32_t)p->planes.count};
-    partition_plane plane;
-    partition_plane_of(p, f.corners, &plane);
-    PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
-    PUSH(p->context, PARTITION_STAGE, &p->facets, f);
-    return STARG_OK;
+    const uint32_t corners[3] = {one->b, one->a, apex};
+    return partition_add_facet(p, corners, plan->takers[takes[one->facet]],
+                               plan->takers[takes[two->facet]]);
 }
 
 starg_status partition_fan(partition *p, const fan_plan *plan) {

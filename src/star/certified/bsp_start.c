@@ -385,8 +385,7 @@ static starg_status carry_out(bsp_builder *b, const job *j) {
     if (j->found)
         TRY(cut(b, j, &e, &done));
     if (!done) {
-        TRY(try_again(b, j));
-        return STARG_OK;
+        return try_again(b, j);
     }
     uint32_t first = (uint32_t)b->p->pieces.count;
     TRY(extract_return(&e, b->p));

@@ -54,19 +54,15 @@ static starg_status collect_guards(const partition *p, double **guards) {
 }
 
 static starg_status finish(const partition *p, starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *mesh = NULL;
-    int32_t *labels = NULL;
-    double *guards = NULL;
-    STARG_TRY(cone_all(p, &mesh, &labels));
-    STARG_TRY(collect_guards(p, &guards));
-    status = decomposition_finish(p->context, STARG_DECOMPOSE_STRICT, mesh, labels, guards,
-                                  p->pieces.count, out);
+    SCOPED_BY(starg_tetmesh_drop) starg_tetmesh *mesh = NULL;
+    SCOPED int32_t *labels = NULL;
+    SCOPED double *guards = NULL;
+    TRY(cone_all(p, &mesh, &labels));
+    TRY(collect_guards(p, &guards));
+    starg_status status = decomposition_finish(p->context, STARG_DECOMPOSE_STRICT, mesh, labels,
+                                               guards, p->pieces.count, out);
     mesh = NULL;
     labels = NULL;
-done:
-    starg_tetmesh_free(mesh);
-    RELEASE(labels, guards);
     return status;
 }
 
@@ -109,11 +105,6 @@ static starg_status start_by_bsp(const model *m, const bsp_options *options, par
     return STARG_OK;
 }
 
-static void keep_better(partition *p, partition *other) {
-    if (other->pieces.count < p->pieces.count)
-        partition_swap(p, other);
-}
-
 /* Where there are tetrahedra, regions of them are a start at once, and in a solid full of holes the
  * better one; planes are worth no more than a few evaluations for each. */
 static starg_status begin_with_tetrahedra(const model *of, const starg_decompose_options *options,
@@ -127,8 +118,8 @@ static starg_status begin_with_tetrahedra(const model *of, const starg_decompose
                                 .guards = options->guards,
                                 .guard_count = options->guard_count};
     TRY(start_by_bsp(of, &wanted, &other, &report));
-    if (report.done)
-        keep_better(p, &other);
+    if (report.done && other.pieces.count < p->pieces.count)
+        partition_swap(p, &other);
     return STARG_OK;
 }
 

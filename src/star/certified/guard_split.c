@@ -453,16 +453,14 @@ static starg_status find_borders(searcher *s, cut_plan *plan, bool *found) {
 starg_status guard_split_find(const region *r, size_t guards, const guard_split_options *options,
                               starg_rng *rng, region_scratch *scratch, cut_plan *plan,
                               bool *found) {
-    starg_status status = STARG_OK;
+    SCOPED_BY(end)
     searcher s = {.r = r, .guards = guards, .options = options, .rng = rng, .scratch = scratch};
     *found = false;
-    STARG_TRY(begin(&s));
-    STARG_TRY(find_places(&s, found));
+    TRY(begin(&s));
+    TRY(find_places(&s, found));
     if (*found)
-        STARG_TRY(disentangle(&s, found));
+        TRY(disentangle(&s, found));
     if (*found)
-        STARG_TRY(find_borders(&s, plan, found));
-done:
-    end(&s);
-    return status;
+        TRY(find_borders(&s, plan, found));
+    return STARG_OK;
 }

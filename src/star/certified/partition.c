@@ -112,9 +112,8 @@ void partition_plane_of(const partition *p, const uint32_t corners[3], partition
     plane->offset = vec3_dot(plane->normal, a);
 }
 
-/* A facet in a plane of its own. */
-static starg_status add_facet(partition *p, const uint32_t corners[3], uint32_t inner,
-                              uint32_t outer) {
+starg_status partition_add_facet(partition *p, const uint32_t corners[3], uint32_t inner,
+                                 uint32_t outer) {
     facet f = {.corners = {corners[0], corners[1], corners[2]},
                .side = {inner, outer},
                .plane = (uint32_t)p->planes.count};
@@ -184,33 +183,27 @@ starg_status partition_sort_edges(starg_context *context, partition_edge *edges,
 
 starg_status partition_create_from_surface(starg_context *context, const kernel_faces *surface,
                                            partition *out) {
-    starg_status status = STARG_OK;
     const uint32_t *faces = surface->faces;
     size_t vertex_count = 0, face_count = surface->count;
     const piece whole = {.stamp = 1};
-    uint32_t *numbers = NULL;
+    SCOPED uint32_t *numbers = NULL;
     *out = (partition){.context = context, .stamps = 1};
     for (size_t i = 0; i < 3 * face_count; i++)
         vertex_count = faces[i] >= vertex_count ? faces[i] + (size_t)1 : vertex_count;
     find_frame(surface->vertices, faces, 3 * face_count, out);
-    STARG_NEW(context, PARTITION_STAGE, numbers, vertex_count);
+    NEW(context, PARTITION_STAGE, numbers, vertex_count);
     memset(numbers, 0xff, vertex_count * sizeof *numbers);
     for (size_t i = 0; i < 3 * face_count; i++)
         numbers[faces[i]] = 0;
-    STARG_TRY(add_points(out, surface->vertices, vertex_count, numbers));
-    STARG_PUSH(context, PARTITION_STAGE, &out->pieces, whole);
+    TRY(add_points(out, surface->vertices, vertex_count, numbers));
+    PUSH(context, PARTITION_STAGE, &out->pieces, whole);
     for (size_t f = 0; f < face_count; f++) {
         const uint32_t *own = faces + 3 * f;
         const uint32_t corners[3] = {numbers[own[0]], numbers[own[1]], numbers[own[2]]};
-        STARG_TRY(add_facet(out, corners, 0, PARTITION_OUTSIDE));
+        TRY(partition_add_facet(out, corners, 0, PARTITION_OUTSIDE));
     }
     out->first_planes = out->planes.count;
-    STARG_TRY(partition_build_index(out));
-done:
-    starg_release(context, numbers);
-    if (status != STARG_OK)
-        partition_free(out);
-    return status;
+    return partition_build_index(out);
 }
 
 /* ---- from tetrahedra ---- */
@@ -236,8 +229,8 @@ static starg_status add_border(partition *p, const starg_tetmesh *mesh, const ui
         int corner = TETMESH_FACE[slot % 4][k];
         corners[k] = numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)corner]];
     }
-    return add_facet(p, corners, labels[slot / 4],
-                     beyond == STARG_TETMESH_NONE ? PARTITION_OUTSIDE : labels[beyond]);
+    return partition_add_facet(p, corners, labels[slot / 4],
+                               beyond == STARG_TETMESH_NONE ? PARTITION_OUTSIDE : labels[beyond]);
 }
 
 static void add_volume(partition *p, const starg_tetmesh *mesh, size_t tetrahedron,
@@ -255,30 +248,24 @@ static void add_volume(partition *p, const starg_tetmesh *mesh, size_t tetrahedr
 starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
                               const uint32_t *labels, const double *guards, size_t count,
                               partition *out) {
-    starg_status status = STARG_OK;
-    uint32_t *numbers = NULL;
+    SCOPED uint32_t *numbers = NULL;
     *out = (partition){.context = context};
     find_frame(mesh->vertices, mesh->tetrahedra, 4 * mesh->count, out);
-    STARG_NEW(context, PARTITION_STAGE, numbers, mesh->vertex_count);
+    NEW(context, PARTITION_STAGE, numbers, mesh->vertex_count);
     mark_vertices(mesh, labels, numbers);
-    STARG_TRY(add_points(out, mesh->vertices, mesh->vertex_count, numbers));
+    TRY(add_points(out, mesh->vertices, mesh->vertex_count, numbers));
     for (size_t i = 0; i < count; i++) {
         piece fresh = {.stamp = ++out->stamps};
         vec3_copy(guards + 3 * i, fresh.guard);
-        STARG_PUSH(context, PARTITION_STAGE, &out->pieces, fresh);
+        PUSH(context, PARTITION_STAGE, &out->pieces, fresh);
     }
     for (size_t slot = 0; slot < 4 * mesh->count; slot++)
         if (is_border(mesh, labels, slot))
-            STARG_TRY(add_border(out, mesh, labels, numbers, slot));
+            TRY(add_border(out, mesh, labels, numbers, slot));
     out->first_planes = out->planes.count;
     for (size_t t = 0; t < mesh->count; t++)
         add_volume(out, mesh, t, labels[t]);
-    STARG_TRY(partition_build_index(out));
-done:
-    starg_release(context, numbers);
-    if (status != STARG_OK)
-        partition_free(out);
-    return status;
+    return partition_build_index(out);
 }
 
 void partition_free(partition *p) {
@@ -293,14 +280,13 @@ void partition_free(partition *p) {
 #define COPY_ARRAY(CONTEXT, TO, FROM)                                                              \
     do {                                                                                           \
         (TO)->capacity = (FROM)->count + (FROM)->count / 8 + 64;                                   \
-        STARG_NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (TO)->capacity);                         \
+        NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (TO)->capacity);                               \
         (TO)->count = (FROM)->count;                                                               \
         if ((FROM)->count > 0)                                                                     \
             memcpy((TO)->data, (FROM)->data, (FROM)->count * sizeof *(TO)->data);                  \
     } while (0)
 
 starg_status partition_copy(const partition *from, partition *to) {
-    starg_status status = STARG_OK;
     *to = (partition){.context = from->context,
                       .first_points = from->first_points,
                       .first_planes = from->first_planes,
@@ -312,10 +298,7 @@ starg_status partition_copy(const partition *from, partition *to) {
     COPY_ARRAY(from->context, &to->planes, &from->planes);
     COPY_ARRAY(from->context, &to->facets, &from->facets);
     COPY_ARRAY(from->context, &to->pieces, &from->pieces);
-done:
-    if (status != STARG_OK)
-        partition_free(to);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- facets of a piece, corners at a point ---- */
@@ -483,12 +466,6 @@ static starg_status number_point(const extractor *x, uint32_t point) {
     return STARG_OK;
 }
 
-static starg_status number_points(const extractor *x) {
-    for (size_t i = 0; i < 3 * x->e->facets.count; i++)
-        TRY(number_point(x, x->p->facets.data[x->e->facets.data[i / 3]].corners[i % 3]));
-    return STARG_OK;
-}
-
 /* Does a facet belong to none of the pieces but have two of their vertices, `corner` being the
  * first? */
 static bool is_beside(const extractor *x, const facet *f, uint32_t corner) {
@@ -585,7 +562,8 @@ starg_status extract_make(const partition *p, const uint32_t *pieces, size_t cou
     TRY(region_scratch_fit(scratch, p));
     TRY(name_pieces(&x, pieces, count));
     TRY(list_own_facets(&x));
-    TRY(number_points(&x));
+    for (size_t i = 0; i < 3 * out->facets.count; i++)
+        TRY(number_point(&x, p->facets.data[out->facets.data[i / 3]].corners[i % 3]));
     TRY(list_facets_beside(&x));
     if (out->facets.count > 1)
         qsort(out->facets.data, out->facets.count, sizeof *out->facets.data, partition_ascending);

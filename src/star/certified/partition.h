@@ -108,6 +108,10 @@ starg_status partition_build_index(partition *p);
 /* Appends a point in the solid's coordinates; returns its number. Errors: MEMORY. */
 starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex);
 
+/* Appends a facet in a plane of its own. Errors: MEMORY. */
+starg_status partition_add_facet(partition *p, const uint32_t corners[3], uint32_t inner,
+                                 uint32_t outer);
+
 /* Order of edges by their ends, in either direction: 0 for the same edge. */
 static inline int partition_compare_edges(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     uint32_t low[2] = {a < b ? a : b, c < d ? c : d}, high[2] = {a < b ? b : a, c < d ? d : c};

@@ -369,14 +369,12 @@ static const climber *best_climber(const growing *c) {
 
 /* Grows one region of the component that holds t. */
 static starg_status grow_from(growing *c, uint32_t t, grower *grow, grown_regions *out) {
-    starg_status status = STARG_OK;
     guard_pair guard = {.at = {{0}}};
     bool found;
-    STARG_TRY(gather(c, t));
-    STARG_TRY(find_kernel(c, &guard, &found));
+    TRY(gather(c, t));
+    TRY(find_kernel(c, &guard, &found));
     if (found) {
-        STARG_TRY(add_piece(out, c, &guard, c->members.data, c->members.count));
-        goto done;
+        return add_piece(out, c, &guard, c->members.data, c->members.count);
     }
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = CLIMBERS,
@@ -385,31 +383,27 @@ static starg_status grow_from(growing *c, uint32_t t, grower *grow, grown_region
                                       .make_scratch = make_grower,
                                       .free_scratch = free_grower,
                                       .silent = true};
-    STARG_TRY(starg_parallel_for(c->context, &loop));
+    TRY(starg_parallel_for(c->context, &loop));
     const climber *best = best_climber(c);
     if (best->volume > 0) {
         double volume;
-        STARG_TRY(grow_region(c, grow, best->at, &best->guard, &volume));
-        STARG_TRY(add_piece(out, c, &best->guard, grow->set.data, grow->set.count));
-        goto done;
+        TRY(grow_region(c, grow, best->at, &best->guard, &volume));
+        return add_piece(out, c, &best->guard, grow->set.data, grow->set.count);
     }
     /* centroids rounded out of slivers: a point of one tetrahedron, if doubles name any */
     c->region[t] = ++c->regions;
     c->members.data[0] = t;
     c->members.count = 1;
-    STARG_TRY(find_kernel(c, &guard, &found));
+    TRY(find_kernel(c, &guard, &found));
     if (!found) {
         const uint64_t number = t;
-        status = starg_fail_at(c->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
-                               &number, 1,
-                               "tetrahedron %u is too thin to contain a point in double precision; "
-                               "remove it or generate the mesh again",
-                               (unsigned)t);
-        goto done;
+        return starg_fail_at(c->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
+                             &number, 1,
+                             "tetrahedron %u is too thin to contain a point in double precision; "
+                             "remove it or generate the mesh again",
+                             (unsigned)t);
     }
-    STARG_TRY(add_piece(out, c, &guard, &t, 1));
-done:
-    return status;
+    return add_piece(out, c, &guard, &t, 1);
 }
 
 /* ---- all ---- */

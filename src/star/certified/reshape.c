@@ -457,18 +457,16 @@ static bool settle(settler *s, uint32_t number) {
  * each piece, in unit coordinates). Looks at about `looks` facets at most, and subtracts how many
  * it looked at. The partition has an index. Errors: MEMORY, CANCELLED. */
 static starg_status move_guards(partition *p, const double *margins, uint64_t *looks, bool *any) {
-    starg_status status = STARG_OK;
-    settler s = {.p = p, .margins = margins, .looks = *looks};
-    STARG_NEW(p->context, PARTITION_STAGE, s.entries, p->index.count);
+    SCOPED flatness_rank *entries = NULL;
+    NEW(p->context, PARTITION_STAGE, entries, p->index.count);
+    settler s = {.p = p, .margins = margins, .looks = *looks, .entries = entries};
     for (uint32_t i = 0; i < p->pieces.count && s.looks > 0; i++) {
-        STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
+        TRY(starg_check_cancel(p->context, PARTITION_STAGE));
         if (settle(&s, i))
             *any = true;
     }
     *looks = s.looks;
-done:
-    starg_release(p->context, s.entries);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- all ---- */

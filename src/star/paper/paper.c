@@ -22,10 +22,9 @@
 /* The tetrahedra around each vertex: a counting sort by vertex. Cost: O(n). */
 
 starg_status tet_rings_create(starg_context *context, const starg_tetmesh *mesh, tet_rings *out) {
-    starg_status status = STARG_OK;
     *out = (tet_rings){0};
-    STARG_NEW_ZERO(context, PAPER_STAGE, out->first, mesh->vertex_count + 1);
-    STARG_NEW(context, PAPER_STAGE, out->at, 4 * mesh->count);
+    NEW_ZERO(context, PAPER_STAGE, out->first, mesh->vertex_count + 1);
+    NEW(context, PAPER_STAGE, out->at, 4 * mesh->count);
     for (size_t i = 0; i < 4 * mesh->count; i++)
         out->first[mesh->tetrahedra[i]]++;
     for (size_t v = 0, sum = 0; v <= mesh->vertex_count; v++) {
@@ -34,10 +33,7 @@ starg_status tet_rings_create(starg_context *context, const starg_tetmesh *mesh,
     }
     for (size_t i = 4 * mesh->count; i-- > 0;)
         out->at[--out->first[mesh->tetrahedra[i]]] = (uint32_t)(i / 4);
-done:
-    if (status != STARG_OK)
-        tet_rings_free(out);
-    return status;
+    return STARG_OK;
 }
 
 void tet_rings_free(tet_rings *rings) {
@@ -70,7 +66,7 @@ static starg_status state_create(starg_context *context, const starg_tetmesh *me
 }
 
 static void state_free(paper_state *s) {
-    tet_sight_free(s->context, &s->sight);
+    tet_sight_free(&s->sight);
     tet_rings_free(&s->rings);
     heap_free(s->heap);
     RELEASE(s->offer, s->labels, s->guards.data);

@@ -24,16 +24,12 @@ void view_scratch_free(view_scratch *scratch) {
 }
 
 starg_status view_create(const paper_state *s, paper_guard *g) {
-    starg_status status = STARG_OK;
     g->toward = NULL;
     g->cost = NULL;
-    STARG_NEW(s->context, PAPER_STAGE, g->toward, s->mesh->vertex_count);
-    STARG_NEW(s->context, PAPER_STAGE, g->cost, s->mesh->count);
+    NEW(s->context, PAPER_STAGE, g->toward, s->mesh->vertex_count);
+    NEW(s->context, PAPER_STAGE, g->cost, s->mesh->count);
     memset(g->toward, 0xff, s->mesh->vertex_count * sizeof *g->toward);
-done:
-    if (status != STARG_OK)
-        view_free(g);
-    return status;
+    return STARG_OK;
 }
 
 void view_free(paper_guard *g) {
