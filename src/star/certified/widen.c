@@ -144,8 +144,7 @@ enum {
     IDLE_MOST = 12, /* consecutive rounds without a change before it stops */
     DIRECTIONS = 32,
     STEPS = 24,
-    AT_ONCE = 2, /* unions for each of several threads */
-    AT_ONCE_MOST = 32
+    AT_ONCE_MOST = 16 /* unions, one for each thread */
 };
 
 /* The margin required at first, and the growth of a ball that is required then; of what is required
@@ -266,9 +265,7 @@ static bool is_over(const widener *w) {
  * change anything, so that most are what they would be one after the other. */
 static starg_status widen_piece(widener *w, uint32_t number, bool *done) {
     const size_t threads = (size_t)w->p->context->threads;
-    const size_t most = threads == 1                       ? 1
-                        : AT_ONCE * threads < AT_ONCE_MOST ? AT_ONCE * threads
-                                                           : AT_ONCE_MOST;
+    const size_t most = threads < AT_ONCE_MOST ? threads : AT_ONCE_MOST;
     starg_parallel_loop loop = {.stage = PARTITION_STAGE,
                                 .shared = w,
                                 .item = run_trial,
