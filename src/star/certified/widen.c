@@ -159,8 +159,8 @@ typedef struct union_trial {
     uint32_t pieces[2];
     double margins[2]; /* of guards, in unit coordinates */
     uint64_t first;    /* number of the first search */
-    uint32_t searches,
-        done; /* how many there are; the last one that is done may have found a plan */
+    uint32_t searches; /* how many there are */
+    uint32_t done;     /* the last one that is done may have found a plan */
     bool found;
     cut_plan plan;
     uint64_t work;
