@@ -317,9 +317,8 @@ static starg_status tell_all(cli_session *session, const starg_guards *g, const 
             cli_json_indices(session, g->uncovered, g->uncovered_count));
     cli_put(session, session->report, "options",
             cli_json_record(session, starg_visibility_options_fields(), &g->options.visibility));
-    cli_put(session, session->report, "points", list);
+    cli_put(session, session->report, "points", json_incref(list));
     cli_put(session, session->report, "coverage", coverage);
-    return STARG_OK;
     return STARG_OK;
 }
 
