@@ -28,6 +28,7 @@
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
 #include "morph/approach.h"
+#include "morph/limbs.h"
 #include "morph/morph.h"
 #include "morph/solid_stars.h"
 #include "morph/solids.h"
@@ -325,26 +326,49 @@ typedef struct cone_labels {
     size_t count;
 } cone_labels;
 
+/* Takes cones in pieces as the tetrahedra. */
+static starg_status take_cones(compatible_cones *cones, deform_mesh *c, cone_labels *out) {
+    c->fixed = cones->surface_count;
+    for (size_t i = 0; i < 3 * cones->vertex_count; i++) {
+        PUSH(c->context, STAGE, &c->rest, cones->places[0][i]);
+        PUSH(c->context, STAGE, &c->now, cones->places[1][i]);
+    }
+    for (size_t i = 0; i < 4 * cones->count; i++)
+        PUSH(c->context, STAGE, &c->tetrahedra, cones->tetrahedra[i]);
+    *out = (cone_labels){cones->labels, cones->piece_count};
+    cones->labels = NULL;
+    return STARG_OK;
+}
+
 /* Pieces that are star-shaped in both ends, if they are found. */
 static starg_status spread_pieces(const starg_mesh *divided, const double *images, deform_mesh *c,
                                   cone_labels *out) {
     starg_status status = STARG_OK;
-    const double *const places[2] = {divided->vertices, images};
+    const compatible_surface surface = {.places = {divided->vertices, images},
+                                        .vertex_count = divided->vertex_count,
+                                        .count = divided->face_count,
+                                        .faces = divided->faces,
+                                        .piece_count = 1};
     compatible_cones cones = {0};
     size_t left;
-    STARG_TRY(compatible_fill(c->context, places, divided->vertex_count, divided->faces,
-                              divided->face_count, &cones, &left));
-    if (left > 0)
-        goto done;
-    c->fixed = cones.surface_count;
-    for (size_t i = 0; i < 3 * cones.vertex_count; i++) {
-        STARG_PUSH(c->context, STAGE, &c->rest, cones.places[0][i]);
-        STARG_PUSH(c->context, STAGE, &c->now, cones.places[1][i]);
-    }
-    for (size_t i = 0; i < 4 * cones.count; i++)
-        STARG_PUSH(c->context, STAGE, &c->tetrahedra, cones.tetrahedra[i]);
-    *out = (cone_labels){cones.labels, cones.piece_count};
-    cones.labels = NULL;
+    STARG_TRY(compatible_fill(c->context, &surface, &cones, &left));
+    if (left == 0)
+        STARG_TRY(take_cones(&cones, c, out));
+done:
+    compatible_cones_free(c->context, &cones);
+    return status;
+}
+
+/* The same by way of limbs, with another map of the surfaces. */
+static starg_status spread_limbs(const starg_mesh *a, const starg_mesh *b, deform_mesh *c,
+                                 cone_labels *out) {
+    starg_status status = STARG_OK;
+    const starg_mesh *const meshes[2] = {a, b};
+    compatible_cones cones = {0};
+    bool found;
+    STARG_TRY(limbs_fill(c->context, meshes, &cones, &found));
+    if (found)
+        STARG_TRY(take_cones(&cones, c, out));
 done:
     compatible_cones_free(c->context, &cones);
     return status;
@@ -467,7 +491,10 @@ static starg_status spread_cones(starg_context *context, const starg_mesh *a, co
         NEW_ZERO(context, STAGE, out->labels, c->tetrahedra.count / 4);
         out->count = 1;
     } else if (map->kind != STARG_MAP_SAME) {
-        TRY(spread_pieces(divided, second, c, out));
+        if (map->kind == STARG_MAP_SPHERE && map->pair_count == 0)
+            TRY(spread_limbs(a, b, c, out));
+        if (out->labels == NULL)
+            TRY(spread_pieces(divided, second, c, out));
     }
     return STARG_OK;
 }

@@ -31,12 +31,21 @@ typedef struct compatible_cones {
     uint32_t *labels; /* count */
 } compatible_cones;
 
-/* Fills two solids, bounded by the same faces (outward, a sphere) in two places, with the same
- * tetrahedra, positive in both: cones in pieces that are star-shaped in both (cones.c). The surface
- * is divided in its faces. *left: pieces that could not be cut further; then there is no result.
- * Errors: MEMORY, CANCELLED. */
-starg_status compatible_fill(starg_context *context, const double *const places[2], size_t vertices,
-                             const uint32_t *faces, size_t count, compatible_cones *out,
-                             size_t *left) STARG_PRIVATE(compatible_fill);
+/* Triangles in two places. */
+typedef struct compatible_surface {
+    const double *places[2]; /* vertex_count x 3 */
+    size_t vertex_count, count;
+    const uint32_t *faces; /* count x 3 */
+    const uint32_t *sides; /* count x 2: the pieces before and behind a triangle, each bounded by a
+                              sphere, or UINT32_MAX; NULL: all faces bound one piece, outward */
+    size_t piece_count;    /* 1 without sides */
+} compatible_surface;
+
+/* Fills two solids, bounded by the same faces in two places, with the same tetrahedra, positive in
+ * both: cones in pieces that are star-shaped in both (cones.c). The surface is divided in its faces.
+ * *left: pieces that could not be cut further; then there is no result. Errors: MEMORY, CANCELLED.
+ */
+starg_status compatible_fill(starg_context *context, const compatible_surface *surface,
+                             compatible_cones *out, size_t *left) STARG_PRIVATE(compatible_fill);
 void compatible_cones_free(starg_context *context, compatible_cones *cones)
     STARG_PRIVATE(compatible_cones_free);

@@ -34,20 +34,19 @@ enum { ROUNDS = 8, ATTEMPTS_MOST = 3 }; /* of a piece; of a cut */
  * faces and EASY more. */
 enum { GROWTH_MOST = 8, WORK_MOST = 20, WORK_ALL = 100, EASY = 100 };
 
-static starg_status begin(cone_builder *b, const double *const places[2], size_t vertices,
-                          const uint32_t *faces, size_t count) {
-    uint32_t whole, number;
-    TRY(cones_open_piece(b, 0, &whole));
-    for (size_t v = 0; v < vertices; v++) {
+static starg_status begin(cone_builder *b, const compatible_surface *s) {
+    const uint32_t whole[2] = {0, NOWHERE};
+    uint32_t number;
+    for (size_t p = 0; p < s->piece_count; p++)
+        TRY(cones_open_piece(b, 0, &number));
+    for (size_t v = 0; v < s->vertex_count; v++) {
         double from[2][3];
         for (int end = 0; end < 2; end++)
-            vec3_copy(places[end] + 3 * v, from[end]);
+            vec3_copy(s->places[end] + 3 * v, from[end]);
         TRY(cones_add_vertex(b, (const double(*)[3])from, &number));
     }
-    for (size_t f = 0; f < count; f++) {
-        const uint32_t sides[2] = {whole, NOWHERE};
-        TRY(cones_add_triangle(b, faces + 3 * f, sides));
-    }
+    for (size_t f = 0; f < s->count; f++)
+        TRY(cones_add_triangle(b, s->faces + 3 * f, s->sides != NULL ? s->sides + 2 * f : whole));
     return STARG_OK;
 }
 
@@ -223,15 +222,14 @@ void compatible_cones_free(starg_context *context, compatible_cones *cones) {
     *cones = (compatible_cones){0};
 }
 
-starg_status compatible_fill(starg_context *context, const double *const places[2], size_t vertices,
-                             const uint32_t *faces, size_t count, compatible_cones *out,
-                             size_t *left) {
+starg_status compatible_fill(starg_context *context, const compatible_surface *surface,
+                             compatible_cones *out, size_t *left) {
     starg_status status = STARG_OK;
     cone_builder b = {.context = context,
                       .scratch = {.context = context},
                       .rng = starg_rng_make(context->seed, 3, 0)};
     *out = (compatible_cones){0};
-    STARG_TRY(begin(&b, places, vertices, faces, count));
+    STARG_TRY(begin(&b, surface));
     STARG_TRY(divide_all(&b, left));
     if (*left == 0)
         STARG_TRY(finish(&b, out));
