@@ -55,6 +55,9 @@ starg_status limbs_pair(const limb_tree trees[2], limb_pairs *out);
 void limbs_point_at(const limb_tree *tree, limb_way way, double share, double point[3],
                     double direction[3]);
 
+/* Marks joints and ends that follow on a limb. */
+void limbs_mark_beyond(const limb_tree *tree, limb_way way, uint8_t *marks);
+
 /* ---- cuts (limbs_cut.c) ---- */
 
 /* A flat wall in either solid, spanned from a hub. Its loops correspond vertex by vertex. */

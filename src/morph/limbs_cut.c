@@ -61,6 +61,15 @@ void limbs_free_cuts(limb_cuts *cuts) {
 
 /* ---- the surfaces ---- */
 
+static uint64_t name_of(uint32_t u, uint32_t v) {
+    return u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
+}
+
+static int by_name(const void *left, const void *right) {
+    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+    return (a > b) - (a < b);
+}
+
 static starg_status begin_side(starg_context *context, const starg_mesh *mesh, cone_builder *b) {
     uint32_t whole, number;
     *b = (cone_builder){.context = context,
@@ -149,6 +158,63 @@ static starg_status find_section(limb_cuts *cuts, int end, const bvh *tree, cons
     return STARG_OK;
 }
 
+/* Sets of vertices that are joined by edges that a loop does not cross; *left: the one above it. */
+static starg_status find_left(const limb_cuts *cuts, int end, const section *s, uint32_t *sets,
+                              uint32_t *left) {
+    const cone_builder *b = &cuts->sides[end];
+    SCOPED STARG_ARRAY(uint64_t) crossed = {0};
+    SCOPED uint8_t *on = NULL;
+    NEW_ZERO(cuts->context, STAGE, on, b->about.count);
+    for (size_t i = 0; i < s->count; i++) {
+        const cut_node *node = &s->nodes[i];
+        if (node->to == NOWHERE)
+            on[node->from] = 1;
+        else
+            PUSH(cuts->context, STAGE, &crossed, name_of(node->from, node->to));
+    }
+    if (crossed.count > 0)
+        qsort(crossed.data, crossed.count, sizeof *crossed.data, by_name);
+    sets_make(sets, b->about.count);
+    *left = NOWHERE;
+    for (size_t i = 0; i < b->corners.count; i++) {
+        uint32_t u = b->corners.data[i], v = b->corners.data[i % 3 == 2 ? i - 2 : i + 1];
+        const double p = b->heights.data[u], q = b->heights.data[v];
+        const uint64_t name = name_of(u, v);
+        bool opposite = cones_are_opposite(p, q);
+        bool crosses = opposite && crossed.count > 0 &&
+                       bsearch(&name, crossed.data, crossed.count, sizeof name, by_name) != NULL;
+        if (!crosses && !on[u] && !on[v])
+            sets_join(sets, u, v);
+        if (crosses)
+            *left = p > 0 ? u : v;
+        else if (on[u] && q > 0)
+            *left = v;
+    }
+    if (*left != NOWHERE)
+        *left = sets_find(sets, *left);
+    return STARG_OK;
+}
+
+/* Has a loop on its left the ends of limbs that follow on its own, and the other ones on its right?
+ * sides[i]: is wall i on the left? */
+static starg_status look_beyond(const limb_cuts *cuts, int end, const limb_tree *tree,
+                                const uint32_t *tips, limb_way way, const section *s,
+                                uint8_t *sides, bool *good) {
+    SCOPED uint32_t *sets = NULL;
+    SCOPED uint8_t *beyond = NULL;
+    uint32_t left = NOWHERE;
+    NEW(cuts->context, STAGE, sets, cuts->sides[end].about.count);
+    NEW_ZERO(cuts->context, STAGE, beyond, tree->node_count);
+    TRY(find_left(cuts, end, s, sets, &left));
+    limbs_mark_beyond(tree, way, beyond);
+    for (size_t i = 0; i < tree->node_count && *good; i++)
+        if (tips[i] != NOWHERE)
+            *good = (sets_find(sets, tips[i]) == left) == (beyond[i] == 1);
+    for (size_t i = 0; i < cuts->walls.count; i++)
+        sides[i] = sets_find(sets, cuts->walls.data[i].loops[end].data[0]) == left;
+    return STARG_OK;
+}
+
 static starg_status add_hub(cone_builder *b, const double hub[3], uint32_t *out) {
     double from[2][3];
     for (int end = 0; end < 2; end++)
@@ -169,17 +235,57 @@ static starg_status take_section(cone_builder *b, const section *s, number_list 
     return add_hub(b, s->hub, hub);
 }
 
-static starg_status cut_at(limb_cuts *cuts, const limb_tree trees[2], bvh *const surfaces[2],
-                           const limb_pair *pair, cut_place *place) {
+/* The vertices nearest to the ends of limbs. */
+static starg_status list_tips(starg_context *context, const limb_tree *tree, const starg_mesh *mesh,
+                              uint32_t **out) {
+    NEW(context, STAGE, *out, tree->node_count);
+    memset(*out, 0xff, tree->node_count * sizeof **out);
+    for (size_t i = 0; i < tree->node_count; i++) {
+        double least = INFINITY;
+        for (uint32_t v = 0; v < mesh->vertex_count && !(tree->radii[i] > 0); v++) {
+            double far = vec3_distance_squared(mesh->vertices + 3 * (size_t)v, tree->places + 3 * i);
+            if (far < least) {
+                least = far;
+                (*out)[i] = v;
+            }
+        }
+    }
+    return STARG_OK;
+}
+
+/* What stays the same for all cuts. */
+typedef struct limb_plan {
+    const limb_tree *trees;
+    const limb_pairs *pairs;
+    bvh *surfaces[2];
+    uint32_t *tips[2]; /* by joint or end; NOWHERE at joints */
+} limb_plan;
+
+static void free_limb_plan(limb_plan *plan) {
+    for (int end = 0; end < 2; end++) {
+        bvh_free(plan->surfaces[end]);
+        RELEASE(plan->tips[end]);
+    }
+}
+
+static starg_status cut_at(limb_cuts *cuts, const limb_plan *plan, cut_place *place) {
+    const limb_pair *pair = &plan->pairs->data[place->pair];
     SCOPED_BY(free_section) section first = {.count = 0};
     SCOPED_BY(free_section) section second = {.count = 0};
     section *const sections[2] = {&first, &second};
+    SCOPED uint8_t *sides = NULL;
+    const size_t walls = cuts->walls.count;
     bool found = true;
+    NEW(cuts->context, STAGE, sides, 2 * walls);
     for (int end = 0; end < 2 && found; end++) {
         double point[3], direction[3];
-        limbs_point_at(&trees[end], pair->ways[end], place->share, point, direction);
-        TRY(find_section(cuts, end, surfaces[end], point, direction, sections[end], &found));
+        limbs_point_at(&plan->trees[end], pair->ways[end], place->share, point, direction);
+        TRY(find_section(cuts, end, plan->surfaces[end], point, direction, sections[end], &found));
+        if (found)
+            TRY(look_beyond(cuts, end, &plan->trees[end], plan->tips[end], pair->ways[end],
+                            sections[end], sides + walls * (size_t)end, &found));
     }
+    found = found && memcmp(sides, sides + walls, walls) == 0;
     place->open = !found;
     if (!found)
         return STARG_OK;
@@ -332,15 +438,6 @@ static void turn_loops(const limb_cuts *cuts, limb_wall *wall) {
 
 /* ---- pieces ---- */
 
-static uint64_t name_of(uint32_t u, uint32_t v) {
-    return u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
-}
-
-static int by_name(const void *left, const void *right) {
-    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* Numbers what is between loops, and the triangles of the surface by that. */
 static starg_status number_parts(limb_cuts *cuts, int end, const edge_list *edges,
                                  uint32_t *labels) {
@@ -481,20 +578,15 @@ static starg_status open_walls(limb_cuts *cuts, uint32_t *const labels[2], cut_p
 /* ---- all stages ---- */
 
 static starg_status cut_at_places(starg_context *context, const starg_mesh *const meshes[2],
-                                  const limb_tree trees[2], const limb_pairs *pairs,
-                                  cut_places *places, limb_cuts *out) {
-    SCOPED_BY(bvh_drop) bvh *first = NULL, *second = NULL;
+                                  const limb_plan *plan, cut_places *places, limb_cuts *out) {
     limbs_free_cuts(out);
     *out = (limb_cuts){.context = context};
     for (int end = 0; end < 2; end++)
         TRY(begin_side(context, meshes[end], &out->sides[end]));
-    TRY(bvh_create(context, meshes[0]->vertices, meshes[0]->faces, meshes[0]->face_count, &first));
-    TRY(bvh_create(context, meshes[1]->vertices, meshes[1]->faces, meshes[1]->face_count, &second));
-    bvh *const surfaces[2] = {first, second};
     for (size_t i = 0; i < places->count; i++) {
         TRY(starg_check_cancel(context, STAGE));
         if (!places->data[i].open)
-            TRY(cut_at(out, trees, surfaces, &pairs->data[places->data[i].pair], &places->data[i]));
+            TRY(cut_at(out, plan, &places->data[i]));
     }
     return STARG_OK;
 }
@@ -516,12 +608,19 @@ static starg_status part(limb_cuts *cuts, uint32_t *const labels[2]) {
 
 starg_status limbs_cut(starg_context *context, const starg_mesh *const meshes[2],
                        const limb_tree trees[2], const limb_pairs *pairs, limb_cuts *out) {
+    SCOPED_BY(free_limb_plan) limb_plan plan = {.trees = trees, .pairs = pairs};
     SCOPED cut_places places = {0};
     bool good = true;
+    for (int end = 0; end < 2; end++) {
+        const starg_mesh *mesh = meshes[end];
+        TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count,
+                       &plan.surfaces[end]));
+        TRY(list_tips(context, &trees[end], mesh, &plan.tips[end]));
+    }
     TRY(list_places(context, trees, pairs, &places));
     for (int round = 0; round < 2 && good; round++) {
         SCOPED uint32_t *first = NULL, *second = NULL;
-        TRY(cut_at_places(context, meshes, trees, pairs, &places, out));
+        TRY(cut_at_places(context, meshes, &plan, &places, out));
         for (size_t i = 0; i < out->walls.count && round == 1; i++) {
             turn_loops(out, &out->walls.data[i]);
             TRY(limbs_match_paths(out, out->walls.data[i].loops, true));

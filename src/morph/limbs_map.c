@@ -22,6 +22,7 @@
 #include "morph/overlay.h"
 #include "morph/triplets.h"
 
+#include <stdio.h>
 static const char STAGE[] = "limbs";
 static const double PI = 3.14159265358979323846;
 static const double EVEN = 0.5; /* of the circle is shared alike by all edges of the boundary */
@@ -117,7 +118,8 @@ static starg_status find_path(const disk *d, const uint8_t *marks, number_list *
         for (size_t i = 0; i < b->about.data[v].count; i++) {
             uint32_t t = b->about.data[v].data[i];
             const uint32_t *corner = b->corners.data + 3 * (size_t)t;
-            if (b->sides.data[2 * (size_t)t] != d->which)
+            bool there = corner[0] == v || corner[1] == v || corner[2] == v;
+            if (!there || b->sides.data[2 * (size_t)t] != d->which)
                 continue;
             for (int k = 0; k < 3; k++) {
                 uint32_t w = corner[k];
@@ -461,6 +463,7 @@ static starg_status overlay_disks(limb_cuts *cuts, uint32_t which, const disk di
     TRY(make_globe(&disks[0], &first));
     TRY(make_globe(&disks[1], &second));
     *found = is_unfolded(&first) && is_unfolded(&second);
+    if (!*found) fprintf(stderr, "folded %d %d\n", is_unfolded(&first), is_unfolded(&second));
     if (!*found)
         return STARG_OK;
     const starg_mesh *const meshes[2] = {&first.mesh, &second.mesh};
@@ -469,6 +472,7 @@ static starg_status overlay_disks(limb_cuts *cuts, uint32_t which, const disk di
     TRY(overlay_create(cuts->context, meshes, directions, &overlay));
     starg_status status = overlay_make_room(overlay, &moved);
     *found = status == STARG_OK;
+    if (!*found) fprintf(stderr, "no room\n");
     if (status != STARG_OK)
         return status == STARG_ERROR_SOLVER ? STARG_OK : status;
     return take_overlay(cuts, which, &disks[0], globes, overlay, out);
@@ -496,8 +500,10 @@ static starg_status map_disks(limb_cuts *cuts, uint32_t which, disk disks[2], li
     SCOPED number_list used = {0};
     TRY(list_rims(cuts, which, disks, &r));
     *found = r.walls.count > 0;
+#define DBG(T) if (!*found) fprintf(stderr, "failed %s walls %zu\n", T, r.walls.count)
     for (size_t i = 1; i < r.walls.count && *found; i++)
         TRY(join_rim(cuts, disks, &r, &used, found));
+    DBG("join");
     if (!*found)
         return STARG_OK;
     const limb_wall *wall = &cuts->walls.data[r.walls.data[0] / 2];
@@ -508,12 +514,15 @@ static starg_status map_disks(limb_cuts *cuts, uint32_t which, disk disks[2], li
         TRY(open_disk(&disks[end]));
         TRY(walk_rim(&disks[end], loop->data[right ? 1 : 0], loop->data[right ? 0 : 1], found));
     }
+    DBG("walk");
     *found = *found && disks[0].rim.count == disks[1].rim.count;
+    DBG("count");
     for (size_t i = 0; i < disks[0].rim.count && *found; i++)
         *found = cuts->mates.data[disks[0].from[disks[0].rim.data[i]]] ==
                  disks[1].from[disks[1].rim.data[i]];
     if (!*found)
         return STARG_OK;
+    DBG("mates");
     TRY(place_rims(disks));
     for (int end = 0; end < 2; end++)
         TRY(place_inside(&disks[end]));

@@ -176,6 +176,16 @@ void limbs_point_at(const limb_tree *tree, limb_way way, double share, double po
     vec3_subtract(ends[1], ends[0], direction);
 }
 
+void limbs_mark_beyond(const limb_tree *tree, limb_way way, uint8_t *marks) {
+    const limb *own = &tree->limbs.data[way.limb];
+    uint32_t node = own->nodes[!way.back];
+    marks[node] = 1;
+    for (uint32_t i = 0; i < tree->limbs.count; i++)
+        for (int back = 0; back < 2 && i != way.limb; back++)
+            if (tree->limbs.data[i].nodes[back] == node && !marks[tree->limbs.data[i].nodes[!back]])
+                limbs_mark_beyond(tree, (limb_way){i, back}, marks);
+}
+
 /* ---- pairs ---- */
 
 typedef struct pairing {
