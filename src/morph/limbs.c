@@ -45,7 +45,7 @@ static starg_status add_walls(const limb_cuts *cuts, limb_surface *out) {
 }
 
 static starg_status fill(starg_context *context, const starg_mesh *const meshes[2],
-                         const limb_tree trees[2], compatible_cones *out, bool *found) {
+                         limb_tree trees[2], compatible_cones *out, bool *found) {
     SCOPED limb_pairs pairs = {0};
     SCOPED_BY(limbs_free_cuts) limb_cuts cuts = {.context = context};
     SCOPED_BY(free_surface) limb_surface surface = {.faces = {0}};

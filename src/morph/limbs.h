@@ -12,19 +12,24 @@
 /* Between two joints or ends of the skeleton. */
 typedef struct limb {
     uint32_t nodes[2];
-    size_t first, count; /* nodes of the skeleton along it: `steps` of the tree */
+    size_t first, count; /* its polygon in `points` of the tree */
     double length;
+    double radii[2]; /* of the joints; 0 at ends */
 } limb;
+
+/* A joint or end. */
+typedef struct limb_node {
+    double place[3];
+    double radius;   /* of a ball inside, also near an end */
+    uint32_t vertex; /* at an end, near it; NOWHERE at a joint */
+} limb_node;
 
 /* The skeleton of a solid, a tree. Joints that lie in one another's balls are one. */
 typedef struct limb_tree {
     starg_context *context;
-    starg_skeleton *skeleton;
-    uint32_t *node_of; /* per node of the skeleton: the joint or end there, or NOWHERE */
-    size_t node_count; /* joints and ends */
-    double *places;    /* node_count x 3 */
-    double *radii;     /* of joints; 0 at ends */
-    number_list steps;
+    const starg_mesh *mesh; /* of the solid */
+    STARG_ARRAY(limb_node) nodes;
+    STARG_ARRAY(double) points; /* x 3 */
     STARG_ARRAY(limb) limbs;
     double length; /* of all */
     double lower[3], extent[3];
@@ -48,8 +53,9 @@ typedef struct limb_pair {
 typedef STARG_ARRAY(limb_pair) limb_pairs;
 
 /* Pairs limbs of two trees so that pairs that meet in one meet in the other, and as much as possible
- * of both has a partner, of about its length and in about its place. Errors: MEMORY. */
-starg_status limbs_pair(const limb_tree trees[2], limb_pairs *out);
+ * of both has a partner, of about its length and in about its place. What has none gets a small one,
+ * which is added to the other tree: the cap at a convex vertex. Errors: MEMORY. */
+starg_status limbs_pair(limb_tree trees[2], limb_pairs *out);
 
 /* The point at a share of a limb's length, and the direction in which the limb runs there. */
 void limbs_point_at(const limb_tree *tree, limb_way way, double share, double point[3],

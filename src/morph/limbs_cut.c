@@ -13,6 +13,7 @@
  * Invariant: the walls of a solid without handles part it into a tree of pieces, and the trees are
  * the same. Cost: O(n log n) for each plane, a linear program in both solids for each wall. */
 #include <stdlib.h>
+#include <stdio.h>
 
 #include "core/streams.h"
 #include "geometry/vec3.h"
@@ -21,10 +22,10 @@
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "limbs";
-enum { PLANES_MOST = 16 };         /* across a limb */
-static const double SPACING = 0.5; /* of planes, in radii of the joints at their ends */
+enum { PLANES_MOST = 32 };         /* across a limb */
+static const double SPACING = 0.2; /* of planes, in radii at the ends of limbs */
 static const double CLEAR = 0.9;   /* of a joint's radius: no plane is that near */
-static const double TIP = 0.1;     /* of a limb's length: no plane is that near to its end */
+static const double TIP = 0.05;    /* of a limb's length: no plane is that near to its end */
 static const double ROOMY = 0.02;  /* of hubs, over the extent of loops */
 static const double ALIKE = 0.3;   /* of the mean length of edges: that near are mates */
 
@@ -124,18 +125,16 @@ static bool goes_round(const loop_places *loop, const double point[3]) {
 }
 
 /* The smallest loop about a point of a limb. *found: it may bound a wall. */
-static starg_status find_section(limb_cuts *cuts, int end, const bvh *tree, const double point[3],
-                                 const double direction[3], section *out, bool *found) {
+static starg_status find_section(limb_cuts *cuts, int end, const bvh *tree,
+                                 const number_list *faces, const double point[3], section *out,
+                                 bool *found) {
     cone_builder *b = &cuts->sides[end];
-    SCOPED number_list faces = {0};
     SCOPED edge_list edges = {0};
     double least = INFINITY, room;
     size_t first = 0, chosen = 0;
     *found = false;
-    TRY(cones_list_faces(b, 0, &faces));
     TRY(cones_list_edges(b, 0, &edges));
-    cones_find_heights(b, 0, &faces, direction, point, b->heights.data);
-    cones_snap(&faces, b->heights.data);
+    cones_snap(faces, b->heights.data);
     TRY(cones_find_loops(b, 0, &edges, b->heights.data, &out->loops, found));
     for (size_t i = 0; i < out->loops.lengths.count && *found; i++) {
         size_t count = out->loops.lengths.data[i];
@@ -153,6 +152,7 @@ static starg_status find_section(limb_cuts *cuts, int end, const bvh *tree, cons
     out->nodes = out->loops.nodes.data + chosen;
     TRY(cones_place_loop(b, 0, out->nodes, out->count, &out->wall));
     TRY(cones_find_hub(b, &out->wall, out->hub, &room));
+    if (getenv("SG_DBG")) fprintf(stderr, "end %d loops %zu room %g inside %d meets %d; ", end, out->loops.lengths.count, room, cones_is_inside(tree, &out->wall, out->hub), meets_walls(cuts, end, out));
     *found = room > ROOMY && cones_is_inside(tree, &out->wall, out->hub) &&
              !meets_walls(cuts, end, out);
     return STARG_OK;
@@ -198,18 +198,17 @@ static starg_status find_left(const limb_cuts *cuts, int end, const section *s, 
 /* Has a loop on its left the ends of limbs that follow on its own, and the other ones on its right?
  * sides[i]: is wall i on the left? */
 static starg_status look_beyond(const limb_cuts *cuts, int end, const limb_tree *tree,
-                                const uint32_t *tips, limb_way way, const section *s,
-                                uint8_t *sides, bool *good) {
+                                limb_way way, const section *s, uint8_t *sides, bool *good) {
     SCOPED uint32_t *sets = NULL;
     SCOPED uint8_t *beyond = NULL;
     uint32_t left = NOWHERE;
     NEW(cuts->context, STAGE, sets, cuts->sides[end].about.count);
-    NEW_ZERO(cuts->context, STAGE, beyond, tree->node_count);
+    NEW_ZERO(cuts->context, STAGE, beyond, tree->nodes.count);
     TRY(find_left(cuts, end, s, sets, &left));
     limbs_mark_beyond(tree, way, beyond);
-    for (size_t i = 0; i < tree->node_count && *good; i++)
-        if (tips[i] != NOWHERE)
-            *good = (sets_find(sets, tips[i]) == left) == (beyond[i] == 1);
+    for (size_t i = 0; i < tree->nodes.count && *good; i++)
+        if (tree->nodes.data[i].vertex != NOWHERE)
+            *good = (sets_find(sets, tree->nodes.data[i].vertex) == left) == (beyond[i] == 1);
     for (size_t i = 0; i < cuts->walls.count; i++)
         sides[i] = sets_find(sets, cuts->walls.data[i].loops[end].data[0]) == left;
     return STARG_OK;
@@ -235,37 +234,57 @@ static starg_status take_section(cone_builder *b, const section *s, number_list 
     return add_hub(b, s->hub, hub);
 }
 
-/* The vertices nearest to the ends of limbs. */
-static starg_status list_tips(starg_context *context, const limb_tree *tree, const starg_mesh *mesh,
-                              uint32_t **out) {
-    NEW(context, STAGE, *out, tree->node_count);
-    memset(*out, 0xff, tree->node_count * sizeof **out);
-    for (size_t i = 0; i < tree->node_count; i++) {
-        double least = INFINITY;
-        for (uint32_t v = 0; v < mesh->vertex_count && !(tree->radii[i] > 0); v++) {
-            double far = vec3_distance_squared(mesh->vertices + 3 * (size_t)v, tree->places + 3 * i);
-            if (far < least) {
-                least = far;
-                (*out)[i] = v;
-            }
-        }
-    }
-    return STARG_OK;
-}
-
 /* What stays the same for all cuts. */
 typedef struct limb_plan {
     const limb_tree *trees;
     const limb_pairs *pairs;
     bvh *surfaces[2];
-    uint32_t *tips[2]; /* by joint or end; NOWHERE at joints */
 } limb_plan;
 
 static void free_limb_plan(limb_plan *plan) {
-    for (int end = 0; end < 2; end++) {
-        bvh_free(plan->surfaces[end]);
-        RELEASE(plan->tips[end]);
+    bvh_free(plan->surfaces[0]);
+    bvh_free(plan->surfaces[1]);
+}
+
+/* Heights over a plane across a limb, or over a ball about the joint at one of its ends. */
+static void find_levels(const limb_plan *plan, int end, limb_way way, double share, int kind,
+                        const number_list *faces, cone_builder *b, double point[3]) {
+    const limb_tree *tree = &plan->trees[end];
+    const limb *own = &tree->limbs.data[way.limb];
+    const limb_node *node = &tree->nodes.data[own->nodes[(kind == 1) == way.back]];
+    double direction[3];
+    limbs_point_at(tree, way, share, point, direction);
+    if (kind == 0) {
+        cones_find_heights(b, 0, faces, direction, point, b->heights.data);
+        return;
     }
+    double radius = vec3_distance(point, node->place);
+    for (size_t i = 0; i < faces->count; i++) {
+        double far = vec3_distance(cones_place_of(b, 0, faces->data[i]), node->place);
+        b->heights.data[faces->data[i]] = kind == 1 ? far - radius : radius - far;
+    }
+}
+
+/* By a plane across the limb, or else by a ball about the joint before or after it. */
+static starg_status find_clear_section(limb_cuts *cuts, const limb_plan *plan, int end,
+                                       limb_way way, double share, section *out, uint8_t *sides,
+                                       bool *found) {
+    const limb_tree *tree = &plan->trees[end];
+    const limb *own = &tree->limbs.data[way.limb];
+    cone_builder *b = &cuts->sides[end];
+    SCOPED number_list faces = {0};
+    TRY(cones_list_faces(b, 0, &faces));
+    *found = false;
+    for (int kind = 0; kind < (getenv("SG_V") ? atoi(getenv("SG_V")) : 3) && !*found; kind++) {
+        double point[3];
+        if (kind > 0 && !(own->radii[(kind == 1) == way.back] > 0))
+            continue;
+        find_levels(plan, end, way, share, kind, &faces, b, point);
+        TRY(find_section(cuts, end, plan->surfaces[end], &faces, point, out, found));
+        if (*found)
+            TRY(look_beyond(cuts, end, tree, way, out, sides, found));
+    }
+    return STARG_OK;
 }
 
 static starg_status cut_at(limb_cuts *cuts, const limb_plan *plan, cut_place *place) {
@@ -275,18 +294,14 @@ static starg_status cut_at(limb_cuts *cuts, const limb_plan *plan, cut_place *pl
     section *const sections[2] = {&first, &second};
     SCOPED uint8_t *sides = NULL;
     const size_t walls = cuts->walls.count;
-    bool found = true;
+    bool found = true;const char *WHY = "ok";
     NEW(cuts->context, STAGE, sides, 2 * walls);
-    for (int end = 0; end < 2 && found; end++) {
-        double point[3], direction[3];
-        limbs_point_at(&plan->trees[end], pair->ways[end], place->share, point, direction);
-        TRY(find_section(cuts, end, plan->surfaces[end], point, direction, sections[end], &found));
-        if (found)
-            TRY(look_beyond(cuts, end, &plan->trees[end], plan->tips[end], pair->ways[end],
-                            sections[end], sides + walls * (size_t)end, &found));
-    }
+    for (int end = 0; end < 2 && found; end++)
+        TRY(find_clear_section(cuts, plan, end, pair->ways[end], place->share, sections[end],
+                               sides + walls * (size_t)end, &found));
+    if (!found && *WHY == 'o') WHY = "beyond";
     found = found && memcmp(sides, sides + walls, walls) == 0;
-    place->open = !found;
+    place->open = !found; if (getenv("SG_DBG")) fprintf(stderr, "place pair %zu share %.3f limbs %u %u: %s\n", place->pair, place->share, pair->ways[0].limb, pair->ways[1].limb, WHY);
     if (!found)
         return STARG_OK;
     PUSH(cuts->context, STAGE, &cuts->walls, ((limb_wall){.pieces = {NOWHERE, NOWHERE}}));
@@ -303,12 +318,14 @@ static starg_status list_places(starg_context *context, const limb_tree trees[2]
         for (int end = 0; end < 2; end++) {
             const limb_way way = pairs->data[i].ways[end];
             const limb *own = &trees[end].limbs.data[way.limb];
-            const double *radii = trees[end].radii;
-            double near = radii[own->nodes[way.back]] / own->length;
-            double far = radii[own->nodes[!way.back]] / own->length;
-            from = fmax(from, near > 0 ? CLEAR * near : TIP);
+            double near = own->radii[way.back] / own->length;
+            double far = own->radii[!way.back] / own->length;
+            from = fmax(from, near > 0 ? CLEAR * near : near < 0 ? 0 : TIP);
             to = fmin(to, 1 - (far > 0 ? CLEAR * far : TIP));
-            radius = fmin(radius, fmax(near, far));
+            if (near >= 0)
+                radius = fmin(radius, fmax(trees[end].nodes.data[own->nodes[0]].radius,
+                                           trees[end].nodes.data[own->nodes[1]].radius) /
+                                          own->length);
         }
         size_t count = 1;
         if (to > from && radius > 0)
@@ -615,7 +632,6 @@ starg_status limbs_cut(starg_context *context, const starg_mesh *const meshes[2]
         const starg_mesh *mesh = meshes[end];
         TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count,
                        &plan.surfaces[end]));
-        TRY(list_tips(context, &trees[end], mesh, &plan.tips[end]));
     }
     TRY(list_places(context, trees, pairs, &places));
     for (int round = 0; round < 2 && good; round++) {

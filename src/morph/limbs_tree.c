@@ -22,123 +22,183 @@ static const char STAGE[] = "limbs";
 enum { BRANCHES = 12 };              /* at a joint; further ones stay without partners */
 static const double OFF_PLACE = 0.5; /* of a limb's length, for an end a box away */
 static const double ROOT_OFF = 0.05; /* the same for roots, of the whole length */
+static const double CAP = 0.25;      /* depth of all caps at a node, over its radius */
+static const double NEAR = 1.5;      /* vertices of caps are that near to the node, in radii */
+static const double ASIDE = 0.6;     /* cosine of their directions and those of other limbs */
+static const double BENT = 1e-2;     /* sine by which neighbours of such a vertex are below it */
 
 void limbs_free_tree(limb_tree *tree) {
-    starg_skeleton_free(tree->context, tree->skeleton);
-    RELEASE(tree->node_of, tree->places, tree->radii, tree->steps.data, tree->limbs.data);
+    RELEASE(tree->nodes.data, tree->points.data, tree->limbs.data);
 }
 
 /* ---- the tree ---- */
 
-typedef struct neighbours {
-    uint32_t *starts, *items; /* of node v: from starts[v] to starts[v + 1] */
-} neighbours;
+/* What is left of a skeleton once it is a tree. */
+typedef struct skeleton_walk {
+    limb_tree *tree;
+    starg_skeleton *skeleton;
+    uint32_t *starts, *items; /* neighbours of node v: from starts[v] to starts[v + 1] */
+    uint32_t *sets;           /* joints in one another's balls */
+} skeleton_walk;
 
-static starg_status list_neighbours(const limb_tree *tree, neighbours *out) {
-    const starg_skeleton *s = tree->skeleton;
-    NEW_ZERO(tree->context, STAGE, out->starts, s->node_count + 2);
-    NEW(tree->context, STAGE, out->items, 2 * s->edge_count);
+static void free_walk(skeleton_walk *w) {
+    starg_skeleton_free(w->tree->context, w->skeleton);
+    RELEASE(w->starts, w->items, w->sets);
+}
+
+static starg_status list_neighbours(skeleton_walk *w) {
+    const starg_skeleton *s = w->skeleton;
+    NEW_ZERO(w->tree->context, STAGE, w->starts, s->node_count + 2);
+    NEW(w->tree->context, STAGE, w->items, 2 * s->edge_count);
     for (size_t i = 0; i < 2 * s->edge_count; i++)
-        out->starts[s->edges[i] + 2]++;
+        w->starts[s->edges[i] + 2]++;
     for (size_t v = 0; v < s->node_count; v++)
-        out->starts[v + 2] += out->starts[v + 1];
+        w->starts[v + 2] += w->starts[v + 1];
     for (size_t i = 0; i < 2 * s->edge_count; i++)
-        out->items[out->starts[s->edges[i] + 1]++] = s->edges[i ^ 1];
+        w->items[w->starts[s->edges[i] + 1]++] = s->edges[i ^ 1];
     return STARG_OK;
 }
 
-static void free_neighbours(neighbours *n) {
-    RELEASE(n->starts, n->items);
+static size_t degree_of(const skeleton_walk *w, uint32_t v) {
+    return w->starts[v + 1] - w->starts[v];
 }
 
-static size_t degree_of(const neighbours *n, uint32_t v) {
-    return n->starts[v + 1] - n->starts[v];
+static starg_status add_point(limb_tree *tree, const double point[3]) {
+    for (int k = 0; k < 3; k++)
+        PUSH(tree->context, STAGE, &tree->points, point[k]);
+    return STARG_OK;
 }
 
-static const double *node_at(const limb_tree *tree, uint32_t v) {
-    return tree->skeleton->positions + 3 * (size_t)v;
+static const double *point_at(const limb_tree *tree, size_t i) {
+    return tree->points.data + 3 * i;
 }
 
-/* Follows the skeleton from a joint or end to the next one. */
-static starg_status follow(limb_tree *tree, const neighbours *n, uint32_t from, uint32_t next) {
-    limb own = {.nodes = {from, next}, .first = tree->steps.count};
+/* Follows the skeleton from a joint or end to the next one. Its nodes are those of the skeleton. */
+static starg_status follow(skeleton_walk *w, uint32_t from, uint32_t next) {
+    limb_tree *tree = w->tree;
+    limb own = {.nodes = {from, next}, .first = tree->points.count / 3};
     uint32_t before = from;
-    PUSH(tree->context, STAGE, &tree->steps, from);
+    TRY(add_point(tree, w->skeleton->positions + 3 * (size_t)from));
     for (;;) {
-        PUSH(tree->context, STAGE, &tree->steps, next);
-        own.length += vec3_distance(node_at(tree, before), node_at(tree, next));
-        if (degree_of(n, next) != 2)
+        TRY(add_point(tree, w->skeleton->positions + 3 * (size_t)next));
+        size_t last = tree->points.count / 3 - 1;
+        own.length += vec3_distance(point_at(tree, last - 1), point_at(tree, last));
+        if (degree_of(w, next) != 2)
             break;
-        uint32_t first = n->items[n->starts[next]];
-        uint32_t after = first != before ? first : n->items[n->starts[next] + 1];
+        uint32_t first = w->items[w->starts[next]];
+        uint32_t after = first != before ? first : w->items[w->starts[next] + 1];
         before = next;
         next = after;
     }
     own.nodes[1] = next;
-    own.count = tree->steps.count - own.first;
+    own.count = tree->points.count / 3 - own.first;
     if (from < next)
         PUSH(tree->context, STAGE, &tree->limbs, own);
     else
-        tree->steps.count = own.first;
+        tree->points.count = 3 * own.first;
     return STARG_OK;
 }
 
-/* Joints in one another's balls become one; numbers what is left. */
-static starg_status number_nodes(limb_tree *tree, const neighbours *n) {
-    const starg_skeleton *s = tree->skeleton;
-    SCOPED uint32_t *sets = NULL;
+/* Joints in one another's balls become one. */
+static starg_status join_joints(skeleton_walk *w) {
+    limb_tree *tree = w->tree;
+    const double *radii = w->skeleton->radii;
     size_t kept = 0;
-    NEW(tree->context, STAGE, sets, s->node_count);
-    sets_make(sets, s->node_count);
+    NEW(tree->context, STAGE, w->sets, w->skeleton->node_count);
+    sets_make(w->sets, w->skeleton->node_count);
     for (size_t i = 0; i < tree->limbs.count; i++) {
         const limb *own = &tree->limbs.data[i];
-        double radius = fmax(s->radii[own->nodes[0]], s->radii[own->nodes[1]]);
-        bool joints = degree_of(n, own->nodes[0]) > 2 && degree_of(n, own->nodes[1]) > 2;
-        if (joints && own->length < radius)
-            sets_join(sets, own->nodes[0], own->nodes[1]);
+        bool joints = degree_of(w, own->nodes[0]) > 2 && degree_of(w, own->nodes[1]) > 2;
+        if (joints && own->length < fmax(radii[own->nodes[0]], radii[own->nodes[1]]))
+            sets_join(w->sets, own->nodes[0], own->nodes[1]);
         else
             tree->limbs.data[kept++] = *own;
     }
     tree->limbs.count = kept;
-    NEW(tree->context, STAGE, tree->node_of, s->node_count);
-    NEW_ZERO(tree->context, STAGE, tree->places, 3 * s->node_count);
-    NEW_ZERO(tree->context, STAGE, tree->radii, s->node_count);
-    memset(tree->node_of, 0xff, s->node_count * sizeof *tree->node_of);
-    for (uint32_t v = 0; v < s->node_count; v++)
-        if (degree_of(n, v) != 2 && sets_find(sets, v) == v) {
-            vec3_copy(node_at(tree, v), tree->places + 3 * tree->node_count);
-            tree->node_of[v] = (uint32_t)tree->node_count++;
+    return STARG_OK;
+}
+
+static uint32_t nearest_vertex(const starg_mesh *mesh, const double point[3]) {
+    double least = INFINITY;
+    uint32_t nearest = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        double far = vec3_distance_squared(mesh->vertices + 3 * (size_t)v, point);
+        if (far < least) {
+            least = far;
+            nearest = v;
         }
-    for (uint32_t v = 0; v < s->node_count; v++)
-        if (degree_of(n, v) != 2) {
-            tree->node_of[v] = tree->node_of[sets_find(sets, v)];
-            double *radius = &tree->radii[tree->node_of[v]];
-            *radius = degree_of(n, v) > 2 ? fmax(*radius, s->radii[v]) : 0;
+    }
+    return nearest;
+}
+
+/* The largest radius of the skeleton that is about that far from an end. */
+static double radius_near(const skeleton_walk *w, uint32_t end) {
+    const starg_skeleton *s = w->skeleton;
+    double radius = s->radii[end], length = 0;
+    for (uint32_t before = end, v = w->items[w->starts[end]]; degree_of(w, v) == 2;) {
+        length += vec3_distance(s->positions + 3 * (size_t)before, s->positions + 3 * (size_t)v);
+        if (length > 2 * s->radii[v] && length > 2 * radius)
+            break;
+        radius = fmax(radius, s->radii[v]);
+        uint32_t first = w->items[w->starts[v]];
+        uint32_t after = first != before ? first : w->items[w->starts[v] + 1];
+        before = v;
+        v = after;
+    }
+    return radius;
+}
+
+static starg_status number_nodes(skeleton_walk *w) {
+    limb_tree *tree = w->tree;
+    const starg_skeleton *s = w->skeleton;
+    SCOPED uint32_t *numbers = NULL;
+    NEW(tree->context, STAGE, numbers, s->node_count);
+    for (uint32_t v = 0; v < s->node_count; v++) {
+        uint32_t root = sets_find(w->sets, v); /* the lowest */
+        bool joint = degree_of(w, v) > 2;
+        if (degree_of(w, v) == 2)
+            continue;
+        if (root == v) {
+            limb_node node = {.radius = joint ? s->radii[v] : radius_near(w, v), .vertex = NOWHERE};
+            vec3_copy(s->positions + 3 * (size_t)v, node.place);
+            if (!joint)
+                node.vertex = nearest_vertex(tree->mesh, node.place);
+            PUSH(tree->context, STAGE, &tree->nodes, node);
+            numbers[v] = (uint32_t)tree->nodes.count - 1;
         }
+        numbers[v] = numbers[root];
+        limb_node *node = &tree->nodes.data[numbers[v]];
+        node->radius = fmax(node->radius, joint ? s->radii[v] : 0);
+    }
     for (size_t i = 0; i < tree->limbs.count; i++)
-        for (int k = 0; k < 2; k++)
-            tree->limbs.data[i].nodes[k] = tree->node_of[tree->limbs.data[i].nodes[k]];
+        for (int k = 0; k < 2; k++) {
+            limb *own = &tree->limbs.data[i];
+            own->nodes[k] = numbers[own->nodes[k]];
+            const limb_node *node = &tree->nodes.data[own->nodes[k]];
+            own->radii[k] = node->vertex == NOWHERE ? node->radius : 0;
+        }
     return STARG_OK;
 }
 
 starg_status limbs_find_tree(starg_context *context, const starg_solid *solid, limb_tree *out,
                              bool *found) {
-    SCOPED_BY(free_neighbours) neighbours n = {0};
+    SCOPED_BY(free_walk) skeleton_walk w = {.tree = out};
     double upper[3];
-    *out = (limb_tree){.context = context};
+    *out = (limb_tree){.context = context, .mesh = starg_solid_mesh(solid)};
     *found = false;
-    TRY(starg_skeleton_create(context, solid, NULL, &out->skeleton));
-    const starg_skeleton *s = out->skeleton;
+    TRY(starg_skeleton_create(context, solid, NULL, &w.skeleton));
+    const starg_skeleton *s = w.skeleton;
     if (s->components != 1 || s->loops > 0 || s->edge_count == 0)
         return STARG_OK;
-    TRY(list_neighbours(out, &n));
+    TRY(list_neighbours(&w));
     for (uint32_t v = 0; v < s->node_count; v++)
-        for (uint32_t i = n.starts[v]; i < n.starts[v + 1] && degree_of(&n, v) != 2; i++)
-            TRY(follow(out, &n, v, n.items[i]));
-    TRY(number_nodes(out, &n));
+        for (uint32_t i = w.starts[v]; i < w.starts[v + 1] && degree_of(&w, v) != 2; i++)
+            TRY(follow(&w, v, w.items[i]));
+    TRY(join_joints(&w));
+    TRY(number_nodes(&w));
     for (size_t i = 0; i < out->limbs.count; i++)
         out->length += out->limbs.data[i].length;
-    starg_mesh_bounds(starg_solid_mesh(solid), out->lower, upper);
+    starg_mesh_bounds(out->mesh, out->lower, upper);
     vec3_subtract(upper, out->lower, out->extent);
     *found = out->limbs.count > 0 && out->length > 0;
     return STARG_OK;
@@ -146,15 +206,11 @@ starg_status limbs_find_tree(starg_context *context, const starg_solid *solid, l
 
 /* ---- points of limbs ---- */
 
-static const double *step_at(const limb_tree *tree, limb_way way, size_t i) {
-    const limb *own = &tree->limbs.data[way.limb];
-    return node_at(tree, tree->steps.data[own->first + (way.back ? own->count - 1 - i : i)]);
-}
-
 static void go_along(const limb_tree *tree, limb_way way, double distance, double out[3]) {
     const limb *own = &tree->limbs.data[way.limb];
     for (size_t i = 0; i + 1 < own->count; i++) {
-        const double *p = step_at(tree, way, i), *q = step_at(tree, way, i + 1);
+        const double *p = point_at(tree, own->first + (way.back ? own->count - 1 - i : i));
+        const double *q = point_at(tree, own->first + (way.back ? own->count - 2 - i : i + 1));
         double length = vec3_distance(p, q);
         if (distance < length || i + 2 == own->count) {
             double share = length > 0 ? fmin(fmax(distance / length, 0), 1) : 0;
@@ -188,9 +244,16 @@ void limbs_mark_beyond(const limb_tree *tree, limb_way way, uint8_t *marks) {
 
 /* ---- pairs ---- */
 
+/* A limb that has no partner at a pair of nodes. */
+typedef struct lone_limb {
+    int end;
+    uint32_t way, node; /* of the other tree */
+} lone_limb;
+
 typedef struct pairing {
     starg_context *context;
     const limb_tree *trees;
+    STARG_ARRAY(lone_limb) lone;
     number_list around[2]; /* ways that lead away from each node: 2 limb + back */
     number_list starts[2];
     double *costs; /* of pairs of ways, with all that follows; negative: not known yet */
@@ -235,7 +298,7 @@ static double place_off(const pairing *p, const uint32_t nodes[2]) {
         for (int end = 0; end < 2; end++) {
             const limb_tree *tree = &p->trees[end];
             double extent = tree->extent[k] > 0 ? tree->extent[k] : 1;
-            at[end] = (tree->places[3 * (size_t)nodes[end] + k] - tree->lower[k]) / extent;
+            at[end] = (tree->nodes.data[nodes[end]].place[k] - tree->lower[k]) / extent;
         }
         sum += (at[0] - at[1]) * (at[0] - at[1]);
     }
@@ -315,9 +378,18 @@ static starg_status walk(pairing *p, const uint32_t nodes[2], const uint32_t fro
     size_t counts[2];
     double cost;
     TRY(assign(p, nodes, from, ways, counts, partners, &cost));
+    for (size_t j = 0; j < counts[1]; j++) {
+        bool taken = false;
+        for (size_t i = 0; i < counts[0]; i++)
+            taken = taken || partners[i] == j;
+        if (!taken)
+            PUSH(p->context, STAGE, &p->lone, ((lone_limb){1, ways[1][j], nodes[0]}));
+    }
     for (size_t i = 0; i < counts[0]; i++) {
-        if (partners[i] == NOWHERE)
+        if (partners[i] == NOWHERE) {
+            PUSH(p->context, STAGE, &p->lone, ((lone_limb){0, ways[0][i], nodes[1]}));
             continue;
+        }
         const uint32_t both[2] = {ways[0][i], ways[1][partners[i]]};
         const uint32_t next[2] = {node_after(&p->trees[0], both[0]),
                                   node_after(&p->trees[1], both[1])};
@@ -331,7 +403,7 @@ static starg_status walk(pairing *p, const uint32_t nodes[2], const uint32_t fro
 
 static starg_status list_around(pairing *p, int end) {
     const limb_tree *tree = &p->trees[end];
-    for (uint32_t node = 0; node <= tree->node_count; node++) {
+    for (uint32_t node = 0; node <= tree->nodes.count; node++) {
         PUSH(p->context, STAGE, &p->starts[end], (uint32_t)p->around[end].count);
         for (uint32_t way = 0; way < 2 * tree->limbs.count; way++)
             if (node_before(tree, way) == node)
@@ -343,10 +415,128 @@ static starg_status list_around(pairing *p, int end) {
 static void free_pairing(pairing *p) {
     for (int end = 0; end < 2; end++)
         RELEASE(p->around[end].data, p->starts[end].data);
-    RELEASE(p->costs);
+    RELEASE(p->costs, p->lone.data);
 }
 
-starg_status limbs_pair(const limb_tree trees[2], limb_pairs *out) {
+/* ---- caps ---- */
+
+/* Per vertex: its normal, of length 1 where all its neighbours are below it, else 0. */
+static starg_status find_convex(const limb_tree *tree, double **out) {
+    const starg_mesh *mesh = tree->mesh;
+    SCOPED uint8_t *convex = NULL;
+    NEW_ZERO(tree->context, STAGE, *out, 3 * mesh->vertex_count);
+    NEW(tree->context, STAGE, convex, mesh->vertex_count);
+    memset(convex, 1, mesh->vertex_count);
+    for (size_t i = 0; i < 3 * mesh->face_count; i++) {
+        const uint32_t *face = mesh->faces + i / 3 * 3;
+        double normal[3];
+        vec3_triangle_normal(mesh->vertices + 3 * (size_t)face[0],
+                             mesh->vertices + 3 * (size_t)face[1],
+                             mesh->vertices + 3 * (size_t)face[2], normal);
+        double *sum = *out + 3 * (size_t)mesh->faces[i];
+        vec3_along(sum, 1, normal, sum);
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        vec3_normalize(*out + 3 * v);
+    for (size_t i = 0; i < 3 * mesh->face_count; i++) {
+        uint32_t u = mesh->faces[i], v = mesh->faces[i % 3 == 2 ? i - 2 : i + 1];
+        double way[3];
+        vec3_subtract(mesh->vertices + 3 * (size_t)v, mesh->vertices + 3 * (size_t)u, way);
+        if (!(vec3_dot(way, *out + 3 * (size_t)u) < -BENT * vec3_length(way)))
+            convex[u] = 0;
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        for (size_t k = 0; k < 3 && !convex[v]; k++)
+            (*out)[3 * v + k] = 0;
+    return STARG_OK;
+}
+
+/* Where a limb leads, from the node that it begins with: a unit vector. */
+static void direction_of(const limb_tree *tree, uint32_t way, double out[3]) {
+    double place[3];
+    const limb *own = &tree->limbs.data[way / 2];
+    const limb_node *node = &tree->nodes.data[own->nodes[way & 1]];
+    go_along(tree, (limb_way){way / 2, way & 1}, fmin(2 * node->radius, own->length), place);
+    vec3_subtract(place, node->place, out);
+    vec3_normalize(out);
+}
+
+/* Adds a limb to a tree from below a convex vertex near a node, as far as possible in a direction,
+ * but away from other limbs there. *found: there is such a vertex. */
+static starg_status add_cap(limb_tree *tree, const double *normals, uint32_t at, double depth,
+                            const double direction[3], bool *found) {
+    const limb_node from = tree->nodes.data[at];
+    const starg_mesh *mesh = tree->mesh;
+    const double width = 2 * sqrt(2 * from.radius * depth); /* of a cap on a ball */
+    double most = -INFINITY, foot[3];
+    limb_node tip = {.radius = depth, .vertex = NOWHERE};
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const double *p = mesh->vertices + 3 * (size_t)v, *normal = normals + 3 * (size_t)v;
+        double way[3], far = vec3_distance(p, from.place);
+        bool free = vec3_dot(normal, normal) > 0 && far < NEAR * from.radius;
+        if (!free)
+            continue;
+        vec3_subtract(p, from.place, way);
+        vec3_normalize(way);
+        for (uint32_t i = 0; i < 2 * tree->limbs.count && free; i++) {
+            double other[3];
+            if (node_before(tree, i) != at)
+                continue;
+            const limb_node *end = &tree->nodes.data[node_after(tree, i)];
+            direction_of(tree, i, other);
+            free = tree->limbs.data[i / 2].radii[i & 1] < 0
+                       ? vec3_distance(p, end->place) > width
+                       : from.vertex != NOWHERE || vec3_dot(way, other) < ASIDE;
+        }
+        double score = vec3_dot(way, direction) + vec3_dot(normal, direction);
+        if (free && score > most) {
+            most = score;
+            tip.vertex = v;
+        }
+    }
+    *found = tip.vertex != NOWHERE;
+    if (!*found)
+        return STARG_OK;
+    vec3_copy(mesh->vertices + 3 * (size_t)tip.vertex, tip.place);
+    vec3_along(tip.place, -depth, normals + 3 * (size_t)tip.vertex, foot);
+    PUSH(tree->context, STAGE, &tree->nodes, tip);
+    PUSH(tree->context, STAGE, &tree->limbs,
+         ((limb){.nodes = {at, (uint32_t)tree->nodes.count - 1},
+                 .first = tree->points.count / 3,
+                 .count = 2,
+                 .length = depth,
+                 .radii = {-1, 0}}));
+    TRY(add_point(tree, foot));
+    return add_point(tree, tip.place);
+}
+
+static starg_status add_caps(pairing *p, limb_tree trees[2], limb_pairs *out) {
+    SCOPED double *first = NULL, *second = NULL;
+    TRY(find_convex(&trees[0], &first));
+    TRY(find_convex(&trees[1], &second));
+    for (size_t i = 0; i < p->lone.count; i++) {
+        const lone_limb *own = &p->lone.data[i];
+        int other = 1 - own->end;
+        size_t beside = 0;
+        for (size_t j = 0; j < p->lone.count; j++)
+            beside += p->lone.data[j].end == own->end && p->lone.data[j].node == own->node;
+        double direction[3];
+        double depth = CAP * trees[other].nodes.data[own->node].radius / (double)beside;
+        bool found;
+        direction_of(&trees[own->end], own->way, direction);
+        TRY(add_cap(&trees[other], other == 0 ? first : second, own->node, depth, direction,
+                    &found));
+        if (!found)
+            continue;
+        limb_pair pair = {.ways = {{0, false}, {0, false}}};
+        pair.ways[own->end] = (limb_way){own->way / 2, own->way & 1};
+        pair.ways[other] = (limb_way){(uint32_t)trees[other].limbs.count - 1, false};
+        PUSH(p->context, STAGE, out, pair);
+    }
+    return STARG_OK;
+}
+
+starg_status limbs_pair(limb_tree trees[2], limb_pairs *out) {
     SCOPED_BY(free_pairing) pairing p = {.context = trees[0].context, .trees = trees};
     const uint32_t nowhere[2] = {NOWHERE, NOWHERE};
     size_t size = 4 * trees[0].limbs.count * trees[1].limbs.count;
@@ -357,8 +547,8 @@ starg_status limbs_pair(const limb_tree trees[2], limb_pairs *out) {
     NEW(p.context, STAGE, p.costs, size);
     for (size_t i = 0; i < size; i++)
         p.costs[i] = -1;
-    for (uint32_t i = 0; i < trees[0].node_count; i++)
-        for (uint32_t j = 0; j < trees[1].node_count; j++) {
+    for (uint32_t i = 0; i < trees[0].nodes.count; i++)
+        for (uint32_t j = 0; j < trees[1].nodes.count; j++) {
             uint32_t ways[2][BRANCHES], partners[BRANCHES];
             const uint32_t nodes[2] = {i, j};
             size_t counts[2];
@@ -371,5 +561,6 @@ starg_status limbs_pair(const limb_tree trees[2], limb_pairs *out) {
                 roots[1] = j;
             }
         }
-    return walk(&p, roots, nowhere, out);
+    TRY(walk(&p, roots, nowhere, out));
+    return add_caps(&p, trees, out);
 }
