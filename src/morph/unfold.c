@@ -29,6 +29,7 @@
 #include <float.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 
@@ -38,6 +39,7 @@ enum {
     MEMORY = 8, /* pairs of the approximation to the Hessian */
     ROUND = 40, /* steps with one e */
     GROWTH_SWEEPS = 200,
+    BLOCK = 256,             /* tetrahedra whose energy is an item of work */
     HALVINGS = 30,           /* of a step, at most */
     ROUNDS_IDLE = 12,        /* with no fewer inversions, until it is given up, */
     ROUNDS_IDLE_SPRINGS = 40 /* and where the surface gives way */
@@ -52,6 +54,11 @@ static const double FIRST_MOVE = 0.1;  /* the first step's largest move, relativ
 
 typedef double matrix[3][3];
 
+/* The energy of a tetrahedron, and its derivatives by the places of its corners. */
+typedef struct energy_part {
+    double energy, determinant, slopes[4][3];
+} energy_part;
+
 typedef struct descent {
     const unfold_problem *p;
     double epsilon;
@@ -59,17 +66,21 @@ typedef struct descent {
     matrix *gradients; /* of the barycentric coordinates of corners 1 to 3 */
     double *weights;
     double extent;
+    energy_part *parts;           /* per tetrahedron */
+    const double *places;         /* where the parts are evaluated */
     double lowest;                /* the least determinant at the last evaluation */
     size_t size;                  /* unknowns */
+    bool sloped;                  /* slopes of the parts are wanted */
     double *trial;                /* vertex_count x 3 */
-    double *slope, *former, *way; /* by unknown */
+    double *slope, *former, *way; /* by unknown; `former` at the last place, or at the next one */
     double *moves[MEMORY], *bends[MEMORY], scales[MEMORY];
     size_t pairs; /* made so far */
 } descent;
 
 static void descent_free(descent *d) {
     starg_context *context = d->p->context;
-    void *const blocks[] = {d->gradients, d->weights, d->trial, d->slope, d->former, d->way};
+    void *const blocks[] = {d->gradients, d->weights, d->parts, d->trial,
+                            d->slope,     d->former,  d->way};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(context, blocks[i]);
     for (int i = 0; i < MEMORY; i++) {
@@ -217,6 +228,7 @@ static starg_status prepare(descent *d) {
     d->extent = extent_of(p);
     NEW(p->context, STAGE, d->gradients, p->count);
     NEW(p->context, STAGE, d->weights, p->count);
+    NEW(p->context, STAGE, d->parts, p->count);
     NEW(p->context, STAGE, d->trial, 3 * p->vertex_count);
     NEW(p->context, STAGE, d->slope, d->size);
     NEW(p->context, STAGE, d->former, d->size);
@@ -242,48 +254,46 @@ static void jacobian_of(const descent *d, const double *places, size_t t, matrix
                            e[2][i] * d->gradients[t][2][axis];
 }
 
-/* The energy of a tetrahedron; adds its derivatives to `slope`, if that is not NULL. */
-static double energy_of(const descent *d, const double *places, size_t t, double *determinant,
-                        double *slope) {
-    const unfold_problem *p = d->p;
+static void find_energy(const descent *d, size_t t, energy_part *out) {
     matrix j, cofactor;
-    jacobian_of(d, places, t, j);
+    jacobian_of(d, d->places, t, j);
     for (int k = 0; k < 3; k++)
         vec3_cross(j[(k + 1) % 3], j[(k + 2) % 3], cofactor[k]);
     double D = vec3_dot(j[0], cofactor[0]), root = sqrt(d->epsilon * d->epsilon + D * D);
     double x = (D + root) / 2, part = root > 0 ? (1 + D / root) / 2 : 0;
-    *determinant = D;
+    *out = (energy_part){.energy = INFINITY, .determinant = D};
     if (D < 0) { /* without cancellation */
         x = d->epsilon * d->epsilon / (2 * (root - D));
         part = root > 0 ? x / root : 0;
     }
     if (!(x > 0))
-        return INFINITY;
+        return;
     double third = cbrt(x), square = third * third;
     double trace = vec3_dot(j[0], j[0]) + vec3_dot(j[1], j[1]) + vec3_dot(j[2], j[2]);
     double shape = trace / square, size = (D * D + 1) / x;
-    if (slope == NULL)
-        return d->weights[t] * (shape + THETA * size);
+    out->energy = d->weights[t] * (shape + THETA * size);
+    if (!d->sloped)
+        return;
     double along = -2.0 / 3 * shape / x * part + THETA * (2 * D - size * part) / x;
-    double first[3] = {0, 0, 0};
     for (size_t k = 0; k < 3; k++) {
-        double g[3];
+        double *g = out->slopes[k + 1];
         const double *b = d->gradients[t][k];
         for (int i = 0; i < 3; i++) {
-            g[i] = 0;
             for (int axis = 0; axis < 3; axis++)
                 g[i] += b[axis] * (2 / square * j[axis][i] + along * cofactor[axis][i]);
             g[i] *= d->weights[t];
-            first[i] -= g[i];
+            out->slopes[0][i] -= g[i];
         }
-        size_t v = p->tetrahedra[4 * t + k + 1];
-        if (v >= p->fixed)
-            vec3_along(slope + 3 * (v - p->fixed), 1, g, slope + 3 * (v - p->fixed));
     }
-    size_t v = p->tetrahedra[4 * t];
-    if (v >= p->fixed)
-        vec3_along(slope + 3 * (v - p->fixed), 1, first, slope + 3 * (v - p->fixed));
-    return d->weights[t] * (shape + THETA * size);
+}
+
+static starg_status find_energies(starg_context *context, void *shared, void *scratch,
+                                  size_t item) {
+    const descent *d = shared;
+    (void)context, (void)scratch;
+    for (size_t t = BLOCK * item; t < BLOCK * (item + 1) && t < d->p->count; t++)
+        find_energy(d, t, &d->parts[t]);
+    return STARG_OK;
 }
 
 /* The energy of the springs; adds its derivatives to `slope`, if that is not NULL. */
@@ -299,20 +309,34 @@ static double energy_of_springs(const unfold_problem *p, const double *places, d
     return sum;
 }
 
-/* The energy of all, and its slope if that is not NULL. */
-static double evaluate(descent *d, const double *places, double *slope) {
-    double sum = 0;
+/* The energy of all, and its slope by unknown, if that is not NULL. */
+static starg_status evaluate(descent *d, const double *places, double *slope, double *energy) {
+    const unfold_problem *p = d->p;
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = (p->count + BLOCK - 1) / BLOCK,
+                                      .shared = d,
+                                      .item = find_energies,
+                                      .silent = true};
+    d->places = places;
+    d->sloped = slope != NULL;
+    TRY(starg_parallel_for(p->context, &loop));
     d->lowest = INFINITY;
+    *energy = 0;
+    for (size_t t = 0; t < p->count; t++) {
+        *energy += d->parts[t].energy;
+        d->lowest = fmin(d->lowest, d->parts[t].determinant);
+    }
     if (slope != NULL)
         memset(slope, 0, d->size * sizeof *slope);
-    for (size_t t = 0; t < d->p->count; t++) {
-        double determinant;
-        sum += energy_of(d, places, t, &determinant, slope);
-        d->lowest = fmin(d->lowest, determinant);
+    for (size_t i = 0; i < 4 * p->count && slope != NULL; i++) {
+        size_t v = p->tetrahedra[i];
+        double *own = slope + 3 * (v - p->fixed);
+        if (v >= p->fixed)
+            vec3_along(own, 1, d->parts[i / 4].slopes[i % 4], own);
     }
-    if (d->p->springs.count > 0)
-        sum += energy_of_springs(d->p, places, slope);
-    return sum;
+    if (p->springs.count > 0)
+        *energy += energy_of_springs(p, places, slope);
+    return STARG_OK;
 }
 
 /* ---- descent ---- */
@@ -378,44 +402,49 @@ static void remember(descent *d, double length) {
     }
 }
 
-/* One step; false if there is none that lowers the energy. */
-static bool make_step(descent *d, double *energy) {
+/* One step; *made: there is one that lowers the energy. */
+static starg_status make_step(descent *d, double *energy, bool *made) {
     const unfold_problem *p = d->p;
     double *own = p->now + 3 * p->fixed, *trial = d->trial + 3 * p->fixed;
+    *made = false;
     choose_way(d);
     double fall = dot(d->slope, d->way, d->size);
     if (!(fall < 0)) {
         if (d->pairs == 0)
-            return false;
+            return STARG_OK;
         d->pairs = 0;
         choose_way(d);
         fall = dot(d->slope, d->way, d->size);
     }
-    double length = first_length(d);
-    for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
+    double length = first_length(d), found;
+    for (int halving = 0; halving < HALVINGS && !*made; halving++, length /= 2) {
         for (size_t i = 0; i < d->size; i++)
             trial[i] = own[i] + length * d->way[i];
-        double found = evaluate(d, d->trial, NULL);
-        if (!(found <= *energy + ARMIJO * length * fall) ||
-            (d->epsilon == 0 && count_inverted(p, d->trial) > 0))
+        TRY(evaluate(d, d->trial, halving == 0 ? d->former : NULL, &found));
+        *made = found <= *energy + ARMIJO * length * fall &&
+                (d->epsilon > 0 || count_inverted(p, d->trial) == 0);
+        if (!*made)
             continue;
+        if (halving > 0)
+            TRY(evaluate(d, d->trial, d->former, &found));
+        double *former = d->slope;
+        d->slope = d->former;
+        d->former = former;
         memcpy(own, trial, d->size * sizeof *own);
-        memcpy(d->former, d->slope, d->size * sizeof *d->slope);
-        *energy = evaluate(d, p->now, d->slope);
+        *energy = found;
         remember(d, length);
-        return true;
     }
-    return false;
+    return STARG_OK;
 }
 
 /* Up to `steps` steps with the same epsilon. */
 static starg_status go_down(descent *d, size_t steps, double *energy) {
+    bool made = true;
     d->pairs = 0;
-    *energy = evaluate(d, d->p->now, d->slope);
-    for (size_t i = 0; i < steps; i++) {
+    TRY(evaluate(d, d->p->now, d->slope, energy));
+    for (size_t i = 0; i < steps && made; i++) {
         TRY(starg_check_cancel(d->p->context, STAGE));
-        if (!make_step(d, energy))
-            break;
+        TRY(make_step(d, energy, &made));
     }
     return STARG_OK;
 }
@@ -428,13 +457,15 @@ static double regular(double epsilon, double D) {
     return D < 0 ? epsilon * epsilon / (2 * (root - D)) : (D + root) / 2;
 }
 
-/* The next epsilon, from the energies before and after a round (equation 5 of the paper). */
-static double lowered(descent *d, double before) {
-    double after = evaluate(d, d->p->now, NULL);
+/* Takes the next epsilon, from the energies before and after a round (equation 5 of the paper). */
+static starg_status lower(descent *d, double before) {
+    double after;
+    TRY(evaluate(d, d->p->now, NULL, &after));
     double least = d->p->springs.count > 0 ? LEAST_SHARE_SPRINGS : LEAST_SHARE;
     double share = fmax(least, 1 - after / before), lowest = d->lowest;
     double wanted = (1 - share) * regular(d->epsilon, lowest);
-    return wanted > lowest ? 2 * sqrt(wanted * (wanted - lowest)) : 1e-10;
+    d->epsilon = wanted > lowest ? 2 * sqrt(wanted * (wanted - lowest)) : 1e-10;
+    return STARG_OK;
 }
 
 starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
@@ -445,14 +476,15 @@ starg_status unfold(const unfold_problem *p, size_t steps, size_t *inverted) {
     if (*inverted == 0 || p->fixed >= p->vertex_count)
         return STARG_OK;
     TRY(prepare(&d));
-    evaluate(&d, p->now, NULL);
+    double before, after;
+    TRY(evaluate(&d, p->now, NULL, &before));
     d.epsilon = fmax(1e-3, sqrt(1e-6 + 0.04 * d.lowest * d.lowest));
     for (size_t done_steps = 0; done_steps<steps && * inverted> 0 && idle < most_idle;
          done_steps += ROUND) {
-        double before = evaluate(&d, p->now, NULL), after;
+        TRY(evaluate(&d, p->now, NULL, &before));
         TRY(go_down(&d, ROUND, &after));
         *inverted = count_inverted(p, p->now);
-        d.epsilon = lowered(&d, before);
+        TRY(lower(&d, before));
         if (p->springs.move != NULL)
             p->springs.move(p->springs.user);
         idle = *inverted < least ? 0 : idle + 1;
