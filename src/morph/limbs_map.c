@@ -24,6 +24,7 @@
 
 #include <stdio.h>
 static const char STAGE[] = "limbs";
+enum { STARTS = 12 }; /* of paths, on a loop, from which the shortest is chosen */
 static const double PI = 3.14159265358979323846;
 static const double EVEN = 0.5; /* of the circle is shared alike by all edges of the boundary */
 
@@ -91,30 +92,39 @@ static starg_status split_chords(disk *d) {
 
 /* ---- paths ---- */
 
-/* The shortest path from a vertex with mark 1 to one with mark 2, between them over vertices on no
- * rim. *found: there is one. By relaxation in the order of a queue. */
-static starg_status find_path(const disk *d, const uint8_t *marks, number_list *out, bool *found) {
+/* Shortest paths from a vertex on a rim, over vertices on none, to all others. By relaxation in the
+ * order of a queue. */
+typedef struct path_field {
+    double *far;
+    uint32_t *before, *queue;
+    uint8_t *waits;
+} path_field;
+
+static void free_field(path_field *f) {
+    RELEASE(f->far, f->before, f->queue, f->waits);
+}
+
+static starg_status make_field(const disk *d, path_field *out) {
+    size_t count = d->b->about.count;
+    NEW(d->b->context, STAGE, out->far, count);
+    NEW(d->b->context, STAGE, out->before, count);
+    NEW(d->b->context, STAGE, out->queue, count + 1);
+    NEW_ZERO(d->b->context, STAGE, out->waits, count);
+    return STARG_OK;
+}
+
+static void find_paths(const disk *d, uint32_t source, path_field *f) {
     const cone_builder *b = d->b;
-    size_t count = b->about.count;
-    SCOPED double *far = NULL;
-    SCOPED uint32_t *before = NULL, *queue = NULL;
-    SCOPED uint8_t *waits = NULL;
-    uint32_t best = NOWHERE;
-    size_t first = 0, last = 0;
-    NEW(b->context, STAGE, far, count);
-    NEW(b->context, STAGE, before, count);
-    NEW(b->context, STAGE, queue, count + 1);
-    NEW_ZERO(b->context, STAGE, waits, count);
-    for (uint32_t v = 0; v < count; v++) {
-        far[v] = marks[v] == 1 ? 0 : INFINITY;
-        before[v] = NOWHERE;
-        if (marks[v] == 1)
-            queue[last++] = v;
-    }
+    size_t count = b->about.count, first = 0, last = 1;
+    for (size_t v = 0; v < count; v++)
+        f->far[v] = INFINITY;
+    f->far[source] = 0;
+    f->before[source] = NOWHERE;
+    f->queue[0] = source;
     while (first != last) {
-        uint32_t v = queue[first];
+        uint32_t v = f->queue[first];
         first = (first + 1) % (count + 1);
-        waits[v] = 0;
+        f->waits[v] = 0;
         for (size_t i = 0; i < b->about.data[v].count; i++) {
             uint32_t t = b->about.data[v].data[i];
             const uint32_t *corner = b->corners.data + 3 * (size_t)t;
@@ -123,28 +133,27 @@ static starg_status find_path(const disk *d, const uint8_t *marks, number_list *
                 continue;
             for (int k = 0; k < 3; k++) {
                 uint32_t w = corner[k];
-                double length =
-                    far[v] + vec3_distance(cones_place_of(b, 0, v), cones_place_of(b, 0, w));
-                bool open = !d->on.data[w] || (marks[w] == 2 && !d->on.data[v]);
-                if (w == v || !open || !(length < far[w]))
+                double far = f->far[v] +
+                             vec3_distance(cones_place_of(b, 0, v), cones_place_of(b, 0, w));
+                if (w == v || (d->on.data[v] && d->on.data[w]) || !(far < f->far[w]))
                     continue;
-                far[w] = length;
-                before[w] = v;
-                if (marks[w] == 2 || waits[w])
+                f->far[w] = far;
+                f->before[w] = v;
+                if (d->on.data[w] || f->waits[w])
                     continue;
-                waits[w] = 1;
-                queue[last] = w;
+                f->waits[w] = 1;
+                f->queue[last] = w;
                 last = (last + 1) % (count + 1);
             }
         }
     }
-    for (uint32_t v = 0; v < count; v++)
-        if (marks[v] == 2 && far[v] < INFINITY && (best == NOWHERE || far[v] < far[best]))
-            best = v;
-    *found = best != NOWHERE;
+}
+
+/* The path to a vertex, from the source on. */
+static starg_status list_path(const disk *d, const path_field *f, uint32_t to, number_list *out) {
     out->count = 0;
-    for (uint32_t v = best; v != NOWHERE; v = before[v])
-        PUSH(b->context, STAGE, out, v);
+    for (uint32_t v = to; v != NOWHERE; v = f->before[v])
+        PUSH(d->b->context, STAGE, out, v);
     for (size_t i = 0; i < out->count / 2; i++) {
         uint32_t kept = out->data[i];
         out->data[i] = out->data[out->count - 1 - i];
@@ -157,62 +166,86 @@ static starg_status find_path(const disk *d, const uint8_t *marks, number_list *
 typedef struct rims {
     number_list walls; /* 2 wall + side */
     STARG_ARRAY(uint8_t) joined;
+    double lengths[2]; /* of all, in both places */
 } rims;
 
 static void free_rims(rims *r) {
     RELEASE(r->walls.data, r->joined.data);
 }
 
-/* Which wall's loop is a vertex of A on? An index into the rims. */
-static size_t rim_of(const limb_cuts *cuts, const rims *r, uint32_t vertex) {
-    for (size_t i = 0; i < r->walls.count; i++) {
-        const number_list *loop = &cuts->walls.data[r->walls.data[i] / 2].loops[0];
-        for (size_t j = 0; j < loop->count; j++)
-            if (loop->data[j] == vertex)
-                return i;
-    }
-    return SIZE_MAX;
+static const number_list *loop_of(const limb_cuts *cuts, const rims *r, size_t rim) {
+    return &cuts->walls.data[r->walls.data[rim] / 2].loops[0];
 }
 
-/* Joins one more loop to those that are joined. `used`: vertices of A from which paths start. */
+/* A path between two loops: vertices of A, whose mates are those of B. */
+typedef struct rim_path {
+    uint32_t from, to;
+    size_t rim; /* at its end */
+    double length;
+} rim_path;
+
+/* The shortest of those from a vertex to loops that are not joined yet, in the sum of the lengths
+ * in A and in B, each over the length of all rims. */
+static void weigh_paths(const limb_cuts *cuts, const disk disks[2], const rims *r,
+                        const uint8_t *used, uint32_t from, path_field fields[2], rim_path *best) {
+    find_paths(&disks[0], from, &fields[0]);
+    find_paths(&disks[1], cuts->mates.data[from], &fields[1]);
+    for (size_t i = 0; i < r->walls.count; i++) {
+        const number_list *loop = loop_of(cuts, r, i);
+        for (size_t j = 0; j < loop->count && !r->joined.data[i]; j++) {
+            uint32_t to = loop->data[j];
+            double length = fields[0].far[to] / r->lengths[0] +
+                            fields[1].far[cuts->mates.data[to]] / r->lengths[1];
+            if (!used[to] && length < best->length)
+                *best = (rim_path){from, to, i, length};
+        }
+    }
+}
+
+/* Joins one more loop to those that are joined. `used`: vertices of A where paths end. */
 static starg_status join_rim(limb_cuts *cuts, disk disks[2], rims *r, number_list *used,
                              bool *found) {
-    SCOPED number_list first = {0}, second = {0};
+    SCOPED_BY(free_field) path_field first = {.far = NULL};
+    SCOPED_BY(free_field) path_field second = {.far = NULL};
+    SCOPED uint8_t *marks = NULL;
+    rim_path best = {NOWHERE, NOWHERE, 0, INFINITY};
     for (int end = 0; end < 2; end++)
         TRY(split_chords(&disks[end]));
-    {
-        SCOPED uint8_t *marks = NULL;
-        NEW_ZERO(cuts->context, STAGE, marks, cuts->sides[0].about.count);
-        for (size_t i = 0; i < r->walls.count; i++) {
-            const number_list *loop = &cuts->walls.data[r->walls.data[i] / 2].loops[0];
-            for (size_t j = 0; j < loop->count; j++)
-                marks[loop->data[j]] = r->joined.data[i] ? 1 : 2;
-        }
-        for (size_t i = 0; i < used->count; i++)
-            marks[used->data[i]] = 0;
-        TRY(find_path(&disks[0], marks, &first, found));
+    TRY(make_field(&disks[0], &first));
+    TRY(make_field(&disks[1], &second));
+    path_field fields[2] = {first, second};
+    NEW_ZERO(cuts->context, STAGE, marks, cuts->sides[0].about.count);
+    for (size_t i = 0; i < used->count; i++)
+        marks[used->data[i]] = 1;
+    for (size_t i = 0; i < r->walls.count; i++) {
+        const number_list *loop = loop_of(cuts, r, i);
+        for (size_t j = 0; j < loop->count && r->joined.data[i]; j += 1 + loop->count / STARTS)
+            if (!marks[loop->data[j]])
+                weigh_paths(cuts, disks, r, marks, loop->data[j], fields, &best);
     }
+    *found = best.length < INFINITY;
     if (!*found)
         return STARG_OK;
-    {
-        SCOPED uint8_t *marks = NULL;
-        NEW_ZERO(cuts->context, STAGE, marks, cuts->sides[1].about.count);
-        marks[cuts->mates.data[first.data[0]]] = 1;
-        marks[cuts->mates.data[first.data[first.count - 1]]] = 2;
-        TRY(find_path(&disks[1], marks, &second, found));
+    number_list paths[2] = {{0}, {0}};
+    starg_status status = STARG_OK;
+    for (int end = 0; end < 2 && status == STARG_OK; end++) {
+        uint32_t from = end == 0 ? best.from : cuts->mates.data[best.from];
+        uint32_t to = end == 0 ? best.to : cuts->mates.data[best.to];
+        find_paths(&disks[end], from, &fields[end]);
+        status = list_path(&disks[end], &fields[end], to, &paths[end]);
     }
-    if (!*found)
-        return STARG_OK;
-    PUSH(cuts->context, STAGE, used, first.data[0]);
-    PUSH(cuts->context, STAGE, used, first.data[first.count - 1]);
-    r->joined.data[rim_of(cuts, r, first.data[first.count - 1])] = 1;
-    number_list paths[2] = {first, second};
-    starg_status status = limbs_match_paths(cuts, paths, false);
-    first = paths[0];
-    second = paths[1];
+    if (status == STARG_OK)
+        status = limbs_match_paths(cuts, paths, false);
+    for (int end = 0; end < 2; end++) {
+        if (status == STARG_OK)
+            status = add_rim(&disks[end], &paths[end], false);
+        RELEASE(paths[end].data);
+    }
     TRY(status);
-    TRY(add_rim(&disks[0], &first, false));
-    return add_rim(&disks[1], &second, false);
+    r->joined.data[best.rim] = 1;
+    PUSH(cuts->context, STAGE, used, best.from);
+    PUSH(cuts->context, STAGE, used, best.to);
+    return STARG_OK;
 }
 
 /* ---- disks ---- */
@@ -488,8 +521,14 @@ static starg_status list_rims(limb_cuts *cuts, uint32_t which, disk disks[2], ri
         PUSH(cuts->context, STAGE, &out->walls, 2 * i + (wall->pieces[1] == which));
         const uint8_t first = out->joined.count == 0;
         PUSH(cuts->context, STAGE, &out->joined, first);
-        for (int end = 0; end < 2; end++)
-            TRY(add_rim(&disks[end], &wall->loops[end], true));
+        for (int end = 0; end < 2; end++) {
+            const number_list *loop = &wall->loops[end];
+            TRY(add_rim(&disks[end], loop, true));
+            for (size_t j = 0; j < loop->count; j++)
+                out->lengths[end] += vec3_distance(
+                    cones_place_of(&cuts->sides[end], 0, loop->data[j]),
+                    cones_place_of(&cuts->sides[end], 0, loop->data[(j + 1) % loop->count]));
+        }
     }
     return STARG_OK;
 }
@@ -526,7 +565,10 @@ static starg_status map_disks(limb_cuts *cuts, uint32_t which, disk disks[2], li
     TRY(place_rims(disks));
     for (int end = 0; end < 2; end++)
         TRY(place_inside(&disks[end]));
-    return overlay_disks(cuts, which, disks, out, found);
+    size_t former = out->faces.count / 3;
+    starg_status status = overlay_disks(cuts, which, disks, out, found);
+    if (getenv("SG_DBG")) fprintf(stderr, "map piece %u walls %zu rim %zu faces %zu + %zu -> %zu\n", which, r.walls.count, disks[0].rim.count, disks[0].b->pieces.data[which].triangles.count, disks[1].b->pieces.data[which].triangles.count, out->faces.count / 3 - former);
+    return status;
 }
 
 starg_status limbs_map_piece(limb_cuts *cuts, uint32_t which, limb_surface *out, bool *found) {
