@@ -84,3 +84,15 @@ static inline double vec3_triangle_area(const double a[3], const double b[3], co
     vec3_triangle_normal(a, b, c, n);
     return 0.5 * vec3_length(n);
 }
+
+/* Two directions across a unit vector, at right angles. */
+static inline void vec3_axes_across(const double normal[3], double axes[2][3]) {
+    int least = fabs(normal[0]) < fabs(normal[1]) ? 0 : 1;
+    least = fabs(normal[2]) < fabs(normal[least]) ? 2 : least;
+    const double unit[3] = {least == 0, least == 1, least == 2};
+    vec3_cross(normal, unit, axes[0]);
+    double length = vec3_length(axes[0]);
+    for (int k = 0; k < 3; k++)
+        axes[0][k] /= length;
+    vec3_cross(normal, axes[0], axes[1]);
+}

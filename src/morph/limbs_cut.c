@@ -13,7 +13,6 @@
  * Invariant: the walls of a solid without handles part it into a tree of pieces, and the trees are
  * the same. Cost: O(n log n) for each plane, a linear program in both solids for each wall. */
 #include <stdlib.h>
-#include <stdio.h>
 
 #include "core/streams.h"
 #include "geometry/vec3.h"
@@ -22,20 +21,28 @@
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "limbs";
-enum { PLANES_MOST = 32 };         /* across a limb */
+enum { PLANES_MOST = 32, LEANS = 5 }; /* across a limb; at a point of it */
+static const double LEAN = 0.5;       /* tangent of the angle by which planes are inclined */
 static const double SPACING = 0.2; /* of planes, in radii at the ends of limbs */
 static const double CLEAR = 0.9;   /* of a joint's radius: no plane is that near */
 static const double TIP = 0.05;    /* of a limb's length: no plane is that near to its end */
 static const double ROOMY = 0.02;  /* of hubs, over the extent of loops */
 static const double ALIKE = 0.3;   /* of the mean length of edges: that near are mates */
 
-/* Where walls may be. */
+/* A plane at a share of a limb's length: across it, or inclined to one of four sides. */
+typedef struct cut_plane {
+    double share;
+    int lean; /* 0: not */
+} cut_plane;
+
+/* Where a wall may be, in both solids. */
 typedef struct cut_place {
     size_t pair;
-    double share;
+    cut_plane planes[2];
     bool open;
 } cut_place;
 typedef STARG_ARRAY(cut_place) cut_places;
+typedef STARG_ARRAY(cut_plane) plane_list;
 
 /* A loop that may bound a wall. */
 typedef struct section {
@@ -92,6 +99,20 @@ static starg_status begin_side(starg_context *context, const starg_mesh *mesh, c
 
 /* ---- planes across limbs ---- */
 
+/* What cuts are made of. */
+typedef struct limb_plan {
+    const limb_tree *trees;
+    const limb_pairs *pairs;
+    bvh *surfaces[2];
+    edge_list edges[2]; /* of the surfaces, once they are cut */
+} limb_plan;
+
+static void free_limb_plan(limb_plan *plan) {
+    bvh_free(plan->surfaces[0]);
+    bvh_free(plan->surfaces[1]);
+    RELEASE(plan->edges[0].data, plan->edges[1].data);
+}
+
 static bool is_on_wall(const limb_cuts *cuts, int end, uint32_t vertex) {
     for (size_t i = 0; i < cuts->walls.count; i++)
         for (size_t j = 0; j < cuts->walls.data[i].loops[end].count; j++)
@@ -125,17 +146,17 @@ static bool goes_round(const loop_places *loop, const double point[3]) {
 }
 
 /* The smallest loop about a point of a limb. *found: it may bound a wall. */
-static starg_status find_section(limb_cuts *cuts, int end, const bvh *tree,
-                                 const number_list *faces, const double point[3], section *out,
+static starg_status find_section(limb_cuts *cuts, int end, const limb_plan *plan,
+                                 const double point[3], const double direction[3], section *out,
                                  bool *found) {
     cone_builder *b = &cuts->sides[end];
-    SCOPED edge_list edges = {0};
+    const number_list *faces = &b->corners; /* all are outward */
     double least = INFINITY, room;
     size_t first = 0, chosen = 0;
     *found = false;
-    TRY(cones_list_edges(b, 0, &edges));
+    cones_find_heights(b, 0, faces, direction, point, b->heights.data);
     cones_snap(faces, b->heights.data);
-    TRY(cones_find_loops(b, 0, &edges, b->heights.data, &out->loops, found));
+    TRY(cones_find_loops(b, 0, &plan->edges[end], b->heights.data, &out->loops, found));
     for (size_t i = 0; i < out->loops.lengths.count && *found; i++) {
         size_t count = out->loops.lengths.data[i];
         TRY(cones_place_loop(b, 0, out->loops.nodes.data + first, count, &out->wall));
@@ -152,8 +173,7 @@ static starg_status find_section(limb_cuts *cuts, int end, const bvh *tree,
     out->nodes = out->loops.nodes.data + chosen;
     TRY(cones_place_loop(b, 0, out->nodes, out->count, &out->wall));
     TRY(cones_find_hub(b, &out->wall, out->hub, &room));
-    if (getenv("SG_DBG")) fprintf(stderr, "end %d loops %zu room %g inside %d meets %d; ", end, out->loops.lengths.count, room, cones_is_inside(tree, &out->wall, out->hub), meets_walls(cuts, end, out));
-    *found = room > ROOMY && cones_is_inside(tree, &out->wall, out->hub) &&
+    *found = room > ROOMY && cones_is_inside(plan->surfaces[end], &out->wall, out->hub) &&
              !meets_walls(cuts, end, out);
     return STARG_OK;
 }
@@ -234,108 +254,103 @@ static starg_status take_section(cone_builder *b, const section *s, number_list 
     return add_hub(b, s->hub, hub);
 }
 
-/* What stays the same for all cuts. */
-typedef struct limb_plan {
-    const limb_tree *trees;
-    const limb_pairs *pairs;
-    bvh *surfaces[2];
-} limb_plan;
-
-static void free_limb_plan(limb_plan *plan) {
-    bvh_free(plan->surfaces[0]);
-    bvh_free(plan->surfaces[1]);
-}
-
-/* Heights over a plane across a limb, or over a ball about the joint at one of its ends. */
-static void find_levels(const limb_plan *plan, int end, limb_way way, double share, int kind,
-                        const number_list *faces, cone_builder *b, double point[3]) {
-    const limb_tree *tree = &plan->trees[end];
-    const limb *own = &tree->limbs.data[way.limb];
-    const limb_node *node = &tree->nodes.data[own->nodes[(kind == 1) == way.back]];
-    double direction[3];
-    limbs_point_at(tree, way, share, point, direction);
-    if (kind == 0) {
-        cones_find_heights(b, 0, faces, direction, point, b->heights.data);
+static void incline(const double normal[3], int lean, double out[3]) {
+    double axes[2][3];
+    vec3_copy(normal, out);
+    vec3_normalize(out);
+    if (lean == 0)
         return;
-    }
-    double radius = vec3_distance(point, node->place);
-    for (size_t i = 0; i < faces->count; i++) {
-        double far = vec3_distance(cones_place_of(b, 0, faces->data[i]), node->place);
-        b->heights.data[faces->data[i]] = kind == 1 ? far - radius : radius - far;
-    }
+    vec3_axes_across(out, axes);
+    vec3_along(out, lean % 2 == 0 ? LEAN : -LEAN, axes[(lean - 1) / 2], out);
 }
 
-/* By a plane across the limb, or else by a ball about the joint before or after it. */
-static starg_status find_clear_section(limb_cuts *cuts, const limb_plan *plan, int end,
-                                       limb_way way, double share, section *out, uint8_t *sides,
+/* By a plane across a limb. sides[i]: is wall i beyond it? */
+static starg_status find_clear_section(limb_cuts *cuts, limb_plan *plan, int end, limb_way way,
+                                       const cut_plane *plane, section *out, uint8_t *sides,
                                        bool *found) {
-    const limb_tree *tree = &plan->trees[end];
-    const limb *own = &tree->limbs.data[way.limb];
     cone_builder *b = &cuts->sides[end];
-    SCOPED number_list faces = {0};
-    TRY(cones_list_faces(b, 0, &faces));
-    *found = false;
-    for (int kind = 0; kind < (getenv("SG_V") ? atoi(getenv("SG_V")) : 3) && !*found; kind++) {
-        double point[3];
-        if (kind > 0 && !(own->radii[(kind == 1) == way.back] > 0))
-            continue;
-        find_levels(plan, end, way, share, kind, &faces, b, point);
-        TRY(find_section(cuts, end, plan->surfaces[end], &faces, point, out, found));
-        if (*found)
-            TRY(look_beyond(cuts, end, tree, way, out, sides, found));
-    }
+    edge_list *edges = &plan->edges[end];
+    double point[3], direction[3];
+    if (edges->count != b->corners.count)
+        TRY(cones_list_edges(b, 0, edges));
+    limbs_point_at(&plan->trees[end], way, plane->share, point, direction);
+    incline(direction, plane->lean, direction);
+    TRY(find_section(cuts, end, plan, point, direction, out, found));
+    if (*found)
+        TRY(look_beyond(cuts, end, &plan->trees[end], way, out, sides, found));
     return STARG_OK;
 }
 
-static starg_status cut_at(limb_cuts *cuts, const limb_plan *plan, cut_place *place) {
+static starg_status cut_at(limb_cuts *cuts, limb_plan *plan, cut_place *place) {
     const limb_pair *pair = &plan->pairs->data[place->pair];
     SCOPED_BY(free_section) section first = {.count = 0};
     SCOPED_BY(free_section) section second = {.count = 0};
     section *const sections[2] = {&first, &second};
     SCOPED uint8_t *sides = NULL;
     const size_t walls = cuts->walls.count;
-    bool found = true;const char *WHY = "ok";
+    bool found = true;
     NEW(cuts->context, STAGE, sides, 2 * walls);
     for (int end = 0; end < 2 && found; end++)
-        TRY(find_clear_section(cuts, plan, end, pair->ways[end], place->share, sections[end],
+        TRY(find_clear_section(cuts, plan, end, pair->ways[end], &place->planes[end], sections[end],
                                sides + walls * (size_t)end, &found));
-    if (!found && *WHY == 'o') WHY = "beyond";
     found = found && memcmp(sides, sides + walls, walls) == 0;
-    place->open = !found; if (getenv("SG_DBG")) fprintf(stderr, "place pair %zu share %.3f limbs %u %u: %s\n", place->pair, place->share, pair->ways[0].limb, pair->ways[1].limb, WHY);
+    place->open = !found;
     if (!found)
         return STARG_OK;
     PUSH(cuts->context, STAGE, &cuts->walls, ((limb_wall){.pieces = {NOWHERE, NOWHERE}}));
-    limb_wall *wall = &cuts->walls.data[cuts->walls.count - 1];
+    limb_wall *wall = &cuts->walls.data[walls];
     for (int end = 0; end < 2; end++)
         TRY(take_section(&cuts->sides[end], sections[end], &wall->loops[end], &wall->hubs[end]));
     return STARG_OK;
 }
 
-static starg_status list_places(starg_context *context, const limb_tree trees[2],
-                                const limb_pairs *pairs, cut_places *out) {
-    for (size_t i = 0; i < pairs->count; i++) {
-        double from = 0, to = 1, radius = INFINITY;
+/* Planes of walls that may be across a limb in one solid, outward. */
+static starg_status list_planes(limb_cuts *cuts, limb_plan *plan, int end, limb_way way,
+                                   plane_list *out) {
+    const limb_tree *tree = &plan->trees[end];
+    const limb *own = &tree->limbs.data[way.limb];
+    const double near = own->radii[way.back] / own->length;
+    const double far = own->radii[!way.back] / own->length;
+    const double from = near > 0 ? CLEAR * near : near < 0 ? 0 : TIP;
+    const double to = 1 - (far > 0 ? CLEAR * far : TIP);
+    const double radius =
+        near < 0 ? 1
+                 : fmax(tree->nodes.data[own->nodes[0]].radius,
+                        tree->nodes.data[own->nodes[1]].radius) / own->length;
+    SCOPED uint8_t *sides = NULL;
+    NEW(cuts->context, STAGE, sides, cuts->walls.count);
+    size_t count = 1;
+    if (to > from && radius > 0)
+        count += (size_t)fmin((to - from) / (SPACING * radius), PLANES_MOST - 1);
+    for (size_t i = 0; i < count; i++) {
+        double part = to > from && count > 1 ? (double)i / (double)(count - 1) : 0.5;
+        bool found = false;
+        for (int lean = 0; lean < LEANS && !found; lean++) {
+            const cut_plane plane = {from + part * (to - from), lean};
+            SCOPED_BY(free_section) section trial = {.count = 0};
+            TRY(find_clear_section(cuts, plan, end, way, &plane, &trial, sides, &found));
+            if (found)
+                PUSH(cuts->context, STAGE, out, plane);
+        }
+    }
+    return STARG_OK;
+}
+
+/* Cuts at as many places as either limb has, from the first to the last one. */
+static starg_status cut_pair(limb_cuts *cuts, limb_plan *plan, size_t pair, cut_places *places) {
+    SCOPED plane_list first = {0}, second = {0};
+    plane_list *const lists[2] = {&first, &second};
+    for (int end = 0; end < 2; end++)
+        TRY(list_planes(cuts, plan, end, plan->pairs->data[pair].ways[end], lists[end]));
+    const size_t count = first.count < second.count ? first.count : second.count;
+    for (size_t i = 0; i < count; i++) {
+        cut_place place = {.pair = pair};
         for (int end = 0; end < 2; end++) {
-            const limb_way way = pairs->data[i].ways[end];
-            const limb *own = &trees[end].limbs.data[way.limb];
-            double near = own->radii[way.back] / own->length;
-            double far = own->radii[!way.back] / own->length;
-            from = fmax(from, near > 0 ? CLEAR * near : near < 0 ? 0 : TIP);
-            to = fmin(to, 1 - (far > 0 ? CLEAR * far : TIP));
-            if (near >= 0)
-                radius = fmin(radius, fmax(trees[end].nodes.data[own->nodes[0]].radius,
-                                           trees[end].nodes.data[own->nodes[1]].radius) /
-                                          own->length);
+            size_t last = lists[end]->count - 1;
+            place.planes[end] = lists[end]->data[count > 1 ? i * last / (count - 1) : last / 2];
         }
-        size_t count = 1;
-        if (to > from && radius > 0)
-            count += (size_t)fmin((to - from) / (SPACING * radius), PLANES_MOST - 1);
-        else
-            from = to = (from + to) / 2;
-        for (size_t j = 0; j < count; j++) {
-            double share = count > 1 ? (double)j / (double)(count - 1) : 0.5;
-            PUSH(context, STAGE, out, ((cut_place){i, from + share * (to - from), false}));
-        }
+        TRY(cut_at(cuts, plan, &place));
+        PUSH(cuts->context, STAGE, places, place);
     }
     return STARG_OK;
 }
@@ -594,15 +609,20 @@ static starg_status open_walls(limb_cuts *cuts, uint32_t *const labels[2], cut_p
 
 /* ---- all stages ---- */
 
+/* At all pairs of limbs, or once more at the places that are not open. */
 static starg_status cut_at_places(starg_context *context, const starg_mesh *const meshes[2],
-                                  const limb_plan *plan, cut_places *places, limb_cuts *out) {
+                                  limb_plan *plan, cut_places *places, limb_cuts *out) {
+    const bool again = places->count > 0;
     limbs_free_cuts(out);
     *out = (limb_cuts){.context = context};
     for (int end = 0; end < 2; end++)
         TRY(begin_side(context, meshes[end], &out->sides[end]));
-    for (size_t i = 0; i < places->count; i++) {
+    plan->edges[0].count = plan->edges[1].count = 0;
+    for (size_t i = 0; i < (again ? places->count : plan->pairs->count); i++) {
         TRY(starg_check_cancel(context, STAGE));
-        if (!places->data[i].open)
+        if (!again)
+            TRY(cut_pair(out, plan, i, places));
+        else if (!places->data[i].open)
             TRY(cut_at(out, plan, &places->data[i]));
     }
     return STARG_OK;
@@ -633,7 +653,6 @@ starg_status limbs_cut(starg_context *context, const starg_mesh *const meshes[2]
         TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count,
                        &plan.surfaces[end]));
     }
-    TRY(list_places(context, trees, pairs, &places));
     for (int round = 0; round < 2 && good; round++) {
         SCOPED uint32_t *first = NULL, *second = NULL;
         TRY(cut_at_places(context, meshes, &plan, &places, out));

@@ -361,7 +361,7 @@ static starg_status place_inside(disk *d) {
         uint32_t u = i % 2 == 0 ? p : q, v = i % 2 == 0 ? q : p;
         double length = vec3_distance(cones_place_of(b, 0, d->from[u]),
                                       cones_place_of(b, 0, d->from[v]));
-        double w = length > 0 ? 1 / length : 1;
+        double w = length > 0 ? 1 / (length * length) : 1;
         if (numbers[u] == NOWHERE)
             continue;
         entries[count++] = (triplet){numbers[u], numbers[u], w};

@@ -396,18 +396,6 @@ starg_status cones_place_loop(const cone_builder *b, int end, const cut_node *no
     return STARG_OK;
 }
 
-/* Two directions across a unit normal. */
-static void axes_across(const double normal[3], double axes[2][3]) {
-    int least = fabs(normal[0]) < fabs(normal[1]) ? 0 : 1;
-    least = fabs(normal[2]) < fabs(normal[least]) ? 2 : least;
-    const double unit[3] = {least == 0, least == 1, least == 2};
-    vec3_cross(normal, unit, axes[0]);
-    double length = vec3_length(axes[0]);
-    for (int k = 0; k < 3; k++)
-        axes[0][k] /= length;
-    vec3_cross(normal, axes[0], axes[1]);
-}
-
 /* A point from which the loop, seen along its normal, is passed to the left: the one farthest from
  * the lines of its edges, at the height of the mean. Its distance, over the extent; at most 0:
  * there is none. */
@@ -420,7 +408,7 @@ starg_status cones_find_hub(cone_builder *b, const loop_places *loop, double hub
     *room = 0;
     if (!(vec3_length(loop->normal) > 0 && loop->extent > 0))
         return STARG_OK;
-    axes_across(loop->normal, axes);
+    vec3_axes_across(loop->normal, axes);
     NEW(b->context, STAGE, rows, 4 * count);
     NEW(b->context, STAGE, order, count);
     for (size_t i = 0; i < count; i++) {
