@@ -21,8 +21,9 @@
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "limbs";
-enum { PLANES_MOST = 32, LEANS = 5 }; /* across a limb; at a point of it */
+enum { PLANES_MOST = 32, CAPS = 14, LEANS = 5 }; /* across a limb; a cap; at a point */
 static const double LEAN = 0.5;       /* tangent of the angle by which planes are inclined */
+static const double CAP = 0.6;     /* heights of caps fall so */
 static const double SPACING = 0.2; /* of planes, in radii at the ends of limbs */
 static const double CLEAR = 0.9;   /* of a joint's radius: no plane is that near */
 static const double TIP = 0.05;    /* of a limb's length: no plane is that near to its end */
@@ -309,24 +310,24 @@ static starg_status list_planes(limb_cuts *cuts, limb_plan *plan, int end, limb_
                                    plane_list *out) {
     const limb_tree *tree = &plan->trees[end];
     const limb *own = &tree->limbs.data[way.limb];
-    const double near = own->radii[way.back] / own->length;
-    const double far = own->radii[!way.back] / own->length;
-    const double from = near > 0 ? CLEAR * near : near < 0 ? 0 : TIP;
-    const double to = 1 - (far > 0 ? CLEAR * far : TIP);
-    const double radius =
-        near < 0 ? 1
-                 : fmax(tree->nodes.data[own->nodes[0]].radius,
-                        tree->nodes.data[own->nodes[1]].radius) / own->length;
     SCOPED uint8_t *sides = NULL;
     NEW(cuts->context, STAGE, sides, cuts->walls.count);
-    size_t count = 1;
-    if (to > from && radius > 0)
+    const bool cap = own->radii[way.back] < 0;
+    const double near = own->radii[way.back] / own->length;
+    const double far = own->radii[!way.back] / own->length;
+    const double from = near > 0 ? CLEAR * near : TIP, to = 1 - (far > 0 ? CLEAR * far : TIP);
+    const double radius = fmax(tree->nodes.data[own->nodes[0]].radius,
+                               tree->nodes.data[own->nodes[1]].radius) /
+                          own->length;
+    size_t count = cap ? CAPS : 1;
+    if (to > from && radius > 0 && !cap)
         count += (size_t)fmin((to - from) / (SPACING * radius), PLANES_MOST - 1);
     for (size_t i = 0; i < count; i++) {
         double part = to > from && count > 1 ? (double)i / (double)(count - 1) : 0.5;
+        double share = cap ? 1 - pow(CAP, (double)i) : from + part * (to - from);
         bool found = false;
         for (int lean = 0; lean < LEANS && !found; lean++) {
-            const cut_plane plane = {from + part * (to - from), lean};
+            const cut_plane plane = {share, lean};
             SCOPED_BY(free_section) section trial = {.count = 0};
             TRY(find_clear_section(cuts, plan, end, way, &plane, &trial, sides, &found));
             if (found)
@@ -347,7 +348,7 @@ static starg_status cut_pair(limb_cuts *cuts, limb_plan *plan, size_t pair, cut_
         cut_place place = {.pair = pair};
         for (int end = 0; end < 2; end++) {
             size_t last = lists[end]->count - 1;
-            place.planes[end] = lists[end]->data[count > 1 ? i * last / (count - 1) : last / 2];
+            place.planes[end] = lists[end]->data[count > 1 ? i * last / (count - 1) : 0];
         }
         TRY(cut_at(cuts, plan, &place));
         PUSH(cuts->context, STAGE, places, place);
