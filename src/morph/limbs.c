@@ -15,8 +15,6 @@
 
 #include "geometry/vec3.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 static const char STAGE[] = "limbs";
 
 static void free_surface(limb_surface *s) {
@@ -53,16 +51,9 @@ static starg_status fill(starg_context *context, const starg_mesh *const meshes[
     size_t left;
     TRY(limbs_pair(trees, &pairs));
     TRY(limbs_cut(context, meshes, trees, &pairs, &cuts));
-    for (size_t i = 0; i < pairs.count; i++) fprintf(stderr, "pair %u%c(%.2f) %u%c(%.2f)\n", pairs.data[i].ways[0].limb, "+-"[pairs.data[i].ways[0].back], trees[0].limbs.data[pairs.data[i].ways[0].limb].length/trees[0].length, pairs.data[i].ways[1].limb, "+-"[pairs.data[i].ways[1].back], trees[1].limbs.data[pairs.data[i].ways[1].limb].length/trees[1].length);
-    fprintf(stderr, "limbs %zu %zu pieces %zu walls %zu\n", trees[0].limbs.count, trees[1].limbs.count, cuts.piece_count, cuts.walls.count);
     *found = cuts.piece_count > 1;
-    if (getenv("SG_DUMP")) for (int end = 0; end < 2; end++) for (uint32_t p = 0; p < cuts.piece_count; p++) { char name[99]; snprintf(name, 99, "/tmp/q/dump/p%u_%d.txt", p, end); FILE *f = fopen(name, "w"); const cone_builder *b = &cuts.sides[end];
-      for (size_t i = 0; i < b->pieces.data[p].triangles.count; i++) { for (int k = 0; k < 3; k++) { const double *q = cones_place_of(b, 0, b->corners.data[3 * b->pieces.data[p].triangles.data[i] + k]); fprintf(f, "%.17g %.17g %.17g ", q[0], q[1], q[2]); } fprintf(f, "-1\n"); }
-      for (size_t w = 0; w < cuts.walls.count; w++) for (int side = 0; side < 2; side++) if (cuts.walls.data[w].pieces[side] == p) { const number_list *l = &cuts.walls.data[w].loops[end]; for (size_t j = 0; j < l->count; j++) { uint32_t u = l->data[j], v = l->data[(j+1)%l->count]; const uint32_t t[3] = {side == 0 ? v : u, side == 0 ? u : v, cuts.walls.data[w].hubs[end]}; for (int k = 0; k < 3; k++) { const double *q = cones_place_of(b, 0, t[k]); fprintf(f, "%.17g %.17g %.17g ", q[0], q[1], q[2]); } fprintf(f, "%zu\n", w); } }
-      fclose(f); }
     for (uint32_t p = 0; p < cuts.piece_count && *found; p++)
-{        TRY(limbs_map_piece(&cuts, p, &surface, found));
-    fprintf(stderr, "piece %u found %d faces %zu\n", p, *found, surface.faces.count/3); }
+        TRY(limbs_map_piece(&cuts, p, &surface, found));
     if (!*found)
         return STARG_OK;
     TRY(add_walls(&cuts, &surface));
@@ -73,7 +64,7 @@ static starg_status fill(starg_context *context, const starg_mesh *const meshes[
                                       .count = surface.faces.count / 3,
                                       .piece_count = cuts.piece_count};
     TRY(compatible_fill(context, &input, out, &left));
-    *found = left == 0; fprintf(stderr, "left %zu\n", left);
+    *found = left == 0;
     return STARG_OK;
 }
 

@@ -52,9 +52,9 @@ typedef struct limb_pair {
 } limb_pair;
 typedef STARG_ARRAY(limb_pair) limb_pairs;
 
-/* Pairs limbs of two trees so that pairs that meet in one meet in the other, and as much as possible
- * of both has a partner, of about its length and in about its place. What has none gets a small one,
- * which is added to the other tree: the cap at a convex vertex. Errors: MEMORY. */
+/* Pairs limbs of two trees so that pairs that meet in one meet in the other, and as much as
+ * possible of both has a partner, of about its length and in about its place. What has none gets a
+ * small one, which is added to the other tree: the cap at a convex vertex. Errors: MEMORY. */
 starg_status limbs_pair(limb_tree trees[2], limb_pairs *out);
 
 /* The point at a share of a limb's length, and the direction in which the limb runs there. */
@@ -98,7 +98,7 @@ starg_status limbs_match_paths(limb_cuts *cuts, number_list paths[2], bool close
 typedef struct limb_surface {
     STARG_ARRAY(double) places[2]; /* x 3 */
     number_list faces, sides;      /* x 3, x 2 */
-    number_list at; /* per vertex of the first surface: the one here, or NOWHERE */
+    number_list at;                /* per vertex of the first surface: the one here, or NOWHERE */
 } limb_surface;
 
 /* Adds the overlay of the two surfaces of a piece, which are mapped onto each other so that loops

@@ -22,7 +22,7 @@
 
 static const char STAGE[] = "limbs";
 enum { PLANES_MOST = 32, CAPS = 14, LEANS = 5 }; /* across a limb; a cap; at a point */
-static const double LEAN = 0.5;       /* tangent of the angle by which planes are inclined */
+static const double LEAN = 0.5;    /* tangent of the angle by which planes are inclined */
 static const double CAP = 0.6;     /* heights of caps fall so */
 static const double SPACING = 0.2; /* of planes, in radii at the ends of limbs */
 static const double CLEAR = 0.9;   /* of a joint's radius: no plane is that near */
@@ -218,8 +218,8 @@ static starg_status find_left(const limb_cuts *cuts, int end, const section *s, 
 
 /* Has a loop on its left the ends of limbs that follow on its own, and the other ones on its right?
  * sides[i]: is wall i on the left? */
-static starg_status look_beyond(const limb_cuts *cuts, int end, const limb_tree *tree,
-                                limb_way way, const section *s, uint8_t *sides, bool *good) {
+static starg_status look_beyond(const limb_cuts *cuts, int end, const limb_tree *tree, limb_way way,
+                                const section *s, uint8_t *sides, bool *good) {
     SCOPED uint32_t *sets = NULL;
     SCOPED uint8_t *beyond = NULL;
     uint32_t left = NOWHERE;
@@ -307,7 +307,7 @@ static starg_status cut_at(limb_cuts *cuts, limb_plan *plan, cut_place *place) {
 
 /* Planes of walls that may be across a limb in one solid, outward. */
 static starg_status list_planes(limb_cuts *cuts, limb_plan *plan, int end, limb_way way,
-                                   plane_list *out) {
+                                plane_list *out) {
     const limb_tree *tree = &plan->trees[end];
     const limb *own = &tree->limbs.data[way.limb];
     SCOPED uint8_t *sides = NULL;
@@ -316,9 +316,9 @@ static starg_status list_planes(limb_cuts *cuts, limb_plan *plan, int end, limb_
     const double near = own->radii[way.back] / own->length;
     const double far = own->radii[!way.back] / own->length;
     const double from = near > 0 ? CLEAR * near : TIP, to = 1 - (far > 0 ? CLEAR * far : TIP);
-    const double radius = fmax(tree->nodes.data[own->nodes[0]].radius,
-                               tree->nodes.data[own->nodes[1]].radius) /
-                          own->length;
+    const double radius =
+        fmax(tree->nodes.data[own->nodes[0]].radius, tree->nodes.data[own->nodes[1]].radius) /
+        own->length;
     size_t count = cap ? CAPS : 1;
     if (to > from && radius > 0 && !cap)
         count += (size_t)fmin((to - from) / (SPACING * radius), PLANES_MOST - 1);
@@ -440,8 +440,8 @@ static void turn_loops(const limb_cuts *cuts, limb_wall *wall) {
         const number_list *loop = &wall->loops[end];
         for (size_t i = 0; i < loop->count; i++) {
             double p[3], q[3], cross[3];
-            vec3_subtract(cones_place_of(b, 0, loop->data[i]), cones_place_of(b, 0, wall->hubs[end]),
-                          p);
+            vec3_subtract(cones_place_of(b, 0, loop->data[i]),
+                          cones_place_of(b, 0, wall->hubs[end]), p);
             vec3_subtract(cones_place_of(b, 0, loop->data[(i + 1) % loop->count]),
                           cones_place_of(b, 0, wall->hubs[end]), q);
             vec3_cross(p, q, cross);
@@ -527,8 +527,7 @@ static starg_status number_pieces(limb_cuts *cuts, uint32_t *const labels[2], bo
         for (size_t i = 0; i < cuts->walls.count && *good; i++) {
             limb_wall *wall = &cuts->walls.data[i];
             for (int side = 0; side < 2; side++) {
-                uint32_t part =
-                    part_beside(&edges, labels[end], &wall->loops[end], side == 1);
+                uint32_t part = part_beside(&edges, labels[end], &wall->loops[end], side == 1);
                 *good = *good && part != NOWHERE;
                 if (!*good)
                     break;

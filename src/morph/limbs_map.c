@@ -10,9 +10,9 @@
  * in the middle of its neighbours (Tutte 1963), weighted by the lengths of edges. With the outside
  * as one more vertex that is a sphere, on which the two triangulations are overlaid (overlay.c).
  *
- * Invariant: an edge between vertices of paths or loops is on one of them, since others are divided,
- * so that what is left of the surface hangs together and there is a way for each path. Cost: linear
- * systems, and O(n log n). */
+ * Invariant: an edge between vertices of paths or loops is on one of them, since others are
+ * divided, so that what is left of the surface hangs together and there is a way for each path.
+ * Cost: linear systems, and O(n log n). */
 #include <stdlib.h>
 
 #include "geometry/predicates.h"
@@ -22,7 +22,6 @@
 #include "morph/overlay.h"
 #include "morph/triplets.h"
 
-#include <stdio.h>
 static const char STAGE[] = "limbs";
 enum { STARTS = 12 }; /* of paths, on a loop, from which the shortest is chosen */
 static const double PI = 3.14159265358979323846;
@@ -133,8 +132,8 @@ static void find_paths(const disk *d, uint32_t source, path_field *f) {
                 continue;
             for (int k = 0; k < 3; k++) {
                 uint32_t w = corner[k];
-                double far = f->far[v] +
-                             vec3_distance(cones_place_of(b, 0, v), cones_place_of(b, 0, w));
+                double far =
+                    f->far[v] + vec3_distance(cones_place_of(b, 0, v), cones_place_of(b, 0, w));
                 if (w == v || (d->on.data[v] && d->on.data[w]) || !(far < f->far[w]))
                     continue;
                 f->far[w] = far;
@@ -359,8 +358,8 @@ static starg_status place_inside(disk *d) {
     for (size_t i = 0; i < 6 * triangles; i++) { /* each inner edge from either end, twice */
         uint32_t p = d->corners[i / 2], q = d->corners[i / 6 * 3 + (i / 2 + 1) % 3];
         uint32_t u = i % 2 == 0 ? p : q, v = i % 2 == 0 ? q : p;
-        double length = vec3_distance(cones_place_of(b, 0, d->from[u]),
-                                      cones_place_of(b, 0, d->from[v]));
+        double length =
+            vec3_distance(cones_place_of(b, 0, d->from[u]), cones_place_of(b, 0, d->from[v]));
         double w = length > 0 ? 1 / (length * length) : 1;
         if (numbers[u] == NOWHERE)
             continue;
@@ -496,7 +495,6 @@ static starg_status overlay_disks(limb_cuts *cuts, uint32_t which, const disk di
     TRY(make_globe(&disks[0], &first));
     TRY(make_globe(&disks[1], &second));
     *found = is_unfolded(&first) && is_unfolded(&second);
-    if (!*found) fprintf(stderr, "folded %d %d\n", is_unfolded(&first), is_unfolded(&second));
     if (!*found)
         return STARG_OK;
     const starg_mesh *const meshes[2] = {&first.mesh, &second.mesh};
@@ -505,7 +503,6 @@ static starg_status overlay_disks(limb_cuts *cuts, uint32_t which, const disk di
     TRY(overlay_create(cuts->context, meshes, directions, &overlay));
     starg_status status = overlay_make_room(overlay, &moved);
     *found = status == STARG_OK;
-    if (!*found) fprintf(stderr, "no room\n");
     if (status != STARG_OK)
         return status == STARG_ERROR_SOLVER ? STARG_OK : status;
     return take_overlay(cuts, which, &disks[0], globes, overlay, out);
@@ -539,10 +536,8 @@ static starg_status map_disks(limb_cuts *cuts, uint32_t which, disk disks[2], li
     SCOPED number_list used = {0};
     TRY(list_rims(cuts, which, disks, &r));
     *found = r.walls.count > 0;
-#define DBG(T) if (!*found) fprintf(stderr, "failed %s walls %zu\n", T, r.walls.count)
     for (size_t i = 1; i < r.walls.count && *found; i++)
         TRY(join_rim(cuts, disks, &r, &used, found));
-    DBG("join");
     if (!*found)
         return STARG_OK;
     const limb_wall *wall = &cuts->walls.data[r.walls.data[0] / 2];
@@ -553,26 +548,21 @@ static starg_status map_disks(limb_cuts *cuts, uint32_t which, disk disks[2], li
         TRY(open_disk(&disks[end]));
         TRY(walk_rim(&disks[end], loop->data[right ? 1 : 0], loop->data[right ? 0 : 1], found));
     }
-    DBG("walk");
     *found = *found && disks[0].rim.count == disks[1].rim.count;
-    DBG("count");
     for (size_t i = 0; i < disks[0].rim.count && *found; i++)
         *found = cuts->mates.data[disks[0].from[disks[0].rim.data[i]]] ==
                  disks[1].from[disks[1].rim.data[i]];
     if (!*found)
         return STARG_OK;
-    DBG("mates");
     TRY(place_rims(disks));
     for (int end = 0; end < 2; end++)
         TRY(place_inside(&disks[end]));
-    size_t former = out->faces.count / 3;
-    starg_status status = overlay_disks(cuts, which, disks, out, found);
-    if (getenv("SG_DBG")) fprintf(stderr, "map piece %u walls %zu rim %zu faces %zu + %zu -> %zu\n", which, r.walls.count, disks[0].rim.count, disks[0].b->pieces.data[which].triangles.count, disks[1].b->pieces.data[which].triangles.count, out->faces.count / 3 - former);
-    return status;
+    return overlay_disks(cuts, which, disks, out, found);
 }
 
 starg_status limbs_map_piece(limb_cuts *cuts, uint32_t which, limb_surface *out, bool *found) {
-    disk disks[2] = {{.b = &cuts->sides[0], .which = which}, {.b = &cuts->sides[1], .which = which}};
+    disk disks[2] = {{.b = &cuts->sides[0], .which = which},
+                     {.b = &cuts->sides[1], .which = which}};
     starg_status status = map_disks(cuts, which, disks, out, found);
     for (int end = 0; end < 2; end++)
         free_disk(&disks[end]);

@@ -7,8 +7,8 @@
  * Method: a pair of joints or ends is chosen as roots, and limbs are paired outward from there. At
  * a pair of joints the limbs that lead on are assigned to each other, each with all that follows
  * it, by dynamic programming over sets of the second tree's limbs. What has no partner costs its
- * length; what has one costs the difference of lengths, and the distance of their ends, as places in
- * the two boxes. Lengths are shares of all limbs of a tree.
+ * length; what has one costs the difference of lengths, and the distance of their ends, as places
+ * in the two boxes. Lengths are shares of all limbs of a tree.
  *
  * Cost: O(n m d 2^d) for trees of n and m limbs with at most d <= BRANCHES at a joint. */
 #include <stdlib.h>

@@ -42,8 +42,9 @@ typedef struct compatible_surface {
 } compatible_surface;
 
 /* Fills two solids, bounded by the same faces in two places, with the same tetrahedra, positive in
- * both: cones in pieces that are star-shaped in both (cones.c). The surface is divided in its faces.
- * *left: pieces that could not be cut further; then there is no result. Errors: MEMORY, CANCELLED.
+ * both: cones in pieces that are star-shaped in both (cones.c). The surface is divided in its
+ * faces. *left: pieces that could not be cut further; then there is no result. Errors: MEMORY,
+ * CANCELLED.
  */
 starg_status compatible_fill(starg_context *context, const compatible_surface *surface,
                              compatible_cones *out, size_t *left) STARG_PRIVATE(compatible_fill);

@@ -21,9 +21,6 @@
  * Cost: that of the cuts. */
 #include "star/compatible/compatible.h"
 
-#include <stdlib.h>
-#include <stdio.h>
-
 #include "geometry/vec3.h"
 #include "star/compatible/cone_builder.h"
 #include "star/compatible/peel.h"
@@ -142,9 +139,6 @@ static starg_status divide_all(cone_builder *b, size_t *left) {
     SCOPED number_list faces = {0};
     const size_t count = b->corners.count / 3;
     const limits most = {SIZE_MAX, WORK_ALL * (count + EASY)};
-    const bool DBG2 = getenv("SG_DBG") && getenv("SG_DBG")[0] == '2';
-    if (getenv("SG_DBG")) for (uint32_t p = 0; p < b->pieces.count; p++) { TRY(cones_list_faces(b, p, &faces)); int k[2]; for (int end = 0; end < 2; end++) { const kernel_faces surface = {b->places[end].data, faces.data, faces.count / 3}; starg_kernel_result r; TRY(kernel_find(b->context, &surface, &r)); k[end] = r.verdict == STARG_KERNEL_INTERIOR; } if (!k[0] || !k[1]) { double c[2][3] = {{0}}; for (size_t i = 0; i < faces.count; i++) for (int e = 0; e < 2; e++) vec3_along(c[e], 1.0 / (double)faces.count, cones_place_of(b, e, faces.data[i]), c[e]); fprintf(stderr, "piece %u faces %zu star %d %d at (%.2f %.2f %.2f) (%.2f %.2f %.2f)\n", p, faces.count / 3, k[0], k[1], c[0][0], c[0][1], c[0][2], c[1][0], c[1][1], c[1][2]); } }
-    if (DBG2) exit(0);
     bool done = false;
     *left = 1;
     for (uint32_t p = 0; p < b->pieces.count; p++) {
