@@ -38,6 +38,8 @@
 
 static const char STAGE[] = "solid map";
 enum { UNFOLD_STEPS = 2000, ROUNDS = 8, FEW = 40 };
+/* Faces that are looked at for cuts before another map of the surfaces is tried. */
+enum { LITTLE = 10000 };
 /* Ratios of singular values: from where they count as high, and what stands for more. */
 static const double HIGH = 10, HIGHEST = 1e300;
 /* In diagonals of B: how far the image of A's surface may be from it. */
@@ -341,14 +343,15 @@ static starg_status take_cones(compatible_cones *cones, deform_mesh *c, cone_lab
 }
 
 /* Pieces that are star-shaped in both ends, if they are found. */
-static starg_status spread_pieces(const starg_mesh *divided, const double *images, deform_mesh *c,
-                                  cone_labels *out) {
+static starg_status spread_pieces(const starg_mesh *divided, const double *images, size_t work,
+                                  deform_mesh *c, cone_labels *out) {
     starg_status status = STARG_OK;
     const compatible_surface surface = {.places = {divided->vertices, images},
                                         .vertex_count = divided->vertex_count,
                                         .count = divided->face_count,
                                         .faces = divided->faces,
-                                        .piece_count = 1};
+                                        .piece_count = 1,
+                                        .work = work};
     compatible_cones cones = {0};
     size_t left;
     STARG_TRY(compatible_fill(c->context, &surface, &cones, &left));
@@ -397,7 +400,7 @@ static starg_status spread_or_cut(const starg_morph *m, const starg_mesh *a, con
     count = c->tetrahedra.count / 4;
     if (inverted > 0 && wanted == ENDS_IN_SHAPE) {
         SCOPED_BY(deform_free) deform_mesh other = {.context = c->context};
-        TRY(spread_pieces(a, images, &other, cones));
+        TRY(spread_pieces(a, images, 0, &other, cones));
         const deform_mesh former = *c;
         *c = other;
         other = former;
@@ -491,10 +494,11 @@ static starg_status spread_cones(starg_context *context, const starg_mesh *a, co
         NEW_ZERO(context, STAGE, out->labels, c->tetrahedra.count / 4);
         out->count = 1;
     } else if (map->kind != STARG_MAP_SAME) {
-        if (map->kind == STARG_MAP_SPHERE && map->pair_count == 0)
+        TRY(spread_pieces(divided, second, LITTLE, c, out));
+        if (out->labels == NULL && map->kind == STARG_MAP_SPHERE && map->pair_count == 0)
             TRY(spread_limbs(a, b, c, out));
         if (out->labels == NULL)
-            TRY(spread_pieces(divided, second, c, out));
+            TRY(spread_pieces(divided, second, 0, c, out));
     }
     return STARG_OK;
 }

@@ -39,6 +39,7 @@ typedef struct compatible_surface {
     const uint32_t *sides; /* count x 2: the pieces before and behind a triangle, each bounded by a
                               sphere, or UINT32_MAX; NULL: all faces bound one piece, outward */
     size_t piece_count;    /* 1 without sides */
+    size_t work;           /* as many faces may be looked at for cuts; 0: by their number */
 } compatible_surface;
 
 /* Fills two solids, bounded by the same faces in two places, with the same tetrahedra, positive in

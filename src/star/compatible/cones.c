@@ -135,10 +135,10 @@ static starg_status divide(cone_builder *b, uint32_t which, const limits *outer,
 }
 
 /* Until all are done, or one resists: *left is 1. */
-static starg_status divide_all(cone_builder *b, size_t *left) {
+static starg_status divide_all(cone_builder *b, size_t work, size_t *left) {
     SCOPED number_list faces = {0};
     const size_t count = b->corners.count / 3;
-    const limits most = {SIZE_MAX, WORK_ALL * (count + EASY)};
+    const limits most = {SIZE_MAX, work > 0 ? work : WORK_ALL * (count + EASY)};
     bool done = false;
     *left = 1;
     for (uint32_t p = 0; p < b->pieces.count; p++) {
@@ -228,7 +228,7 @@ starg_status compatible_fill(starg_context *context, const compatible_surface *s
                       .rng = starg_rng_make(context->seed, 3, 0)};
     *out = (compatible_cones){0};
     STARG_TRY(begin(&b, surface));
-    STARG_TRY(divide_all(&b, left));
+    STARG_TRY(divide_all(&b, surface->work, left));
     if (*left == 0)
         STARG_TRY(finish(&b, out));
 done:
