@@ -84,8 +84,8 @@ typedef struct limb_cuts {
 
 /* Cuts both at pairs of limbs, alike, and then opens walls between pieces whose union is
  * star-shaped in both. Errors: MEMORY, CANCELLED. */
-starg_status limbs_cut(starg_context *context, const starg_mesh *const meshes[2],
-                       const limb_tree trees[2], const limb_pairs *pairs, limb_cuts *out);
+starg_status limbs_cut(starg_context *context, const limb_tree trees[2], const limb_pairs *pairs,
+                       limb_cuts *out);
 void limbs_free_cuts(limb_cuts *cuts);
 
 /* Divides edges of two paths, or loops, so that they have the same number of vertices, by their

@@ -610,13 +610,13 @@ static starg_status open_walls(limb_cuts *cuts, uint32_t *const labels[2], cut_p
 /* ---- all stages ---- */
 
 /* At all pairs of limbs, or once more at the places that are not open. */
-static starg_status cut_at_places(starg_context *context, const starg_mesh *const meshes[2],
-                                  limb_plan *plan, cut_places *places, limb_cuts *out) {
+static starg_status cut_at_places(starg_context *context, limb_plan *plan, cut_places *places,
+                                  limb_cuts *out) {
     const bool again = places->count > 0;
     limbs_free_cuts(out);
     *out = (limb_cuts){.context = context};
     for (int end = 0; end < 2; end++)
-        TRY(begin_side(context, meshes[end], &out->sides[end]));
+        TRY(begin_side(context, plan->trees[end].mesh, &out->sides[end]));
     plan->edges[0].count = plan->edges[1].count = 0;
     for (size_t i = 0; i < (again ? places->count : plan->pairs->count); i++) {
         TRY(starg_check_cancel(context, STAGE));
@@ -643,19 +643,19 @@ static starg_status part(limb_cuts *cuts, uint32_t *const labels[2]) {
     return STARG_OK;
 }
 
-starg_status limbs_cut(starg_context *context, const starg_mesh *const meshes[2],
-                       const limb_tree trees[2], const limb_pairs *pairs, limb_cuts *out) {
+starg_status limbs_cut(starg_context *context, const limb_tree trees[2], const limb_pairs *pairs,
+                       limb_cuts *out) {
     SCOPED_BY(free_limb_plan) limb_plan plan = {.trees = trees, .pairs = pairs};
     SCOPED cut_places places = {0};
     bool good = true;
     for (int end = 0; end < 2; end++) {
-        const starg_mesh *mesh = meshes[end];
+        const starg_mesh *mesh = trees[end].mesh;
         TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count,
                        &plan.surfaces[end]));
     }
     for (int round = 0; round < 2 && good; round++) {
         SCOPED uint32_t *first = NULL, *second = NULL;
-        TRY(cut_at_places(context, meshes, &plan, &places, out));
+        TRY(cut_at_places(context, &plan, &places, out));
         for (size_t i = 0; i < out->walls.count && round == 1; i++) {
             turn_loops(out, &out->walls.data[i]);
             TRY(limbs_match_paths(out, out->walls.data[i].loops, true));
