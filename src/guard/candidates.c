@@ -5,7 +5,7 @@
 
 #include "guard/proxy.h"
 #include "mesh/solid.h"
-#include "skeleton/medial.h"
+#include "skeleton/skeleton.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "candidates";

@@ -16,11 +16,10 @@
  * hooks into the rim of a cap; and a root that is no part of a limb is dropped.
  *
  * Cost: linear in practice; the search for an end is quadratic in the nodes within a hook. */
-#include "skeleton/prune.h"
+#include "skeleton/skeleton.h"
 
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
-#include "skeleton/ends.h"
 
 static const char STAGE[] = "pruning";
 
