@@ -22,12 +22,12 @@
  * which tends to the relaxation's solution.
  *
  * Invariant: replacing a column fixes its multiplier, and any multipliers within their bounds prove
- * something (weight_bound.h). The multipliers of each round are rounded to integers and evaluated
+ * something (weight_bound.c). The multipliers of each round are rounded to integers and evaluated
  * there exactly; no claim of Clp is trusted.
  *
  * Cost: a subgradient step takes the ones of the matrix, a round the simplex method on the added
  * columns, some hundreds of steps. */
-#include "cover/weight_bound.h"
+#include "cover/cover.h"
 
 #include <float.h>
 #include <limits.h>
