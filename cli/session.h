@@ -3,14 +3,15 @@
  * results and files, and the exit status. */
 #pragma once
 
-#include <jansson.h>
-#include <stdio.h>
-#include <sys/types.h>
-
 #include "options.h"
 #include "starguard/bits.h"
 #include "starguard/descriptor.h"
+#include "starguard/ranks.h"
 #include "starguard/tetra.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <sys/types.h>
 
 /* Capabilities of a terminal. */
 
@@ -345,3 +346,22 @@ typedef struct cli_amount {
     char text[64];
 } cli_amount;
 cli_amount cli_count_of(size_t count, const char *singular, const char *plural);
+
+/* ---- processes started by mpirun for one command (ranks_mpi.c, ranks_none.c) ---- */
+/* Rank 0 runs it, the others help (starguard/ranks.h). Without MPI, or if started directly, there
+ * is only this process. */
+
+/* Connects to the other processes; call it first. */
+void cli_ranks_begin(int *argc, char ***argv);
+
+/* The connection; NULL without other processes. */
+const starg_ranks *cli_ranks(void);
+
+/* Default number of threads: the processors available to this process. */
+int cli_ranks_threads(void);
+
+/* Runs a helper and returns its exit status. */
+int cli_ranks_serve(void);
+
+/* Ends the run of rank 0 with the given exit status, and returns it. */
+int cli_ranks_end(int result);
