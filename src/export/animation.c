@@ -13,8 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "export/glb.h"
-#include "export/little.h"
+#include "export/export.h"
 #include "mesh/single.h"
 
 static const char STAGE[] = "animation";

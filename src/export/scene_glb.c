@@ -11,9 +11,7 @@
  * are put. Cost: that of the output. */
 #include <math.h>
 
-#include "export/glb.h"
-#include "export/little.h"
-#include "export/scene.h"
+#include "export/export.h"
 #include "mesh/single.h"
 #include "starguard/picture.h"
 

@@ -12,8 +12,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "export/page_data.h"
-#include "export/scene.h"
+#include "export/export.h"
 #include "geometry/vec3.h"
 #include "guard/stages.h"
 #include "mesh/formats/io.h"

@@ -2,7 +2,7 @@
 /* Pictures of a sheet: the plan, and what is seen through each lens (export/sheet_pictures.c). */
 #pragma once
 
-#include "guard/tables.h"
+#include "guard/stages.h"
 #include "starguard/page.h"
 
 /* What is drawn. Faces of `shown` are the patches, columns of the table's rows. */

@@ -15,10 +15,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "export/features.h"
-#include "export/png.h"
-#include "export/raster.h"
-#include "export/scene.h"
+#include "export/export.h"
 #include "geometry/vec3.h"
 #include "guard/stages.h"
 #include "starguard/picture.h"

@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "guard/proxy.h"
 #include "mesh/solid.h"
 #include "skeleton/skeleton.h"
 #include "starguard/skeleton.h"

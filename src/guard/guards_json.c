@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/record.h"
-#include "guard/guards_fields.h"
+#include "guard/stages.h"
 #include "starguard/guard.h"
 
 static const char STAGE[] = "guards file";

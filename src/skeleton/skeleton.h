@@ -28,6 +28,7 @@ starg_status samples_create(starg_context *context, const starg_solid *solid, si
 void samples_free(surface_samples *samples);
 
 /* ---- samples as a changing mesh: halfedges with the attributes of samples (sample_mesh.c) ---- */
+
 typedef struct sample_mesh {
     starg_context *context;
     mesh_halfedges net;
@@ -83,6 +84,7 @@ starg_status conform_samples(starg_context *context, surface_samples *samples,
 void conformed_free(conformed *result);
 
 /* ---- labels: which Delaunay tetrahedra of samples lie inside the solid (label.c) ---- */
+
 typedef struct inside_labels {
     bool *inside;      /* per tetrahedron */
     bool *found;       /* per face of the samples: is it a face of tetrahedra? */
@@ -97,6 +99,7 @@ starg_status labels_create(starg_context *context, const starg_solid *solid,
 void labels_free(inside_labels *labels);
 
 /* ---- medial axis as maximal balls: Voronoi vertices of the surface's vertices (medial.c) ---- */
+
 typedef struct medial_ball {
     double centre[3];
     double radius; /* distance to its four vertices */
@@ -154,6 +157,7 @@ void complex_free(medial_complex *complex);
 starg_status contract_complex(starg_context *context, medial_complex *complex);
 
 /* ---- erosion of the complex to a graph (erosion.c) ---- */
+
 typedef struct erosion {
     bool *link_left;  /* per link: is it in the remaining graph? */
     double *values;   /* per edge: its medial geodesic function */
@@ -176,6 +180,7 @@ starg_status graph_repair_parts(starg_context *context, const medial_complex *co
                                 bool *link_left, bool *node_left, size_t wanted);
 
 /* ---- undirected graphs as adjacency lists (graph.c) ---- */
+
 typedef struct curve_graph {
     size_t node_count;
     uint32_t *first; /* neighbours of v: next[first[v] .. first[v + 1]) */
@@ -192,6 +197,7 @@ static inline uint32_t graph_degree(const curve_graph *graph, size_t v) {
 }
 
 /* ---- pruning: which branches of the graph are features (prune.c) ---- */
+
 typedef struct pruned_graph {
     bool *kept;
     uint32_t *owner; /* the kept node that represents each node; itself if kept */
