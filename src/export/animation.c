@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 #include "export/export.h"
-#include "mesh/single.h"
+#include "mesh/mesh.h"
 
 static const char STAGE[] = "animation";
 

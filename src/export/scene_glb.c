@@ -12,7 +12,7 @@
 #include <math.h>
 
 #include "export/export.h"
-#include "mesh/single.h"
+#include "mesh/mesh.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "scene";

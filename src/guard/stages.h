@@ -6,7 +6,6 @@
 #include "core/fields.h"
 #include "core/memory.h"
 #include "guard/candidates.h"
-#include "mesh/patches.h"
 #include "mesh/solid.h"
 #include "starguard/cover.h"
 #include "starguard/guard.h"

@@ -3,10 +3,12 @@
  * readers fill, and the functions of each format. */
 #pragma once
 
-#include <stdio.h>
-
 #include "core/file.h"
 #include "mesh/mesh.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
 
 #define STARG_MESH_FILE "mesh file" /* stage in messages */
 
@@ -170,8 +172,42 @@ typedef struct starg_mesh_extras {
 /* Writers. The caller checks for stream errors. */
 typedef void starg_mesh_writer(FILE *stream, const starg_mesh *mesh,
                                const starg_mesh_extras *extras);
-starg_mesh_writer starg_off_write, starg_obj_write, starg_ply_write_ascii, starg_ply_write_binary,
-    starg_stl_write_ascii, starg_stl_write_binary, starg_vtp_write;
+starg_mesh_writer starg_ply_write_ascii, starg_ply_write_binary, starg_stl_write_ascii,
+    starg_stl_write_binary, starg_vtp_write;
 
 /* True if `name` ends with `extension`, ignoring case. */
 bool starg_has_extension(const char *name, const char *extension);
+
+/* ---- welding: merges points at exactly equal positions (weld.c) ---- */
+
+typedef struct starg_weld {
+    starg_mesh_builder *builder;
+    uint32_t *slots; /* vertex + 1, or 0 for a free slot; open addressing, at most half full */
+    size_t size;     /* a power of two */
+} starg_weld;
+
+/* The builder's vertex at `point`, appended if it is new; vertices are in order of first
+ * appearance, and -0 equals 0. Errors: RANGE, MEMORY. */
+starg_status starg_weld_point(starg_weld *weld, const double point[3], starg_place place,
+                              uint32_t *vertex);
+void starg_weld_free(starg_weld *weld);
+
+/* ---- numbers as little-endian bytes ---- */
+
+static inline void pack_u32(unsigned char *bytes, uint32_t value) {
+    for (int i = 0; i < 4; i++)
+        bytes[i] = (unsigned char)(value >> 8 * i);
+}
+
+static inline void pack_f32(unsigned char *bytes, float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    pack_u32(bytes, bits);
+}
+
+static inline void pack_f64(unsigned char *bytes, double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    pack_u32(bytes, (uint32_t)bits);
+    pack_u32(bytes + 4, (uint32_t)(bits >> 32));
+}
