@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
-#include "core/record.h"
 #include "guard/stages.h"
 #include "starguard/guard.h"
 

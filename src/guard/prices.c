@@ -21,8 +21,8 @@
 
 #include <math.h>
 
+#include "core/compiler.h"
 #include "core/parallel.h"
-#include "core/versions.h"
 
 static const char STAGE[] = "search";
 

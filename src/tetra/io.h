@@ -2,7 +2,7 @@
 /* Shared by the readers of tetrahedral meshes: the builder, and numbers in text or binary data. */
 #pragma once
 
-#include "mesh/formats/numbers.h"
+#include "mesh/formats/scan.h"
 #include "tetra/tetmesh.h"
 
 /* A tetrahedral mesh under construction. Zero-initialize all but points.source. */

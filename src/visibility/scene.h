@@ -3,9 +3,9 @@
  * planes, and on which side of them a point lies. Immutable once made. */
 #pragma once
 
+#include "core/compiler.h"
 #include "core/parallel.h"
-#include "core/private.h"
-#include "geometry/sight_tree.h"
+#include "geometry/bvh.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "starguard/visibility.h"

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/int128.h"
+#include "core/compiler.h"
 #include "core/rng.h"
 #include "guard/prices.h"
 #include "models.h"
