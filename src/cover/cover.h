@@ -302,14 +302,6 @@ static inline uint64_t cover_largest_multiplier(const cover_instance *instance,
     return (instance->weights[column] << bound->shift) / instance->demands[column];
 }
 
-/* A scaled number, clamped to between 0 and the largest multiplier; 0 for NaN. */
-static inline uint64_t cover_near_multiplier(const cover_instance *instance,
-                                             const cover_weight_bound *bound, size_t column,
-                                             double value) {
-    uint64_t largest = cover_largest_multiplier(instance, bound, column);
-    return !(value > 0) ? 0 : value >= (double)largest ? largest : (uint64_t)value;
-}
-
 /* Bounds for `rows` rows and for the weight `goal`, from u(j) = w(j) / demand(j): the sum of the
  * heaviest rows. Errors: MEMORY. */
 starg_status cover_weight_bound_create(const cover_instance *instance, size_t rows, uint64_t goal,

@@ -86,6 +86,14 @@ static void relaxing_free(relaxing *relax) {
             relax->index, relax->ones);
 }
 
+/* A scaled number, clamped to between 0 and the largest multiplier; 0 for NaN. */
+static uint64_t cover_near_multiplier(const cover_instance *instance,
+                                      const cover_weight_bound *bound, size_t column,
+                                      double value) {
+    uint64_t largest = cover_largest_multiplier(instance, bound, column);
+    return !(value > 0) ? 0 : value >= (double)largest ? largest : (uint64_t)value;
+}
+
 /* Multipliers that decrease from full to 0 while h crosses the bend. */
 static void set_trial(const relaxing *relax) {
     const cover_instance *instance = relax->instance;

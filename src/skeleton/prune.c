@@ -102,6 +102,10 @@ static void measure_widths(pruner *p, const double *values) {
     level(p, p->widths);
 }
 
+static uint32_t graph_degree(const curve_graph *graph, size_t v) {
+    return graph->first[v + 1] - graph->first[v];
+}
+
 /* Visits the component of `start`; returns its largest ball if it is a tree, else EDGE_NONE.
  * `order` serves as the queue. */
 static uint32_t root_of_part(pruner *p, uint32_t start, bool *seen) {

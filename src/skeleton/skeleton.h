@@ -192,10 +192,6 @@ starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*
                           const bool *marked, size_t link_count, curve_graph *graph);
 void graph_free(curve_graph *graph);
 
-static inline uint32_t graph_degree(const curve_graph *graph, size_t v) {
-    return graph->first[v + 1] - graph->first[v];
-}
-
 /* ---- pruning: which branches of the graph are features (prune.c) ---- */
 
 typedef struct pruned_graph {
