@@ -78,7 +78,7 @@ extern const char DATABASE_SKETCHES[], DATABASE_INSERT_SKETCH[];
 starg_status database_store_sketch(starg_database *database, sqlite3_stmt *statement, int64_t model,
                                    starg_signature_kind kind, const uint8_t *bytes, size_t size);
 
-/* ---- text ---- */
+/* ---- text (database.c) ---- */
 
 /* Copies text to the context's memory; NULL when out of memory. */
 char *database_copy(starg_context *context, const char *text);

@@ -95,7 +95,7 @@ static inline void verify_add_tetrahedron(verify_volume *volume, const starg_pie
     verify_add_volume(volume, t, scale);
 }
 
-/* ---- the boundary and the model ---- */
+/* ---- the boundary and the model (boundary.c, nearness.c, enclosed.c) ---- */
 
 typedef struct verify_match {
     size_t equal;                     /* outer faces that are faces of the model as they are */
@@ -150,7 +150,7 @@ typedef struct verify_enclosed {
 starg_status verify_compare_enclosed(const verify_pieces *pieces, const verify_surface *model,
                                      double near, verify_enclosed *found);
 
-/* ---- star-shapedness ---- */
+/* ---- star-shapedness (claim_stars.c) ---- */
 
 typedef enum verify_proof {
     VERIFY_PROVEN = 0, /* the piece is star-shaped about its guard               */
@@ -168,7 +168,7 @@ typedef struct verify_certificate {
 starg_status verify_certify(const verify_pieces *pieces, const starg_pieces_report *report,
                             verify_certificate *certificates);
 
-/* ---- contacts ---- */
+/* ---- contacts (contacts.c) ---- */
 
 typedef struct verify_contacts {
     size_t wrong;           /* contacts listed wrongly, twice or not at all        */
@@ -180,7 +180,7 @@ typedef struct verify_contacts {
 starg_status verify_compare_contacts(const verify_pieces *pieces, const starg_pieces_report *report,
                                      verify_contacts *contacts);
 
-/* ---- vertices seen ---- */
+/* ---- vertices seen (seen.c) ---- */
 
 typedef struct verify_seen {
     size_t pairs;  /* of a piece and a vertex of it                            */
@@ -251,7 +251,7 @@ starg_status verify_claim_balls(const verify_context *own);
 starg_status verify_claim_path(starg_context *context, const starg_solid_map *map,
                                starg_verdict *verdict);
 
-/* ---- names of elements ---- */
+/* ---- names of elements (claim_tetrahedra.c) ---- */
 
 typedef struct verify_words {
     char text[96];
