@@ -11,7 +11,6 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "starguard/skeleton.h"
-#include "tables.h"
 
 static const struct {
     const char *word;

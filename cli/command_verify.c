@@ -7,7 +7,6 @@
 #include "commands.h"
 #include "scene.h"
 #include "starguard/verify.h"
-#include "tables.h"
 
 typedef struct values {
     bool verbose;

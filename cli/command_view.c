@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard view: writes a page that shows results. */
 #include "commands.h"
+#include "scene.h"
 #include "show.h"
-#include "tables.h"
 
 typedef struct values {
     const char *output, *model;

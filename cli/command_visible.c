@@ -11,7 +11,6 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "starguard/visibility.h"
-#include "tables.h"
 
 typedef struct values {
     starg_places from, boxes;

@@ -113,7 +113,7 @@ const cli_command *cli_command_find(const cli_command *const *table, const char 
 /* The last word of a command's name. */
 const char *cli_command_word(const cli_command *command);
 
-/* The help, generated from the table of commands and their options. */
+/* ---- the help, generated from the table of commands and their options (help.c) ---- */
 
 /* Texts about the program as a whole, for the help and the manual. */
 extern const char *const cli_summary;

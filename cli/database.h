@@ -8,7 +8,8 @@
 #include "starguard/database.h"
 #include "starguard/shape.h"
 
-/* Tables as comma-separated values (RFC 4180), reals with 17 significant digits. */
+/* ---- tables as comma-separated values (csv.c) ---- */
+/* RFC 4180, reals with 17 significant digits. */
 
 typedef struct cli_csv {
     cli_session *session;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "ranks.h"
+#include "session.h"
 #include "starguard/version.h"
 
 /* Ends a run that only printed text. */

@@ -12,7 +12,7 @@
 
 #include "starguard/fields.h"
 
-/* Strict number parsing: the whole word or nothing. */
+/* ---- strict number parsing: the whole word or nothing (options.c) ---- */
 
 /* A finite decimal number; no spaces, hexadecimal, "inf" or "nan". */
 bool cli_number_real(const char *word, double *value);
@@ -24,7 +24,7 @@ bool cli_number_list(const char *word, double *values, int count);
  * of a percent (within a double) keep their value. */
 double cli_percent(double fraction);
 
-/* Did you mean ...? Finds the name most similar to a mistyped word. */
+/* ---- did you mean ...? The name most similar to a mistyped word (options.c) ---- */
 
 typedef struct cli_suggestion {
     const char *word;

@@ -6,7 +6,7 @@
  *
  * MPI is initialized only if a launcher has started several processes; otherwise the program starts
  * as fast as any other build, and runs where MPI cannot. */
-#include "ranks.h"
+#include "session.h"
 
 #include <mpi.h>
 #include <sched.h>
@@ -14,8 +14,6 @@
 #include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
-
-#include "session.h"
 
 enum { TAG_SIZE = 1, TAG_BYTES = 2, PART = 1 << 30 };
 

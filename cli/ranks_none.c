@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A build without MPI: this process is alone. */
-#include "ranks.h"
+#include "session.h"
 
 void cli_ranks_begin(int *argc, char ***argv) {
     (void)argc, (void)argv;

@@ -7,8 +7,6 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "ranks.h"
-
 enum { LAYOUT = JSON_INDENT(1) | JSON_REAL_PRECISION(17) };
 
 void cli_report_begin(cli_session *session) {

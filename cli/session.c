@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "commands.h"
-#include "ranks.h"
 
 bool cli_terminal(FILE *stream) {
     const char *type = getenv("TERM");

@@ -3,16 +3,17 @@
  * results and files, and the exit status. */
 #pragma once
 
+#include "options.h"
+#include "starguard/bits.h"
+#include "starguard/descriptor.h"
+#include "starguard/ranks.h"
+#include "starguard/tetra.h"
+
 #include <jansson.h>
 #include <stdio.h>
 #include <sys/types.h>
 
-#include "options.h"
-#include "starguard/bits.h"
-#include "starguard/descriptor.h"
-#include "starguard/tetra.h"
-
-/* Capabilities of a terminal. */
+/* ---- capabilities of a terminal (session.c) ---- */
 
 typedef enum cli_style { CLI_BOLD, CLI_RED, CLI_GREEN, CLI_YELLOW } cli_style;
 
@@ -24,8 +25,9 @@ bool cli_terminal(FILE *stream);
 const char *cli_style_on(FILE *stream, cli_style style);
 const char *cli_style_off(FILE *stream);
 
-/* Progress of the library's stages: a bar, and the seconds of each stage. The bar is drawn on a
- * terminal (progress_terminal.c), or by the page that runs this program (web/progress_page.c). */
+/* ---- progress of the library's stages: a bar, and the seconds of each stage (session.c) ---- */
+/* The bar is drawn on a terminal (progress_terminal.c), or by the page that runs this program
+ * (web/progress_page.c). */
 
 enum { CLI_STAGES = 32 };
 
@@ -58,8 +60,9 @@ void cli_progress_draw(cli_progress *progress, const cli_stage *stage, const sta
 /* Erases the bar, so that a line can be written. */
 void cli_progress_erase(cli_progress *progress);
 
-/* Output files of a run. Each is first written under another name beside its target; all are
- * renamed together at the very end, so that a failing run changes nothing. */
+/* ---- output files of a run (outputs.c) ---- */
+/* Each is first written under another name beside its target; all are renamed together at the very
+ * end, so that a failing run changes nothing. */
 
 enum { CLI_OUTPUT_MESSAGE = 512 };
 
@@ -227,7 +230,8 @@ void cli_say_limited(cli_session *session);
 /* Same on standard error whatever the options are. */
 void cli_warn(cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* --json: one object on standard output. docs/formats.md describes the keys. */
+/* ---- --json: one object on standard output (report.c) ---- */
+/* docs/formats.md describes the keys. */
 
 /* Starts the report; all functions below do nothing without a report. */
 void cli_report_begin(cli_session *session);
@@ -268,7 +272,7 @@ starg_status cli_report_print(cli_session *session);
 /* Prints an error instead, unless a report has been printed. */
 void cli_report_error(cli_session *session, const starg_error *error, int exit_status);
 
-/* File extensions and their meaning. */
+/* ---- file extensions and their meaning (extensions.c) ---- */
 
 /* An extension with its dot, and its meaning. */
 typedef struct cli_extension {
@@ -293,7 +297,7 @@ starg_status cli_check_extensions(cli_session *session, const char *values);
 starg_status cli_announce_with_extension(cli_session *session, const char *option, const char *name,
                                          const char *extension);
 
-/* Reads and writes models and coloured models for several commands. */
+/* ---- models and coloured models, read and written for several commands (model.c) ---- */
 
 /* Reads the first operand into the session, and starts the report with it. */
 starg_status cli_input_read(cli_session *session);
@@ -345,3 +349,22 @@ typedef struct cli_amount {
     char text[64];
 } cli_amount;
 cli_amount cli_count_of(size_t count, const char *singular, const char *plural);
+
+/* ---- processes started by mpirun for one command (ranks_mpi.c, ranks_none.c) ---- */
+/* Rank 0 runs it, the others help (starguard/ranks.h). Without MPI, or if started directly, there
+ * is only this process. */
+
+/* Connects to the other processes; call it first. */
+void cli_ranks_begin(int *argc, char ***argv);
+
+/* The connection; NULL without other processes. */
+const starg_ranks *cli_ranks(void);
+
+/* Default number of threads: the processors available to this process. */
+int cli_ranks_threads(void);
+
+/* Runs a helper and returns its exit status. */
+int cli_ranks_serve(void);
+
+/* Ends the run of rank 0 with the given exit status, and returns it. */
+int cli_ranks_end(int result);

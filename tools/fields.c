@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "guard/guards_fields.h"
+#include "guard/stages.h"
 #include "morph/map.h"
 #include "shape/measures.h"
 #include "star/decomposition.h"

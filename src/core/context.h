@@ -5,7 +5,7 @@
 #include <stdarg.h>
 #include <stdatomic.h>
 
-#include "core/private.h"
+#include "core/compiler.h"
 #include "starguard/ranks.h"
 
 typedef struct starg_workers starg_workers; /* core/workers.c */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "core/ranks.h"
+#include "core/parallel.h"
 
 static const char STAGE[] = "ranks";
 

@@ -5,7 +5,7 @@
  * is strict: every key is checked against its type and range, so that reading a written file gives
  * the same struct, and writing that the same bytes. Members follow the order of the table; whether
  * one applies may depend on earlier ones. */
-#include "core/record.h"
+#include "core/json.h"
 
 #include <math.h>
 

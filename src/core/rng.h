@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#include "core/int128.h"
+#include "core/compiler.h"
 
 typedef struct starg_rng {
     uint64_t state;

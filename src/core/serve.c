@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Main loop of a helper: receives jobs, computes their blocks and replies, until END
- * (core/ranks.h). Each kind of work has a table of functions in its own folder and shares its code
- * with runs without helpers. */
-#include "core/ranks.h"
+ * (core/parallel.h). Each kind of work has a table of functions in its own folder and shares its
+ * code with runs without helpers. */
+#include "core/parallel.h"
 
 static const double PATIENCE = 0.05; /* seconds between checks for cancellation */
 

@@ -6,8 +6,9 @@
 
 #include "core/parallel.h"
 
-/* The threads of a context besides the calling one. They sleep between loops: searches run many
- * loops that take less time than the start of a thread. */
+/* ---- threads of a context besides the calling one (workers.c) ---- */
+/* They sleep between loops: searches run many loops that take less time than the start of a
+ * thread. */
 
 /* Lets up to `most` threads call run(argument), each once, until workers_end; fewer if they cannot
  * be started. *begun is false if the threads are in use already: nothing is to be ended then.
@@ -21,7 +22,7 @@ void workers_end(starg_context *context);
 /* Ends the threads. */
 void workers_free(starg_context *context);
 
-/* State that the threads of a parallel loop share. */
+/* ---- what the threads of a parallel loop share (parallel.c) ---- */
 
 typedef struct worker_group {
     starg_context *context;

@@ -10,13 +10,7 @@
  *
  * Invariant of a block: every cover with fewer rows than the best one consists of the forced rows
  * and a cover of the rest. */
-#include "cover/solve.h"
-
-#include "cover/greedy.h"
-#include "cover/ilp.h"
-#include "cover/local.h"
-#include "cover/reduce.h"
-#include "cover/relax.h"
+#include "cover/cover.h"
 
 /* Large programs are slow per node and even in their relaxation: runs with few nodes leave them to
  * the Lagrangian bound and the local search. */

@@ -2,9 +2,7 @@
 /* Public function: checks the problem, builds its working form, solves it for its target and, if
  * max_rows rows cannot reach that, for the most weight. */
 
-#include "cover/greedy.h"
-#include "cover/reduce.h"
-#include "cover/solve.h"
+#include "cover/cover.h"
 
 static const uint64_t WEIGHT_LIMIT = (uint64_t)1 << 62;
 

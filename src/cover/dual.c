@@ -1,5 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cover/dual.h"
+/* Lower bound on the size of full covers: the Lagrangian dual, in integers.
+ *
+ * For any multipliers u >= 0, one per column,
+ *     L(u) = sum_j demand(j) u(j) + sum_i min(0, 1 - sum of u over the columns of row i)
+ * is at most the size of every cover: a cover pays at least demand(j) u(j) for each column j.
+ * Multipliers are stored as integer multiples of 2^-20, so L is evaluated exactly however u was
+ * found, and L rounded up to a whole number of rows is a proven bound. */
+#include "cover/cover.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 /* Greedy set cover [Joh74] with lazy evaluation: needs never grow while rows are added, so a heap
  * of stale needs is enough: the top row is re-evaluated and either stays on top or sinks. Cost: one
  * pass over the ones of the matrix, then a few rows per choice. */
-#include "cover/greedy.h"
+#include "cover/cover.h"
 
 typedef struct heap_entry {
     uint64_t need;

@@ -22,10 +22,10 @@
  *
  * Correctness: coefficients and costs are 1, demands at most 1,000, so the model is exact in
  * doubles. Covers from CBC are checked on the bits. Gaps are first closed by our exact dual bound
- * (dual.h); otherwise CBC's statement that no better cover exists is accepted. If CBC did not
+ * (dual.c); otherwise CBC's statement that no better cover exists is accepted. If CBC did not
  * finish, its bound is rounded up only where it exceeds an integer by more than BOUND_MARGIN, far
  * above its tolerance of 1e-6. */
-#include "cover/ilp.h"
+#include "cover/cover.h"
 
 #include <limits.h>
 #include <math.h>
@@ -33,7 +33,6 @@
 #include <Cbc_C_Interface.h>
 
 #include "cover/exceptions.h"
-#include "cover/relax.h"
 #include "cover/solver.h"
 
 static const double BOUND_MARGIN = 1e-3;

@@ -2,7 +2,7 @@
 /* Swap search: each chosen row in turn is replaced by the row that covers most in its place, if
  * that gains. Every swap raises the covered weight, so the search terminates; rounds are limited
  * too. Cost of a round: chosen rows x the whole matrix, by words. */
-#include "cover/greedy.h"
+#include "cover/cover.h"
 
 enum { MOST_ROUNDS = 20 };
 

@@ -1,5 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cover/instance.h"
+/* Working form of a cover problem: only relevant columns, identical ones merged, with the bits by
+ * rows and by columns.
+ *
+ * Columns of weight 0 and columns in no row never count and are removed. Columns in the same rows
+ * with the same demand are covered together, so one column carries the sum of their weights. Both
+ * hold in every mode. Given rows lower the demands of their columns and are then left without
+ * columns. Cost: O(rows x columns / 64 + columns log columns). */
+#include "cover/cover.h"
 
 #include <stdlib.h>
 

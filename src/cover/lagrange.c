@@ -5,8 +5,7 @@
  * twice. */
 #include <stdlib.h>
 
-#include "cover/dual.h"
-#include "cover/greedy.h"
+#include "cover/cover.h"
 
 enum {
     MOST_STEPS = 400,

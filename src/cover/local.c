@@ -16,7 +16,7 @@
  *
  * Cost of a step: the ones of two rows, and the ones of the columns that change. The limits are
  * counts, so that the result is the same on every machine. */
-#include "cover/local.h"
+#include "cover/cover.h"
 
 #include "core/rng.h"
 

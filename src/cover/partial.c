@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A partial target, or a limit on the rows: bounds by weight_bound.h and the linear relaxation
- * (weight_relax.c), exact search by search.h. The fewest rows for a target are found by testing
+/* A partial target, or a limit on the rows: bounds by weight_bound.c and the linear relaxation
+ * (weight_relax.c), exact search by search.c. The fewest rows for a target are found by testing
  * each number of rows from the bound upwards, unless the matrix is so large that the search would
  * end in its first nodes. */
-#include "cover/solve.h"
-
-#include "cover/greedy.h"
-#include "cover/search.h"
+#include "cover/cover.h"
 
 /* More bits are not searched. */
 static const double MOST_SEARCHED = 0x1p28;

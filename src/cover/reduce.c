@@ -1,5 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cover/reduce.h"
+/* The paper's four reductions [YL11, 3.3], generalized to demands, and the modes in which they
+ * hold.
+ *
+ * A column j demands demand(j) of the rows that contain it; R(j) are these rows.
+ *
+ * (1) Essential rows: if demand(j) = |R(j)|, every cover takes all of R(j). Taking row i lowers the
+ *     demand of each of its columns by one; columns of demand 0 are covered. Holds for full covers;
+ *     with a partial target column j may stay uncovered.
+ * (2) Row dominance: let D be the largest demand among the columns of row i. If D other rows
+ *     contain all columns of i, then i is redundant: a choice with i either lacks one of these
+ *     rows, which can replace i, or has all D, which cover each column of i without it. With demand
+ *     1 this is the paper's rule; with larger demands the paper's rule would lose covers that need
+ *     both rows. No column gets uncovered, so it holds in every mode.
+ * (3) Column dominance: if R(a) is a subset of R(b) and demand(a) >= demand(b), covering a covers
+ *     b. So b is redundant for full covers; with a partial target its weight counts.
+ * (4) Blocks: connected components of rows and columns are separate problems for full covers; a
+ *     partial target or a limit on the rows couples them.
+ *
+ * Each rule is exact for any instance, so they can be applied in any order and combination. */
+#include "cover/cover.h"
 
 static size_t supply(const cover_instance *instance, size_t column) {
     return starg_bit_count(cover_column(instance, column), instance->column_words);

@@ -4,8 +4,8 @@
  * most violated columns round by round, warm-started from the last basis, until none is violated.
  *
  * Columns outside the model have multiplier 0, so the multipliers of any round are valid for all
- * columns; integer arithmetic determines what they prove (dual.h). */
-#include "cover/relax.h"
+ * columns; integer arithmetic determines what they prove (dual.c). */
+#include "cover/cover.h"
 
 #include <limits.h>
 #include <math.h>

@@ -4,11 +4,11 @@
  *   - need: the weight of the open columns of the row (a column that becomes covered is open and in
  *     an added row);
  *   - price: the sum of the root's multipliers over the row's open columns; the open columns then
- *     keep what they do not pay (see weight_bound.h, with demands lowered by the chosen rows).
+ *     keep what they do not pay (see weight_bound.c, with demands lowered by the chosen rows).
  * The tighter one sorts the candidates by decreasing score. Child t takes candidate t and excludes
  * those before it, so its bound is the node's base plus the scores t to t + left - 1: it decreases
  * with t, and the first child that cannot beat the incumbent ends the node. */
-#include "cover/search.h"
+#include "cover/cover.h"
 
 enum { STEPS_PER_NODE = 4096 };
 

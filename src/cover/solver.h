@@ -4,7 +4,7 @@
 
 #include <Clp_C_Interface.h>
 
-#include "cover/instance.h"
+#include "cover/cover.h"
 
 /* Takes the process-wide lock, without which two simultaneous solves fail silently; waits in slices
  * to check cancellation and the time limit. *held is false if the time limit came first, no lock is

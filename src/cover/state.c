@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cover/state.h"
+/* A changing choice of rows, and what each row would add or remove.
+ *
+ * Invariants: held[j] is the number of chosen rows that hold column j; the masks say open: held <
+ * demand, last: held == demand - 1 (one more row covers it), exact: held == demand (one row less
+ * uncovers it). Adding or removing a row costs O(ones of the row). */
+#include "cover/cover.h"
 
 starg_status cover_state_create(const cover_instance *instance, cover_state *out) {
     starg_status status = STARG_OK;

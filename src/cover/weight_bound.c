@@ -1,5 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cover/weight_bound.h"
+/* Upper bound on the weight that K rows can cover, in integers; conversely a lower bound on the
+ * rows needed for a weight.
+ *
+ * For any multipliers u >= 0, K rows cover at most
+ *     U(K, u) = sum_j max(0, w(j) - demand(j) u(j)) + the K largest sums of u over a row:
+ * a covered column pays demand(j) u(j) to its chosen rows and keeps the rest. So the smallest K
+ * with U(K, u) >= T is a proven lower bound for covering the weight T. Weights and multipliers are
+ * scaled by 2^shift, chosen so that the scaled weights sum to below 2^62. */
+#include "cover/cover.h"
 
 #include <stdlib.h>
 

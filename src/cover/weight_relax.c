@@ -22,12 +22,12 @@
  * which tends to the relaxation's solution.
  *
  * Invariant: replacing a column fixes its multiplier, and any multipliers within their bounds prove
- * something (weight_bound.h). The multipliers of each round are rounded to integers and evaluated
+ * something (weight_bound.c). The multipliers of each round are rounded to integers and evaluated
  * there exactly; no claim of Clp is trusted.
  *
  * Cost: a subgradient step takes the ones of the matrix, a round the simplex method on the added
  * columns, some hundreds of steps. */
-#include "cover/weight_bound.h"
+#include "cover/cover.h"
 
 #include <float.h>
 #include <limits.h>
@@ -84,6 +84,14 @@ static void relaxing_free(relaxing *relax) {
         Clp_deleteModel(relax->model);
     RELEASE(relax->inside, relax->kept, relax->columns, relax->cost, relax->held, relax->found,
             relax->index, relax->ones);
+}
+
+/* A scaled number, clamped to between 0 and the largest multiplier; 0 for NaN. */
+static uint64_t cover_near_multiplier(const cover_instance *instance,
+                                      const cover_weight_bound *bound, size_t column,
+                                      double value) {
+    uint64_t largest = cover_largest_multiplier(instance, bound, column);
+    return !(value > 0) ? 0 : value >= (double)largest ? largest : (uint64_t)value;
 }
 
 /* Multipliers that decrease from full to 0 while h crosses the bend. */

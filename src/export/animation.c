@@ -13,9 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "export/glb.h"
-#include "export/little.h"
-#include "mesh/single.h"
+#include "export/export.h"
+#include "mesh/mesh.h"
 
 static const char STAGE[] = "animation";
 

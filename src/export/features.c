@@ -6,7 +6,7 @@
  * sharp. A crease is an edge with a larger angle between its faces, or with a single face; creases
  * that continue at both ends are the feature lines. Vertices with very many faces (fan centres)
  * keep flat normals and have no lines, which bounds the cost to O(faces). */
-#include "export/features.h"
+#include "export/export.h"
 
 #include "geometry/vec3.h"
 

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Binary glTF 2.0: a 12-byte header, then two chunks, each with its length and its type; the JSON
  * is padded with blanks to a multiple of four bytes. */
-#include "export/glb.h"
+#include "export/export.h"
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "export/little.h"
 
 enum { HEADER = 12, CHUNK_HEADER = 8 };
 

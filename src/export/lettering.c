@@ -3,7 +3,7 @@
  * nearest stroke covers of it, so that any size and direction is smooth.
  *
  * Cost: O(pixels of a character's box x its segments). */
-#include "export/lettering.h"
+#include "export/export.h"
 
 #include <math.h>
 #include <string.h>

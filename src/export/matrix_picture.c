@@ -6,8 +6,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "export/lettering.h"
-#include "export/png.h"
+#include "export/export.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "picture";

@@ -3,7 +3,7 @@
  *
  * Nothing in a name can end such an element or begin a comment in it: the JSON is ASCII, and <, >
  * and &, which stand only inside its strings, are written as escapes. Base64 has none of them. */
-#include "export/page_data.h"
+#include "export/export.h"
 
 #include <float.h>
 #include <math.h>

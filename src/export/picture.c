@@ -9,11 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "export/features.h"
-#include "export/lettering.h"
-#include "export/png.h"
-#include "export/raster.h"
-#include "export/scene.h"
+#include "export/export.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 

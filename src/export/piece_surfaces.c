@@ -5,7 +5,7 @@
  * Faces are sorted by their corners, so that the two sides of a face are adjacent; pairs of one
  * label are removed. Counting sort orders the rest by pieces. The tetrahedra may be arbitrary as
  * long as indices are in range: unpaired faces are shown. Cost: O(n log n). */
-#include "export/piece_surfaces.h"
+#include "export/export.h"
 
 #include <stdlib.h>
 

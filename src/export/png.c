@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PNG, as far as pictures need it: 8-bit RGB, one IDAT chunk, every row with the Paeth filter
  * (other filters gain little on shaded surfaces over a plain background). */
-#include "export/png.h"
+#include "export/export.h"
 
 #include <stdlib.h>
 #include <zlib.h>

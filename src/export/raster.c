@@ -12,7 +12,7 @@
  * on one fixed side.
  *
  * A band depends only on the scene: the same bytes for any number of threads. */
-#include "export/raster.h"
+#include "export/export.h"
 
 #include "core/parallel.h"
 #include "geometry/vec3.h"

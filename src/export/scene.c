@@ -6,7 +6,7 @@
  * of the model learns which guard sees it first; the box of all that is shown gives the centre that
  * single precision counts from, and the size of what stands for a guard. Cost: that of the output,
  * and of sorting the faces of pieces. */
-#include "export/scene.h"
+#include "export/export.h"
 
 #include <math.h>
 

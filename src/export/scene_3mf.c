@@ -5,8 +5,7 @@
 #include <stdarg.h>
 #include <zlib.h>
 
-#include "export/little.h"
-#include "export/scene.h"
+#include "export/export.h"
 #include "mesh/formats/io.h"
 #include "starguard/picture.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "export/scene.h"
+#include "export/export.h"
 
 enum { FINENESS = 3 }; /* edges along an edge of the octahedron */
 

@@ -11,10 +11,8 @@
  * are put. Cost: that of the output. */
 #include <math.h>
 
-#include "export/glb.h"
-#include "export/little.h"
-#include "export/scene.h"
-#include "mesh/single.h"
+#include "export/export.h"
+#include "mesh/mesh.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "scene";

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as OBJ: an object for each part, whose vertices are numbered from 1 through the file. A
  * guard is a point element, the skeleton lines. */
-#include "export/scene.h"
+#include "export/export.h"
 #include "mesh/formats/io.h"
 
 static const char STAGE[] = "scene";

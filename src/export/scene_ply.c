@@ -4,8 +4,7 @@
  * those that look one way, nodes. */
 #include "core/file.h"
 #include "core/memory.h"
-#include "export/little.h"
-#include "export/scene.h"
+#include "export/export.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "scene";

@@ -2,7 +2,7 @@
 /* What shows where a camera looks: the sides of its cone or pyramid, from the guard as far as its
  * range or, if that is far, a tenth of what is shown. */
 
-#include "export/scene.h"
+#include "export/export.h"
 #include "geometry/vec3.h"
 #include "visibility/sensor.h"
 

@@ -8,8 +8,7 @@
  * sides of views (5), faces of obstacles (5), in this order. */
 #include "core/file.h"
 #include "core/memory.h"
-#include "export/little.h"
-#include "export/scene.h"
+#include "export/export.h"
 
 static const char STAGE[] = "scene";
 

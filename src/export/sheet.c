@@ -5,18 +5,17 @@
  * the page from top to bottom, each picture being drawn where it stands. All numbers are computed
  * from the poses anew. Names are text: what HTML could take for markup is escaped. Cost: that of
  * the pictures, and of the bits of all rows. */
-#include "export/sheet.h"
+#include "export/export.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "export/page_data.h"
-#include "export/scene.h"
 #include "geometry/vec3.h"
 #include "guard/stages.h"
 #include "mesh/formats/io.h"
+#include "starguard/page.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "sheet";

@@ -10,15 +10,11 @@
  * above the highest guard, such as a roof, is left out.
  *
  * Cost: that of the faces, and of the samples that they cover. */
-#include "export/sheet.h"
+#include "export/export.h"
 
 #include <math.h>
 
 #include "core/memory.h"
-#include "export/features.h"
-#include "export/png.h"
-#include "export/raster.h"
-#include "export/scene.h"
 #include "geometry/vec3.h"
 #include "guard/stages.h"
 #include "starguard/picture.h"

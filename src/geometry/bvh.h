@@ -95,7 +95,7 @@ uint32_t bvh_nearest_triangle(const bvh *tree, const double p[3])
 /* The point of the triangles nearest to p, rounded; p without triangles. */
 void bvh_nearest(const bvh *tree, const double p[3], double out[3]) STARG_PRIVATE(bvh_nearest);
 
-/* Generalized winding number: separates inside from outside even for surfaces with holes. */
+/* ---- winding number: inside and outside, even for surfaces with holes (winding.c) ---- */
 
 /* Far-field approximation of a node. */
 typedef struct winding_moment {
@@ -116,3 +116,20 @@ void winding_free(winding_field *field);
 /* Signed solid angle of all triangles seen from p over 4 pi: 1 inside a closed outward surface, 0
  * outside, fractional near holes. The approximation is off by about 0.01. */
 double winding_number(const winding_field *field, const double p[3]);
+
+/* ---- the same of eight boxes a node, for many single segments (sight_tree.c) ---- */
+
+typedef struct sight_tree sight_tree;
+
+/* Made from a tree, which must outlive it, for segments within a box that contains the tree.
+ * Errors: MEMORY. */
+starg_status sight_tree_create(starg_context *context, const bvh *tree, const bvh_box *all,
+                               sight_tree **out);
+void sight_tree_free(sight_tree *tree);
+STARG_DROP(sight_tree, sight_tree)
+
+/* Calls visit with the rank of every triangle that the segment p q may meet, those near p first as
+ * far as boxes tell, until it returns false; returns false exactly if visit did. p and q lie in
+ * the box. */
+bool sight_tree_query(const sight_tree *tree, const double p[3], const double q[3],
+                      bvh_visit_rank *visit, void *user);

@@ -8,7 +8,7 @@
  * of 2^depth times all coordinates. Where the doubles are the point, they are used alone. */
 #pragma once
 
-#include "core/private.h"
+#include "core/compiler.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "core/int128.h"
+#include "core/compiler.h"
 
 /* A double as mantissa x 2^exponent with an odd mantissa; false for zero. */
 static bool split(double value, uint64_t *mantissa, int *exponent) {

@@ -2,7 +2,7 @@
 /* Intersections of segments, triangles and points; all degenerate cases are decided exactly. */
 #pragma once
 
-#include "core/private.h"
+#include "core/compiler.h"
 
 #include <stdbool.h>
 

@@ -6,9 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/private.h"
+#include "core/compiler.h"
 
-/* Linear programs with up to four variables and many constraints. */
+/* ---- linear programs with up to four variables and many constraints (linear_program.c) ---- */
 
 enum { LINEAR_PROGRAM_MOST = 4 };
 
@@ -42,7 +42,7 @@ void linear_program_solve(const linear_program *program, uint32_t *order,
                           const linear_solution *start, linear_solution *solution)
     STARG_PRIVATE(linear_program_solve);
 
-/* Proofs that half-spaces have no common point. */
+/* ---- proofs that half-spaces have no common point (half_spaces.c) ---- */
 
 enum { HALF_SPACES_MOST = 4 };
 
@@ -64,7 +64,7 @@ bool half_spaces_apart_in_box(const half_space *spaces, const double *weights, i
  * some four have none. */
 bool half_spaces_apart(const half_space *spaces, int count);
 
-/* Largest ball in an intersection of half-spaces that are added one by one. */
+/* ---- largest ball in half-spaces that are added one by one (largest_ball.c) ---- */
 
 /* Name of the initial half-spaces, which are not the caller's. */
 #define LARGEST_BALL_FAR UINT32_MAX

@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-#include "core/int128.h"
+#include "core/compiler.h"
 #include "geometry/exact.h"
 
 static const double EPSILON = 0x1p-53; /* unit roundoff */

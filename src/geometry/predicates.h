@@ -7,7 +7,7 @@
  * Pure functions; any thread. */
 #pragma once
 
-#include "core/private.h"
+#include "core/compiler.h"
 
 #include <stdbool.h>
 

@@ -14,11 +14,11 @@
  * nothing: predicates decide about triangles.
  *
  * Cost: O(n) to build, O(log n) for a segment that few boxes hold. */
-#include "geometry/sight_tree.h"
+#include "geometry/bvh.h"
 
 #include <math.h>
 
-#include "core/versions.h"
+#include "core/compiler.h"
 
 enum { WIDTH = 8, LEAF = 4, MOST_STACK = 8 * 64 };
 

@@ -2,7 +2,7 @@
 /* How a linear map stretches space. */
 #pragma once
 
-#include "core/private.h"
+#include "core/compiler.h"
 
 /* The singular values, descending, of the linear map that takes the columns of `from` to those of
  * `to`: from[i] and to[i] are vectors, and det(from) is not 0. Rounded. */

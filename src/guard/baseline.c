@@ -13,7 +13,7 @@
  *      none is left. Signs of angles are exact (compare_parallax).
  *
  * Cost: a round visits every candidate and guard of MOST_FACES faces. */
-#include "guard/baseline.h"
+#include "guard/stages.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 /* The bound of a search, in integers: however floating point found the prices, this sum and this
  * maximum are exact. No row is worth more than 1, so that no price is; any below BOUND_HIGHEST is
  * used as it is, and so low no sum overflows. */
-#include "guard/bound.h"
+#include "guard/prices.h"
 
 static const char STAGE[] = "search";
 

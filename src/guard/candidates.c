@@ -3,9 +3,8 @@
 
 #include <math.h>
 
-#include "guard/proxy.h"
 #include "mesh/solid.h"
-#include "skeleton/medial.h"
+#include "skeleton/skeleton.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "candidates";

@@ -8,7 +8,7 @@
  * open.
  * Cost: a box test for each vertex that is asked about, about 10 sight lines for each vertex that
  * the box sees. */
-#include "guard/cell_tests.h"
+#include "guard/cells.h"
 
 #include "core/rng.h"
 #include "core/streams.h"

@@ -10,9 +10,8 @@
  * in no job.
  * Cost: 200 bytes a box and way, and per helper what visibility/rows_remote.c says of the solid. */
 #include "core/context.h"
-#include "guard/cell_tests.h"
 #include "guard/cells.h"
-#include "visibility/rows.h"
+#include "visibility/scene.h"
 
 static const char STAGE[] = "search";
 

@@ -15,7 +15,6 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "guard/cell_tests.h"
 
 static const char STAGE[] = "search";
 

@@ -12,7 +12,7 @@
  *
  * Invariant: a leaf may see exactly the witnesses that no reason of it or of an ancestor removes.
  * Cost: about that of the search's box tests that ended in "hidden". */
-#include "guard/certificate.h"
+#include "guard/prices.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@
 #include "core/checksum.h"
 #include "core/file.h"
 #include "core/parallel.h"
-#include "guard/cell_tests.h"
+#include "guard/cells.h"
 
 static const char STAGE[] = "certificate";
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "guard/choose.h"
+#include "guard/stages.h"
 
 #include <math.h>
 

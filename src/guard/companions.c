@@ -12,7 +12,7 @@
 #include "core/rng.h"
 #include "core/streams.h"
 #include "geometry/vec3.h"
-#include "guard/pool.h"
+#include "guard/candidates.h"
 
 static const char STAGE[] = "guard";
 

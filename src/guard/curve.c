@@ -12,7 +12,6 @@
 
 #include "core/file.h"
 #include "core/json.h"
-#include "guard/keep.h"
 #include "guard/stages.h"
 
 static const char STAGE[] = "curve";

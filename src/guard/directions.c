@@ -25,7 +25,6 @@
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
-#include "visibility/rows.h"
 #include "visibility/scene.h"
 
 enum {

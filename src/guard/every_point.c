@@ -22,8 +22,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "guard/certificate.h"
-#include "guard/patched.h"
+#include "guard/prices.h"
 #include "guard/stages.h"
 #include "visibility/sensor.h"
 

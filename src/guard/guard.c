@@ -15,12 +15,9 @@
 #include <stdio.h>
 
 #include "core/fields.h"
-#include "guard/baseline.h"
-#include "guard/certificate.h"
+#include "guard/candidates.h"
 #include "guard/corners.h"
-#include "guard/keep.h"
-#include "guard/patched.h"
-#include "guard/proxy.h"
+#include "guard/prices.h"
 #include "guard/stages.h"
 #include "mesh/examine.h"
 #include "starguard/kernel.h"
@@ -456,6 +453,12 @@ done:
     return status;
 }
 
+static void records_free(starg_context *context, guard_records *records) {
+    for (size_t i = 0; i < records->count; i++)
+        starg_release(context, records->data[i].positions);
+    STARG_ARRAY_FREE(context, records);
+}
+
 void outcome_free(starg_context *context, guard_outcome *outcome) {
     records_free(context, &outcome->records);
     selection_free(&outcome->selection);
@@ -752,12 +755,6 @@ done:
     outcome_free(context, &outcome);
     column_weights_free(&problem.weights);
     return status;
-}
-
-void records_free(starg_context *context, guard_records *records) {
-    for (size_t i = 0; i < records->count; i++)
-        starg_release(context, records->data[i].positions);
-    STARG_ARRAY_FREE(context, records);
 }
 
 void starg_guards_free(starg_context *context, starg_guards *guards) {

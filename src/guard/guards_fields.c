@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Guard options and GUARDS.json as tables (starguard/fields.h): the only place with their names,
  * ranges and descriptions. Rows are in the order of the file. */
-#include "guard/guards_fields.h"
-#include "guard/bound.h"
+#include "guard/prices.h"
+#include "guard/stages.h"
 
 #include "starguard/guard.h"
 #include "visibility/fields.h"

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
-#include "core/record.h"
-#include "guard/guards_fields.h"
+#include "guard/stages.h"
 #include "starguard/guard.h"
 
 static const char STAGE[] = "guards file";

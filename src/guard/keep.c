@@ -12,11 +12,10 @@
  * the needs one by one, and there is neither refinement nor a proof, which count alike for all.
  *
  * Cost: the rows of the guards that stay. */
-#include "guard/keep.h"
+#include "guard/stages.h"
 
 #include <math.h>
 
-#include "visibility/rows.h"
 #include "visibility/scene.h"
 
 static const char STAGE[] = "guard";
@@ -29,7 +28,8 @@ static bool sees_vertices(const guard_problem *problem) {
     return problem->options->visibility.target == STARG_TARGET_VERTICES;
 }
 
-uint32_t keep_times(const guard_problem *problem, size_t column) {
+/* How many guards must see a column, those that stay among them. */
+static uint32_t keep_times(const guard_problem *problem, size_t column) {
     const starg_solid *solid = problem->solid;
     if (solid->times == NULL || sees_vertices(problem))
         return problem->options->redundancy;

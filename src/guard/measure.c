@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The result: what a set of guards sees, recomputed from their positions. */
 #include "geometry/vec3.h"
-#include "guard/baseline.h"
-#include "guard/keep.h"
 #include "guard/stages.h"
 #include "visibility/scene.h"
 

@@ -10,7 +10,7 @@
  *
  * Only witnesses with a price and rows with a share matter. Cost: n^3 / 6 comparisons for n such
  * witnesses, some 10^6; for each set that grows the squares of n and of the rows' sizes. */
-#include "guard/odd_sets.h"
+#include "guard/prices.h"
 
 #include <math.h>
 #include <stdlib.h>

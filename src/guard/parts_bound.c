@@ -3,7 +3,6 @@
  * many as must see a face, and one more if its kernel has no interior (visibility/kernel.h). What
  * must be seen is what enough candidates see. Cost: O(n) for each candidate, and a linear program
  * for each part. */
-#include "guard/keep.h"
 #include "guard/stages.h"
 #include "visibility/kernel.h"
 

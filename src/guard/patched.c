@@ -5,7 +5,7 @@
  * by several guards, a part by each. The edges of parts are then at most a share of the diagonal,
  * of the range, and of how wide a view is at that distance; twice as long, as often as it takes, if
  * that would be too many parts. A surface that is finer stays as it is. */
-#include "guard/patched.h"
+#include "guard/stages.h"
 
 #include <math.h>
 

@@ -21,7 +21,7 @@
  * Which guards see a corner is asked once and handed down, as bits. Faces are independent of each
  * other. Cost: a sight line for each guard and halving, and a query of the tree for each guard that
  * sees all corners of a part. */
-#include "guard/point_coverage.h"
+#include "guard/stages.h"
 
 #include <math.h>
 

@@ -8,7 +8,6 @@
 #include "core/file.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
-#include "guard/poses_read.h"
 #include "mesh/formats/scan.h"
 #include "starguard/skeleton.h"
 

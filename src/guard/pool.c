@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "guard/pool.h"
+#include "guard/candidates.h"
 
-#include "visibility/rows.h"
 #include "visibility/scene.h"
 
 static const char STAGE[] = "guard";

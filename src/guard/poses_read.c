@@ -5,14 +5,13 @@
  * A rotation turns a camera that looks along -z with y up. A camera of a scene stands where the
  * transforms of its node and of all nodes above it put it; its axes are unit vectors again whatever
  * their scales. Cost: linear in the file, and in the depth of each camera's node. */
-#include "guard/poses_read.h"
+#include "guard/candidates.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "core/json.h"
 #include "geometry/vec3.h"
-#include "guard/candidates.h"
 #include "mesh/formats/scan.h"
 
 static const char STAGE[] = "points file";

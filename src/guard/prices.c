@@ -2,7 +2,7 @@
 /* Prices of witnesses: the linear program max sum w, sum of w over each row <= 1, w >= 0, and its
  * dual, the fractional cover min sum x, sum of x over the rows of each witness >= 1, x >= 0.
  *
- * Odd sets (guard/odd_sets.h) are further witnesses: a row holds as much of one as it holds halves,
+ * Odd sets (guard/odd_sets.c) are further witnesses: a row holds as much of one as it holds halves,
  * divided by the halves that all rows together hold at least. So all coefficients are at most 1.
  *
  * A primal-dual interior-point method. It ends near the centre of the optimal prices, while the
@@ -21,8 +21,8 @@
 
 #include <math.h>
 
+#include "core/compiler.h"
 #include "core/parallel.h"
-#include "core/versions.h"
 
 static const char STAGE[] = "search";
 
@@ -63,6 +63,11 @@ static void program_free(program *p) {
     RELEASE(p->w);
     RELEASE(p->matrix);
     RELEASE(p->first);
+}
+
+/* Half of the number, rounded up: what all rows of a cover sum to at least. */
+static unsigned odd_set_need(const odd_set *set) {
+    return (set->count + 1U) / 2;
 }
 
 /* Appends the columns of a row; returns their end. */

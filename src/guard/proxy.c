@@ -2,7 +2,7 @@
 /* Proxy level: a large model takes its medial axis from a level of detail, the coarsest that has
  * enough vertices, because more than a few thousand points add nothing. Cost: that of the
  * levels. */
-#include "guard/proxy.h"
+#include "guard/candidates.h"
 
 #include "starguard/guard.h"
 

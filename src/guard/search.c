@@ -20,7 +20,7 @@
  * required. All budgets count operations, so nothing depends on threads. */
 #include <math.h>
 
-#include "guard/certificate.h"
+#include "guard/prices.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";

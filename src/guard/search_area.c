@@ -19,7 +19,6 @@
 
 #include "core/parallel.h"
 #include "guard/candidates.h"
-#include "guard/cell_tests.h"
 #include "guard/cells.h"
 #include "guard/stages.h"
 

@@ -39,7 +39,7 @@ void witness_set_end(witness_set *set);
 /* The faces that the fewest candidates see become witnesses. */
 starg_status search_first_witnesses(search *s);
 
-/* ---- point set: where guards may stand (guard/search_points.c, with guard/search_scene.h) ---- */
+/* ---- point set: where guards may stand (guard/search_points.c, with guard/search_scene.c) ---- */
 
 /* Candidates, and the medial axis unless they stand there, views are cones, or time is short. */
 starg_status points_begin(const guard_problem *problem, const guard_detail *detail,

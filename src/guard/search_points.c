@@ -9,7 +9,7 @@
  * new witness; pruning compares each new point with all. */
 #include "core/parallel.h"
 #include "geometry/vec3.h"
-#include "guard/bound.h"
+#include "guard/prices.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";

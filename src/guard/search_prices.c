@@ -11,7 +11,7 @@
  *
  * The program starts with rows of high value at the previous prices, and without witnesses that had
  * no price; a row left out is added once it exceeds 1, a witness once the cover holds too little of
- * it. Odd sets of witnesses (guard/odd_sets.h) have prices like witnesses. */
+ * it. Odd sets of witnesses (guard/odd_sets.c) have prices like witnesses. */
 #include <math.h>
 
 #include "geometry/vec3.h"
@@ -40,6 +40,15 @@ static bool is_fine(const search_duals *d, const search_cell *leaf) {
 }
 
 /* ---- lists of rows ---- */
+
+/* Is every witness of `a` in `b`, of those in `among`? */
+static bool row_is_within_among(const witness_row *a, const witness_row *b,
+                                const witness_row *among) {
+    uint64_t outside = 0;
+    for (int w = 0; w < WITNESS_WORDS; w++)
+        outside |= a->bits[w] & among->bits[w] & ~b->bits[w];
+    return outside == 0;
+}
 
 bool row_list_holds(const row_list *list, const witness_row *row, const witness_row *among) {
     for (size_t k = 0; k < list->count; k++)

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "guard/certificate.h"
+#include "guard/prices.h"
 #include "guard/search_parts.h"
 #include "starguard/cover.h"
 

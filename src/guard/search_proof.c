@@ -10,7 +10,7 @@
  *      of high price and large size, for as long as the prices took; add their points. Small cells
  *      are not split, but count as points in the prices (guard/search_prices.c);
  *   4. if there are no such cells, the prices prove the bound (guard/bound.c). If the bound is
- *      below the number of guards, odd sets of witnesses get prices (guard/odd_sets.h), and smaller
+ *      below the number of guards, odd sets of witnesses get prices (guard/odd_sets.c), and smaller
  *      cells are split as well; by turns faces that the fractional cover does not see enough become
  *      witnesses;
  *   5. if there are no such faces either, solve an integer program over cells and points: cells
@@ -21,7 +21,7 @@
  * work never proves less. Cost: guard/search.c counts it. */
 #include <math.h>
 
-#include "guard/certificate.h"
+#include "guard/prices.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";

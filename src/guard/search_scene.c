@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The scene of a search, and what its points see. */
-#include "guard/search_scene.h"
+#include "guard/cells.h"
 
 #include <math.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "visibility/rows.h"
+#include "visibility/scene.h"
 
 static const char STAGE[] = "search";
 

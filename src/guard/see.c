@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Restores a result: its scene, and what each guard sees there. */
-#include "guard/patched.h"
 #include "guard/stages.h"
 
 static const char STAGE[] = "guards";

@@ -14,7 +14,6 @@
 #include "core/file.h"
 #include "geometry/vec3.h"
 #include "guard/stages.h"
-#include "guard/tables.h"
 #include "visibility/sensor.h"
 
 static const char STAGE[] = "table";

@@ -20,8 +20,7 @@
 
 #include "core/fields.h"
 #include "core/parallel.h"
-#include "guard/pool.h"
-#include "guard/proxy.h"
+#include "guard/candidates.h"
 #include "guard/stages.h"
 #include "mesh/solid.h"
 #include "visibility/box.h"

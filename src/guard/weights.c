@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "guard/weights.h"
+/* Weights of a pool's columns: a coverage below 1 refers to area, so each face weighs its share of
+ * the total area in units of 2^-40, at least one, because the cover works on integers; vertices
+ * weigh one unit each. Importance weights of faces (starg_space_weigh) multiply their areas; what
+ * is not a target weighs nothing. */
+#include "guard/candidates.h"
 
 #include <math.h>
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "visibility/rows.h"
+#include "visibility/scene.h"
 
 static const char STAGE[] = "guard";
 

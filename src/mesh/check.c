@@ -15,7 +15,6 @@
 
 #include "geometry/predicates.h"
 #include "mesh/examine.h"
-#include "mesh/grid.h"
 
 typedef struct checker {
     starg_context *context;

@@ -3,11 +3,12 @@
 #pragma once
 
 #include "geometry/bvh.h"
+#include "mesh/mesh.h"
 #include "mesh/topology.h"
 #include "starguard/check.h"
 
-/* Nesting of the closed shells of a mesh, and which of them must be reversed so that all faces
- * point out of the solid. */
+/* ---- nesting of closed shells, and which of them must be reversed (shells.c) ---- */
+/* So that all faces point out of the solid. */
 
 typedef struct mesh_shell {
     uint32_t first_face;
@@ -29,7 +30,7 @@ starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
                              const mesh_topology *topology, const bvh *tree,
                              const uint8_t *touching, mesh_shell *shells);
 
-/* Pairs of faces that may meet. */
+/* ---- pairs of faces that may meet (pairs.c) ---- */
 
 /* Calls visit(a, b) at most once for each unordered pair of faces, for all pairs that have a point
  * in common beside a common corner, and some others; false ends the visit. `tree` is that of the
@@ -59,3 +60,10 @@ void mesh_examination_free(mesh_examination *examination);
 static inline void starg_check_drop(starg_check **check) {
     starg_check_free(NULL, *check);
 }
+
+/* ---- the grid on which coordinates lie (grid.c) ---- */
+
+/* Sets the grid, by axis the largest power of two or of ten of which all coordinates are multiples
+ * (0 if all are 0), the shortest edge, and whether the grid is coarse for edges as short, as
+ * rounding far from the origin leaves it. */
+void check_steps(const starg_mesh *mesh, starg_check *check);

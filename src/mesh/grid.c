@@ -10,7 +10,7 @@
  * and the digits went to the distance from the origin: a model of few steps about the origin was
  * drawn so. Cost: linear.
  */
-#include "mesh/grid.h"
+#include "mesh/examine.h"
 
 #include <math.h>
 

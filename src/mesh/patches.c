@@ -11,7 +11,7 @@
  * (patch_longest_edge), so that the parts are the same everywhere.
  *
  * Cost: O(patches). */
-#include "mesh/patches.h"
+#include "mesh/solid.h"
 
 #include <stdlib.h>
 

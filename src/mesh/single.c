@@ -12,7 +12,7 @@
  *
  * Invariant: what passes has the same contacts of faces as before. Decisions on areas and contacts
  * are exact. Cost: linear if nothing moves, otherwise that of finding pairs of faces that meet. */
-#include "mesh/single.h"
+#include "mesh/mesh.h"
 
 #include <float.h>
 #include <math.h>

@@ -5,7 +5,6 @@
 
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
-#include "mesh/grid.h"
 
 /* Findings that rule out a solid, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {

@@ -9,14 +9,13 @@
  * lies in one of the second. It meets the surface of a mesh only if that is no farther from its
  * centre than half its diagonal; else all of it is where its centre is. Distances are rounded, for
  * which a millionth is more than enough. Cost: typically O(log n) for each mesh. */
-#include "mesh/zones.h"
+#include "mesh/solid.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/solid.h"
 
 static const char STAGE[] = "scene";
 

@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "core/file.h"
-#include "core/record.h"
+#include "core/json.h"
 #include "mesh/mesh.h"
 #include "morph/map.h"
 

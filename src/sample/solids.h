@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.h"
 
-/* Numbers 64-bit keys in order of first insertion. */
+/* ---- numbers for 64-bit keys, in order of first insertion (builder.c) ---- */
 
 /* All zero when empty. Open addressing over a power of two of slots, at most half full. */
 typedef struct key_map {
@@ -21,8 +21,9 @@ starg_status key_map_add(starg_context *context, key_map *map, uint64_t key, uin
 uint32_t key_map_find(const key_map *map, uint64_t key);
 void key_map_free(key_map *map);
 
-/* A mesh under construction: vertices are identified by keys, so that separate patches share the
- * vertices on their common borders. */
+/* ---- a mesh under construction (builder.c) ---- */
+/* Vertices are identified by keys, so that separate patches share the vertices on their common
+ * borders. */
 
 /* All zero when empty, except for the context. */
 typedef struct mesh_builder {
@@ -42,8 +43,9 @@ starg_status builder_quad(mesh_builder *builder, uint32_t a, uint32_t b, uint32_
 starg_status builder_finish(mesh_builder *builder, starg_mesh **out);
 void builder_free(mesh_builder *builder);
 
-/* A solid as an implicit function, negative inside: the smooth union of round cones and of outlines
- * that are revolved or extruded, less those that are carved. */
+/* ---- a solid as an implicit function, negative inside (implicit.c) ---- */
+/* The smooth union of round cones and of outlines that are revolved or extruded, less those that
+ * are carved. */
 
 enum { IMPLICIT_MAX_OUTLINE = 64 };
 
@@ -95,27 +97,27 @@ void implicit_project(const implicit_field *field, double p[3], int steps, doubl
 /* A box that contains the surface. */
 void implicit_bounds(const implicit_field *field, double lower[3], double upper[3]);
 
-/* Meshes the zero set of an implicit field by marching tetrahedra. */
+/* ---- the zero set of an implicit field as a mesh, by marching tetrahedra (isosurface.c) ---- */
 
 /* Fills `builder` with a closed 2-manifold, outward oriented, from cells of side `spacing`; its
  * triangles may be thin. Errors: MEMORY, CANCELLED. */
 starg_status isosurface_extract(const implicit_field *field, double spacing, mesh_builder *builder);
 
-/* Turns the raw triangles of an isosurface into well-shaped ones, with a wanted vertex count. */
+/* ---- well-shaped triangles for the raw ones of an isosurface (remesh.c) ---- */
 
 /* Coarsens `raw`, a closed 2-manifold on the zero set of `field`, to `vertex_count` vertices (more
  * if no further edge can be collapsed) and improves its triangles. Errors: MEMORY, CANCELLED. */
 starg_status remesh_isosurface(starg_context *context, const implicit_field *field,
                                const starg_mesh *raw, size_t vertex_count, starg_mesh **out);
 
-/* Smooths folds that skinning makes on the inner side of a joint. */
+/* ---- folds that skinning makes on the inner side of a joint, smoothed (unfold.c) ---- */
 
 /* Moves vertices of `posed` near folded or squeezed faces, unless the same faces are so in `rest`
  * (of the same connectivity). Errors: MEMORY, CANCELLED. */
 starg_status unfold_mesh(starg_context *context, const starg_mesh *rest, starg_mesh *posed);
 
-/* Families of man-made things: members of random proportions, built of revolved and extruded
- * outlines and round cones. */
+/* ---- families of man-made things (ware.c) ---- */
+/* Members of random proportions, built of revolved and extruded outlines and round cones. */
 
 typedef enum ware_kind { WARE_VASE, WARE_BUST, WARE_BEARING, WARE_TABLE, WARE_TOOL } ware_kind;
 
@@ -131,7 +133,7 @@ typedef struct ware {
 /* Builds a member, 0 to WARE_MEMBERS - 1; the parts point into *out, which is not to be moved. */
 void ware_build(ware_kind kind, int member, ware *out);
 
-/* An articulated figure: joints, the solid around them, and poses. */
+/* ---- an articulated figure: joints, the solid around them, and poses (figure.c) ---- */
 
 enum { FIGURE_MAX_JOINTS = 40, FIGURE_MAX_TURNS = 160, FIGURE_POSES = 5 };
 
@@ -166,15 +168,16 @@ typedef enum figure_kind {
 
 void figure_build(figure_kind kind, figure *out);
 
-/* Bends a mesh with the joints of a figure. */
+/* ---- a mesh bent with the joints of a figure (skin.c) ---- */
 
 /* Moves `vertices` (count x 3, on the figure's surface in its rest pose) into a pose.
  * Errors: MEMORY, CANCELLED. */
 starg_status skin_pose(starg_context *context, const figure *f, int pose, double *vertices,
                        size_t count);
 
-/* The families of solids in the catalogue. Each takes the wanted number of vertices and comes as
- * close to it as its structure allows. Errors: MEMORY, CANCELLED. */
+/* ---- the families of solids in the catalogue (catalogue.c) ---- */
+/* Each takes the wanted number of vertices and comes as close to it as its structure allows.
+ * Errors: MEMORY, CANCELLED. */
 
 /* Articulated figures: an isosurface, posed. */
 starg_status solid_figure(starg_context *context, figure_kind kind, int pose, size_t vertex_count,

@@ -11,13 +11,13 @@ static inline void statement_drop(sqlite3_stmt **statement) {
     sqlite3_finalize(*statement);
 }
 
-/* SHA-256 (FIPS 180-4) of a block of memory: identifies equal files. */
+/* ---- SHA-256 (FIPS 180-4) of a block of memory: identifies equal files (sha256.c) ---- */
 
 enum { STARG_SHA256_BYTES = 32 };
 
 void starg_sha256(const void *bytes, size_t size, uint8_t digest[STARG_SHA256_BYTES]);
 
-/* Internals of the database: connection, statements, and messages for SQLite's errors. */
+/* ---- connection, statements, and messages for SQLite's errors (database.c) ---- */
 
 struct starg_database {
     starg_context *context;
@@ -78,7 +78,7 @@ extern const char DATABASE_SKETCHES[], DATABASE_INSERT_SKETCH[];
 starg_status database_store_sketch(starg_database *database, sqlite3_stmt *statement, int64_t model,
                                    starg_signature_kind kind, const uint8_t *bytes, size_t size);
 
-/* ---- text ---- */
+/* ---- text (database.c) ---- */
 
 /* Copies text to the context's memory; NULL when out of memory. */
 char *database_copy(starg_context *context, const char *text);
@@ -86,7 +86,7 @@ char *database_copy(starg_context *context, const char *text);
 /* The file name at the end of a path. */
 const char *database_name(const char *path);
 
-/* Describes files to add to a database, here or in other processes. */
+/* ---- files to add to a database, described here or in other processes (database_files.c) ---- */
 
 typedef struct database_digest {
     uint8_t bytes[STARG_SHA256_BYTES];

@@ -3,9 +3,9 @@
  *
  * A job contains the names of all files, which helpers read themselves by the same paths, and the
  * hashes of what is stored. A reply contains the descriptions of a block, file by file. */
-#include "guard/cell_tests.h"
+#include "guard/cells.h"
 #include "shape/database.h"
-#include "visibility/rows.h"
+#include "visibility/scene.h"
 
 /* The fixed parts of a job, and of a file in a reply. */
 typedef struct job_head {

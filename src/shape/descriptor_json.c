@@ -2,7 +2,7 @@
 /* DESCRIPTOR.json: a descriptor as text (docs/formats.md). */
 
 #include "core/file.h"
-#include "core/record.h"
+#include "core/json.h"
 #include "shape/measures.h"
 
 static const char STAGE[] = "descriptor file";

@@ -6,7 +6,7 @@
 #include "star/piece_faces.h"
 #include "starguard/descriptor.h"
 
-/* A model at a standard level of detail. */
+/* ---- a model at a standard level of detail (level.c) ---- */
 
 /* The model without detail finer than a mesh of `vertices` vertices can show: noise smoothed, at
  * most that many vertices (or nearly, if the topology needs more), local self-intersections
@@ -19,7 +19,7 @@ starg_status level_create(starg_context *context, const starg_mesh *mesh, size_t
 starg_status level_coarsen(starg_context *context, const starg_mesh *mesh, size_t vertices,
                            starg_mesh **out);
 
-/* Distance from an interior point to the boundary of a tetrahedral mesh, in a given direction. */
+/* ---- distance from a point inside to the boundary, in a given direction (rays.c) ---- */
 
 typedef struct ray_caster {
     tet_sight sight;
@@ -34,7 +34,7 @@ void ray_caster_free(ray_caster *caster);
 /* From a point strictly inside to the first boundary point; at most `length`. */
 double ray_length(const ray_caster *caster, const double from[3], const double direction[3]);
 
-/* Views from all over a solid. */
+/* ---- views from all over a solid (views.c) ---- */
 
 /* STARG_DESCRIPTOR_VIEW rows of STARG_DESCRIPTOR_SPREAD lengths: row k has quantiles, over points
  * uniform in the solid, of the k-th quantile of a point's distances to the boundary. Errors:
@@ -42,9 +42,7 @@ double ray_length(const ray_caster *caster, const double from[3], const double d
 starg_status views_measure(starg_context *context, const starg_tetmesh *mesh,
                            const ray_caster *caster, double *out);
 
-/* Vibration modes of a solid's boundary. */
-
-/* Field table of DESCRIPTOR.json. */
+/* ---- field table of DESCRIPTOR.json (descriptor_fields.c) ---- */
 
 /* Changes with what the numbers mean, even if the keys stay. */
 enum { DESCRIPTOR_VERSION = 5 };

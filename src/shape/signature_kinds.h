@@ -46,7 +46,7 @@ extern const signature_method signature_shape_dna;
 extern const signature_method signature_star;
 extern const signature_method signature_paper;
 
-/* Sketches: a few numbers of a signature that bound its distance to others from below. */
+/* ---- sketches: a few numbers that bound the distance of signatures from below (sketch.c) ---- */
 
 enum { SKETCH_MOST = 64 }; /* numbers, and an upper bound of their size at the end */
 

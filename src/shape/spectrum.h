@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "starguard/descriptor.h"
 
-/* Sparse symmetric positive definite systems with many right-hand sides. */
+/* ---- sparse symmetric positive definite systems with many right-hand sides (sparse.c) ---- */
 
 /* A matrix by columns, both triangles; duplicate entries are summed. */
 typedef struct sparse_matrix {
@@ -27,7 +27,7 @@ STARG_DROP(sparse, sparse_factors)
 /* Solves for one right-hand side in place; `work` has `size` doubles. Any thread. */
 void sparse_solve(const sparse_factors *f, double *values, double *work);
 
-/* The cotangent Laplacian of a triangle mesh. */
+/* ---- the cotangent Laplacian of a triangle mesh (laplacian.c) ---- */
 
 /* A symmetric, positive semidefinite matrix with zero row sums, stored completely and by columns,
  * and a positive diagonal of masses that sum to 1. The eigenvalues of L x = lambda M x are those of
@@ -53,7 +53,7 @@ starg_status laplacian_factorise(starg_context *context, const laplacian *l, dou
                                  sparse_factors **out);
 void laplacian_free(laplacian *l);
 
-/* Smallest eigenvalues and eigenfunctions of a Laplacian. */
+/* ---- smallest eigenvalues and eigenfunctions of a Laplacian (spectrum.c) ---- */
 
 /* The `wanted` smallest solutions of L x = lambda M x in ascending order, zeros included; wanted <
  * l->count. `functions`: NULL, or room for `wanted` columns of l->count numbers, orthonormal with
@@ -61,7 +61,7 @@ void laplacian_free(laplacian *l);
 starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_t wanted,
                                double *eigenvalues, double *functions);
 
-/* Wave kernel signature: where a surface vibrates strongly. */
+/* ---- wave kernel signature: where a surface vibrates strongly (wks.c) ---- */
 
 enum { WKS_MODES = STARG_DESCRIPTOR_EIGENVALUES };
 

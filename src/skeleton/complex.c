@@ -8,14 +8,12 @@
  * replaced by the centroid, that of a flat tetrahedron by a neighbour's.
  *
  * Cost: linear, and an inside test for most nodes. */
-#include "skeleton/complex.h"
+#include "skeleton/skeleton.h"
 
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
-#include "skeleton/graph.h"
-#include "skeleton/medial.h"
 
 static const char STAGE[] = "medial complex";
 

@@ -24,11 +24,10 @@
  * strategy gets further there is largely chance, so several short attempts beat a long one.
  *
  * Cost: the Delaunay tetrahedra, and per round linear in what has changed. */
-#include "skeleton/conform.h"
+#include "skeleton/skeleton.h"
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "skeleton/sample_mesh.h"
 
 static const char STAGE[] = "surface samples";
 

@@ -18,14 +18,13 @@
  * free link still collapses. Between two clusters there may be several links.
  *
  * Cost: linear, and sorting. */
-#include "skeleton/contract.h"
+#include "skeleton/skeleton.h"
 
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "skeleton/edge_table.h"
-#include "skeleton/graph.h"
 
 static const char STAGE[] = "medial complex";
 

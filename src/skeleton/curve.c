@@ -9,11 +9,10 @@
  * one, which is known to be inside.
  *
  * Cost: linear, and some inside tests per node. */
-#include "skeleton/curve.h"
+#include "skeleton/skeleton.h"
 
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
-#include "skeleton/ends.h"
 
 static const char STAGE[] = "curve skeleton";
 

@@ -10,7 +10,7 @@
  *      reaches the surface up to a share of the radius, by bisection.
  *
  * Cost: some distances for each end. */
-#include "skeleton/ends.h"
+#include "skeleton/skeleton.h"
 
 #include "geometry/vec3.h"
 

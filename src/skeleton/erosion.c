@@ -20,7 +20,7 @@
  * remaining sheet is cut, which is counted: this is not a collapse.
  *
  * Cost: O(n log n) for n links. */
-#include "skeleton/erosion.h"
+#include "skeleton/skeleton.h"
 
 #include "skeleton/edge_table.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Adjacency lists by counting sort; each list in the order of the links. Linear. */
-#include "skeleton/graph.h"
+#include "skeleton/skeleton.h"
 
 #include "core/memory.h"
 

@@ -10,10 +10,9 @@
  * bounds; most links need no new search.
  *
  * Cost: linear, plus the searches, which end early, and for each loop cut the number of loops. */
-#include "skeleton/graph_repair.h"
+#include "skeleton/skeleton.h"
 
 #include "mesh/topology.h"
-#include "skeleton/graph.h"
 
 static const char STAGE[] = "skeleton loops";
 

@@ -5,7 +5,7 @@
  * faces are lost, an inside and an outside that meet are kept apart.
  *
  * Cost: O(n log n). */
-#include "skeleton/label.h"
+#include "skeleton/skeleton.h"
 
 #include <stdlib.h>
 

@@ -9,7 +9,7 @@
  * Thinning is farthest-point sampling with distances in radii: the next ball is the one whose
  * centre is most radii away from the chosen ones. Large balls then represent a wide neighbourhood,
  * and thin parts keep their samples. O(count x wanted). */
-#include "skeleton/medial.h"
+#include "skeleton/skeleton.h"
 
 #include "core/parallel.h"
 #include "geometry/delaunay.h"

@@ -16,11 +16,10 @@
  * hooks into the rim of a cap; and a root that is no part of a limb is dropped.
  *
  * Cost: linear in practice; the search for an end is quadratic in the nodes within a hook. */
-#include "skeleton/prune.h"
+#include "skeleton/skeleton.h"
 
 #include "geometry/vec3.h"
 #include "skeleton/edge_table.h"
-#include "skeleton/ends.h"
 
 static const char STAGE[] = "pruning";
 
@@ -101,6 +100,10 @@ static void measure_widths(pruner *p, const double *values) {
         p->widths[v] = fmax(c->radii[v], WIDTH_SHARE * p->girths[v]);
     level(p, p->radii);
     level(p, p->widths);
+}
+
+static uint32_t graph_degree(const curve_graph *graph, size_t v) {
+    return graph->first[v + 1] - graph->first[v];
 }
 
 /* Visits the component of `start`; returns its largest ball if it is a tree, else EDGE_NONE.

@@ -3,7 +3,7 @@
  *
  * Invariants: every point has a depth, which grows by one per cut, up to MAX_DEPTH; points whose
  * faces change become dirty. */
-#include "skeleton/sample_mesh.h"
+#include "skeleton/skeleton.h"
 
 static const char STAGE[] = "surface samples";
 

@@ -5,7 +5,7 @@
  * drawn solid is not in a turned copy, whose coordinates are rounded.
  *
  * Cost: linear in the result for each round; a round halves long edges. */
-#include "skeleton/samples.h"
+#include "skeleton/skeleton.h"
 
 #include "core/rng.h"
 #include "core/streams.h"

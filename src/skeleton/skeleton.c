@@ -10,13 +10,8 @@
  * and loops are closest to those of the surface is used. Excess ones are cut and counted as mended.
  *
  * Cost: O(n log n) in practice for n samples, per strategy that loses faces. */
+#include "skeleton/skeleton.h"
 #include "core/fields.h"
-#include "skeleton/conform.h"
-#include "skeleton/contract.h"
-#include "skeleton/curve.h"
-#include "skeleton/erosion.h"
-#include "skeleton/graph_repair.h"
-#include "skeleton/label.h"
 
 #include "geometry/vec3.h"
 #include "mesh/examine.h"

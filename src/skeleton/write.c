@@ -5,7 +5,7 @@
 #include <inttypes.h>
 
 #include "mesh/formats/io.h"
-#include "skeleton/graph.h"
+#include "skeleton/skeleton.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "skeleton file";

@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.h"
 
-/* A closed triangulated sphere with removable vertices. */
+/* ---- a closed triangulated sphere with removable vertices (rings.c) ---- */
 
 /* The neighbours of a vertex, counter-clockwise seen from outside. */
 typedef STARG_ARRAY(uint32_t) ring;
@@ -44,7 +44,7 @@ starg_status rings_reduce(rings *r, const rings_limits *limits) STARG_PRIVATE(ri
 /* Restores the last removed vertex. Errors: MEMORY. */
 starg_status rings_restore(rings *r);
 
-/* Relaxes an embedding of a triangulated sphere in the unit sphere. */
+/* ---- an embedding of a triangulated sphere in the unit sphere, relaxed (relax.c) ---- */
 
 typedef struct relaxation {
     const rings *rings;
@@ -62,7 +62,7 @@ void relax_sweep(const relaxation *relaxation);
 bool relax_is_positive(const ring *around, const double *directions, const double at[3])
     STARG_PRIVATE(relax_is_positive);
 
-/* Spherical embeddings of surfaces of genus 0. */
+/* ---- spherical embeddings of surfaces of genus 0 (sphere.c) ---- */
 
 /* A bijection between a surface and the sphere, given by the directions of its vertices: the
  * spherical triangles of the faces are all positive (exactly: det(a, b, c) > 0 in doubles) and

@@ -5,7 +5,7 @@
 #include "mesh/examine.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
-#include "tetra/fields.h"
+#include "tetra/generate.h"
 
 static const char STAGE[] = "pieces";
 

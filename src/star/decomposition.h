@@ -7,7 +7,7 @@
 #include "starguard/decompose.h"
 #include "visibility/kernel.h"
 
-/* The result of a star decomposition, whichever mode has found it. */
+/* ---- the result of a star decomposition, whichever mode has found it (decomposition.c) ---- */
 
 /* Words of starg_decompose_mode, by number; NULL behind the last. */
 extern const char *const decompose_mode_words[];
@@ -33,13 +33,13 @@ starg_status decomposition_finish(starg_context *context, starg_decompose_mode m
 /* Fills visible_vertices; the pieces are known. Errors: MEMORY, CANCELLED. */
 starg_status decomposition_find_sight(starg_context *context, starg_decomposition *d);
 
-/* Maps of star-shaped pieces to balls. */
+/* ---- maps of star-shaped pieces to balls (balls.c) ---- */
 
 /* Fills what a decomposition holds of its maps to balls. Its pieces are star-shaped, and made of
  * tetrahedra about their guards. Errors: SOLVER, MEMORY, CANCELLED. */
 starg_status balls_make(starg_context *context, starg_decomposition *d, starg_balls kind);
 
-/* Surfaces that touch themselves. */
+/* ---- surfaces that touch themselves (touching.c) ---- */
 
 /* The faces of a solid with one vertex at each position (free with starg_release), or NULL when
  * these intersect, lie on one another, have no area, or touch otherwise than in common vertices and
@@ -51,9 +51,7 @@ starg_status touching_weld(starg_context *context, const starg_solid *solid, uin
  */
 starg_status touching_bounds(starg_context *context, const starg_solid *solid, bool *bounds);
 
-/* How few star-shaped pieces a solid can be cut into. */
-
-/* How far one surface is from another. */
+/* ---- how far one surface is from another (deviation.c) ---- */
 
 /* No point of `from` is farther than *out from the triangles of `to`, of which there are some; that
  * is too much by no more than the larger of its half and rounding, nor than the step. `extent` is
@@ -62,7 +60,7 @@ starg_status deviation_bound(starg_context *context, const starg_mesh *from, con
                              double extent, double step, double *out)
     STARG_PRIVATE(deviation_bound);
 
-/* The solid that a surface encloses which intersects itself. */
+/* ---- the solid that a surface encloses which intersects itself (united.c) ---- */
 
 /* The solid bounded by the union. *out is NULL where the surface neither touches nor intersects
  * itself and has no degenerate face, or, with a notice, where it cannot be cut at its
@@ -79,14 +77,14 @@ starg_status united_join(starg_context *context, const starg_mesh *surface, star
 starg_status united_report(starg_context *context, const starg_mesh *model,
                            const starg_solid *united, starg_decomposition *out);
 
-/* Star decomposition by growth from guards [YL11, section 4]. */
+/* ---- star decomposition by growth from guards [YL11, section 4] (paper/paper.c) ---- */
 
 /* Labels the tetrahedra of a copy of the mesh, whose inner vertices move a little where pieces
  * meet. Errors: MEMORY, CANCELLED. */
 starg_status paper_decompose(starg_context *context, const starg_tetmesh *mesh,
                              const starg_decompose_options *options, starg_decomposition **out);
 
-/* Strict star decomposition: every piece is proven to be star-shaped. */
+/* ---- strict decomposition: every piece is proven star-shaped (certified/certified.c) ---- */
 
 /* From the surface alone, which faces outward and meets itself in common vertices and edges at
  * most. *out is NULL when roundings have spoilt all cuts of some piece. Errors: MEMORY, CANCELLED.

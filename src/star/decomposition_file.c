@@ -5,7 +5,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "core/record.h"
+#include "core/json.h"
 #include "star/decomposition.h"
 #include "starguard/verify.h"
 #include "tetra/io.h"

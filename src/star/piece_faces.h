@@ -6,7 +6,7 @@
 #include "tetra/tetmesh.h"
 #include "visibility/kernel.h"
 
-/* The boundary faces of labelled sets of tetrahedra. */
+/* ---- the boundary faces of labelled sets of tetrahedra (piece_faces.c) ---- */
 
 /* Faces first[p] to first[p + 1] - 1 bound piece p, counter-clockwise seen from outside of it. */
 typedef struct piece_faces {
@@ -40,7 +40,7 @@ starg_status piece_faces_add(starg_context *context, const starg_tetmesh *mesh,
                              const uint32_t *labels, size_t face, uint32_t own, uint32_t other,
                              face_corners *out);
 
-/* Sight inside of a tetrahedral mesh: its boundary alone blocks it. */
+/* ---- sight inside of a tetrahedral mesh: its boundary alone blocks it (piece_faces.c) ---- */
 
 typedef struct tet_sight {
     uint32_t *faces; /* of the boundary, outward */
@@ -58,7 +58,7 @@ bool tet_sight_contains(const tet_sight *sight, const double p[3]);
 /* Does the boundary leave the segment [p, q) free? Then p, strictly inside, sees q. Exact. */
 bool tet_sight_is_free(const tet_sight *sight, const double p[3], const double q[3]);
 
-/* How good the tetrahedra of a decomposition are. */
+/* ---- how good the tetrahedra of a decomposition are (angles.c) ---- */
 
 /* The smallest dihedral angle of a tetrahedron, in degrees. The first corner is the origin. */
 double angles_smallest(const double corners[4][3]);

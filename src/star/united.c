@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 #include "starguard/repair.h"
 
 static const char STAGE[] = "pieces";

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Common interface of the generators: choice, density and report. */
 #include "tetra/generate.h"
-#include "tetra/fields.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,11 +2,50 @@
 /* Generators of tetrahedra. */
 #pragma once
 
+#include "core/fields.h"
 #include "core/process.h"
 #include "mesh/solid.h"
 #include "tetra/tetmesh.h"
 
-/* The generators behind starg_tetmesh_from_solid. */
+/* ---- rows of the tetrahedra options, shared with the table of decompositions (generate.c) ---- */
+
+#define TETRA_PAPER_DENSITY 17.5 /* tetrahedra per surface vertex [YL11] */
+
+extern const char *const tetra_generator_words[];
+
+/* The last of TETRA_FIELDS: where tetgen is, and how long it may take. Files leave them out. */
+enum { TETRA_MACHINE_FIELDS = 2 };
+
+/* All but the density, for a struct T with the options at PREFIX. */
+#define TETRA_FIELDS(T, PREFIX)                                                                    \
+    {.key = "generator",                                                                           \
+     .option = "generator",                                                                        \
+     .group = "search",                                                                            \
+     .kind = STARG_FIELD_CHOICE,                                                                   \
+     FIELD_MEMBER(T, PREFIX generator),                                                            \
+     .words = tetra_generator_words,                                                               \
+     .value = "auto|tetgen|stuffing",                                                              \
+     .help = "Tetrahedra generator: isosurface stuffing (auto: with a warning that it "            \
+             "approximates the surface), or the program tetgen, which preserves it."},             \
+        {.key = "target",                                                                          \
+         .kind = STARG_FIELD_COUNT,                                                                \
+         FIELD_MEMBER(T, PREFIX target),                                                           \
+         .most = TETMESH_LIMIT,                                                                    \
+         .value = "N",                                                                             \
+         .help = "Target number of tetrahedra; above 0 it replaces the density."},                 \
+        {.key = "tetgen",                                                                          \
+         .kind = STARG_FIELD_TEXT,                                                                 \
+         FIELD_MEMBER(T, PREFIX tetgen),                                                           \
+         .value = "FILE",                                                                          \
+         .help = "Path of the program tetgen.",                                                    \
+         .default_text = "found on the search path"},                                              \
+    {                                                                                              \
+        .key = "tetgen_limit", .kind = STARG_FIELD_REAL, .flags = STARG_FIELD_ABOVE,               \
+        FIELD_MEMBER(T, PREFIX tetgen_limit), .high = 1e100, .standard = 30, .value = "S",         \
+        .help = "Limit of tetgen in seconds of processor time."                                    \
+    }
+
+/* ---- the generators behind starg_tetmesh_from_solid (tetgen.c, stuffing.c, measure.c) ---- */
 
 #define TETRA_STAGE "tetrahedra"
 
@@ -35,14 +74,14 @@ starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
                            const starg_tetmesh *mesh, double step, double *to_surface,
                            double *from_surface);
 
-/* Decides whether a surface encloses nothing, whatever its size. */
+/* ---- does a surface enclose nothing, whatever its size? (hollow.c) ---- */
 
 /* *hollow is true if the mesh is planar, or if its faces cancel: on any three positions, equally
  * many have either orientation. Exact. Errors: MEMORY. */
 starg_status tetra_is_hollow(starg_context *context, const starg_mesh *mesh, bool *hollow);
 
-/* A body-centred cubic lattice around a solid: which points are inside, where the surface cuts
- * edges, and the points moved onto the surface. */
+/* ---- a body-centred cubic lattice around a solid (lattice.c) ---- */
+/* Which points are inside, where the surface cuts edges, and the points moved onto the surface. */
 
 /* Points have integer coordinates in units of half a cube, all even (corners of cubes) or all odd
  * (centres). An edge joins a point to the next of its kind along an axis (long), or to one of the

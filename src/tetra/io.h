@@ -2,7 +2,7 @@
 /* Shared by the readers of tetrahedral meshes: the builder, and numbers in text or binary data. */
 #pragma once
 
-#include "mesh/formats/numbers.h"
+#include "mesh/formats/scan.h"
 #include "tetra/tetmesh.h"
 
 /* A tetrahedral mesh under construction. Zero-initialize all but points.source. */
@@ -36,7 +36,7 @@ starg_status tet_builder_check(const tet_builder *builder);
 starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out);
 void tet_builder_free(tet_builder *builder);
 
-/* ---- formats ---- */
+/* ---- formats (a file for each) ---- */
 
 bool tet_medit_matches(const starg_source *source);
 bool tet_vtk_matches(const starg_source *source);

@@ -51,6 +51,12 @@ static starg_status sort_listed(ledger *own) {
     return STARG_OK;
 }
 
+/* The piece on the other side of a wall, or VERIFY_NONE. */
+static uint32_t verify_beyond(const verify_pieces *pieces, size_t wall) {
+    uint32_t mate = pieces->facets->mate[pieces->wall_facets[wall]];
+    return mate == VERIFY_NONE ? VERIFY_NONE : (uint32_t)pieces->mesh->labels[mate / 4];
+}
+
 static starg_status add_walls(ledger *own, uint32_t piece) {
     const verify_pieces *pieces = own->pieces;
     own->touched.count = 0;

@@ -141,6 +141,12 @@ static bool is_near_enough(const prover *own, double height) {
     return height * (1 + MARGIN) <= depth;
 }
 
+/* Does a guard look in one direction? */
+static bool verify_is_aimed(const verify_facts *known) {
+    return known->guards->options.visibility.cone < 360 ||
+           known->guards->options.visibility.fov[0] > 0;
+}
+
 /* Does a view from 0.6 of the height, straight down, hold the corners, at the incidence allowed?
  * From above it does as well. A rectangular view holds the cone of its smaller angle. */
 static bool in_view(const prover *own, double height) {

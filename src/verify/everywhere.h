@@ -3,10 +3,10 @@
  * reasons why something is hidden from a box. */
 #pragma once
 
-#include "core/int128.h"
+#include "core/compiler.h"
 #include "verify/facts.h"
 
-/* Checks that a vertex or a face is hidden from all points of a box, for a stated reason. */
+/* ---- is something hidden from all points of a box, for a stated reason? (hidden.c) ---- */
 
 typedef struct verify_box {
     double lower[3], upper[3];
@@ -78,9 +78,9 @@ starg_status verify_find_sound(const verify_scene *scene, uint8_t *sound, bool *
  * each? Errors: MEMORY, CANCELLED. */
 starg_status verify_find_bounding(const verify_scene *scene, bool *bounding);
 
-/* The certificate of a bound for guards anywhere (docs/formats.md), as read. Nothing in it is known
- * to hold but that numbers of witnesses, rows, vertices and faces are within their ranges and that
- * the tree of cells is complete. */
+/* ---- the certificate of a bound for guards anywhere, as read (everywhere_read.c) ---- */
+/* docs/formats.md describes it. Nothing in it is known to hold but that numbers of witnesses, rows,
+ * vertices and faces are within their ranges and that the tree of cells is complete. */
 
 enum { EVERYWHERE_WITNESSES = 4096, EVERYWHERE_WORDS = EVERYWHERE_WITNESSES / 64 };
 /* Cells within cells, and branches within branches. */

@@ -1,10 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Exact sums of products of three doubles, their signs and values.
+ *
+ * A long accumulator [Kulisch, Miranker: Computer Arithmetic in Theory and Practice, 1981]: a
+ * fixed-point number wide enough for every product of three doubles below 2^361, subnormals
+ * included, so that additions are never rounded. One for positive and one for negative products:
+ * comparing the two gives the sign. No scaling, no differences, no cases: a polynomial is expanded
+ * in its coordinates, term by term. Allocates nothing. */
 #include "verify/signs.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/int128.h"
+#include "core/compiler.h"
 
 enum {
     MANTISSA_BITS = 52,

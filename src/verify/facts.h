@@ -5,7 +5,7 @@
 #include "core/bits.h"
 #include "verify/sight.h"
 
-/* A verdict under construction: a list of claims. */
+/* ---- a verdict under construction: a list of claims (claims.c) ---- */
 
 /* Limits on the claims of a verdict, and on those left unchecked. */
 enum { VERIFY_CLAIMS = 64, VERIFY_UNCHECKED = 32 };
@@ -30,7 +30,7 @@ void verify_leave(starg_verdict *verdict, const char *format, ...)
 void verify_leave_asked(starg_verdict *verdict, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* What the guards of a result see, recomputed, and conclusions from it. */
+/* ---- what the guards of a result see, recomputed, and conclusions from it (facts.c) ---- */
 
 /* The zones of a result (verify/zones.c); NULL: there are none. `meshes` has one for each zone that
  * is one. Errors: MESH (also: other meshes than those of the result), MEMORY, CANCELLED. */
@@ -138,12 +138,6 @@ verify_view verify_view_of(const starg_guards *guards, size_t guard);
 
 /* May a guard stand at p, with its clearance and in the space? But for what can be reached. */
 bool verify_admits(const verify_facts *known, const double p[3]);
-
-/* Does a guard look in one direction? */
-static inline bool verify_is_aimed(const verify_facts *known) {
-    return known->guards->options.visibility.cone < 360 ||
-           known->guards->options.visibility.fov[0] > 0;
-}
 
 /* Number of unseen elements that could be seen (verify/coverable.c). The search ends when it
  * exceeds `enough`. */

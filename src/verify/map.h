@@ -4,7 +4,7 @@
 
 #include "verify/facts.h"
 
-/* MAP.json as read for the verifier, and its claims. */
+/* ---- MAP.json as read, and its claims (read_map.c, claim_sphere.c, claim_overlay.c) ---- */
 
 /* Points of a surface: a face each, and three weights of its corners. */
 typedef struct verify_places {
@@ -48,7 +48,7 @@ starg_status verify_claim_overlay(const verify_map *own);
 bool verify_weights_in(const starg_mesh *mesh, const verify_places *places, size_t i,
                        const uint32_t corner[3], double w[3]);
 
-/* The report of a morph as read for the verifier. */
+/* ---- the report of a morph as read (read_morph.c) ---- */
 
 typedef struct verify_frame {
     double t, volume, area, volume_drift, area_drift;

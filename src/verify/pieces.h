@@ -4,7 +4,7 @@
 
 #include "verify/facts.h"
 
-/* Triangles of tetrahedra: those shared by two tetrahedra, and those of a single one. */
+/* ---- triangles of one tetrahedron, and those shared by two (facets.c) ---- */
 
 #define VERIFY_NONE UINT32_MAX
 
@@ -45,7 +45,7 @@ static inline void verify_facet_corners(const uint32_t *tetrahedra, uint32_t fac
 starg_status verify_facets_outer(const verify_facets *facets, uint32_t **outer, uint32_t **faces,
                                  size_t *count);
 
-/* A decomposition taken apart for verification, and what is found out about it. */
+/* ---- a decomposition taken apart, and what is found out about it (pieces.c) ---- */
 
 /* Labels that are not 0 to pieces - 1, each in use. */
 typedef struct verify_labels {
@@ -95,13 +95,7 @@ static inline void verify_add_tetrahedron(verify_volume *volume, const starg_pie
     verify_add_volume(volume, t, scale);
 }
 
-/* The piece on the other side of a wall, or VERIFY_NONE. */
-static inline uint32_t verify_beyond(const verify_pieces *pieces, size_t wall) {
-    uint32_t mate = pieces->facets->mate[pieces->wall_facets[wall]];
-    return mate == VERIFY_NONE ? VERIFY_NONE : (uint32_t)pieces->mesh->labels[mate / 4];
-}
-
-/* ---- the boundary and the model ---- */
+/* ---- the boundary and the model (boundary.c, nearness.c, enclosed.c) ---- */
 
 typedef struct verify_match {
     size_t equal;                     /* outer faces that are faces of the model as they are */
@@ -156,7 +150,7 @@ typedef struct verify_enclosed {
 starg_status verify_compare_enclosed(const verify_pieces *pieces, const verify_surface *model,
                                      double near, verify_enclosed *found);
 
-/* ---- star-shapedness ---- */
+/* ---- star-shapedness (claim_stars.c) ---- */
 
 typedef enum verify_proof {
     VERIFY_PROVEN = 0, /* the piece is star-shaped about its guard               */
@@ -174,7 +168,7 @@ typedef struct verify_certificate {
 starg_status verify_certify(const verify_pieces *pieces, const starg_pieces_report *report,
                             verify_certificate *certificates);
 
-/* ---- contacts ---- */
+/* ---- contacts (contacts.c) ---- */
 
 typedef struct verify_contacts {
     size_t wrong;           /* contacts listed wrongly, twice or not at all        */
@@ -186,7 +180,7 @@ typedef struct verify_contacts {
 starg_status verify_compare_contacts(const verify_pieces *pieces, const starg_pieces_report *report,
                                      verify_contacts *contacts);
 
-/* ---- vertices seen ---- */
+/* ---- vertices seen (seen.c) ---- */
 
 typedef struct verify_seen {
     size_t pairs;  /* of a piece and a vertex of it                            */
@@ -199,7 +193,7 @@ typedef struct verify_seen {
 starg_status verify_find_seen(const verify_pieces *pieces, const starg_pieces_report *report,
                               const verify_certificate *certificates, verify_seen *seen);
 
-/* The distortion of a linear map of a tetrahedron, found in another way than by the solver. */
+/* ---- distortion of a linear map, found in another way than by the solver (distortion.c) ---- */
 
 /* Sums over tetrahedra, initially zero. */
 typedef struct verify_distortion {
@@ -214,7 +208,7 @@ void verify_add_distortion(verify_distortion *own, const double *const from[4], 
 /* Do two values agree, up to rounding, which grows as tetrahedra get flatter (`room`)? */
 int verify_near_distortion(double claimed, double found, double room);
 
-/* Verification context of a decomposition: the model, the report, and the claims to check. */
+/* ---- the model, the report, and the claims to check (result.c and a file for each claim) ---- */
 
 typedef struct verify_context {
     starg_context *context;
@@ -257,7 +251,7 @@ starg_status verify_claim_balls(const verify_context *own);
 starg_status verify_claim_path(starg_context *context, const starg_solid_map *map,
                                starg_verdict *verdict);
 
-/* ---- names of elements ---- */
+/* ---- names of elements (claim_tetrahedra.c) ---- */
 
 typedef struct verify_words {
     char text[96];

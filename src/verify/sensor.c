@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#include "core/int128.h"
+#include "core/compiler.h"
 
 /* Bit 0 is worth 2^(-8 x 1074); 2^14 products below 2^2680 end below bit 11290. */
 enum { FACTORS = 8, WORDS = 178, LOWEST = -1074 };

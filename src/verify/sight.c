@@ -231,6 +231,11 @@ static bool out_of_reach(const double p[3], const double *const t[3], double ran
     return squared * (1 - 0x1p-40) > range * range + 0x1p-1000;
 }
 
+/* Does the face block no view? */
+static bool verify_is_clear(const verify_surface *surface, size_t face) {
+    return surface->clear != NULL && surface->clear[face];
+}
+
 /* Sets the sides of all faces, the faces in reach, and the width for these. */
 static void survey(verify_sight *sight, const double p[3], double range) {
     sight->reached_count = 0;

@@ -6,8 +6,8 @@
 #include "verify/signs.h"
 #include "verify/surface.h"
 
-/* What a sensor limits, apart from what stands in its way: all rules of the verifier. All exact for
- * finite doubles below 1e100. */
+/* ---- what a sensor limits, apart from what stands in its way (sensor.c) ---- */
+/* All rules of the verifier, and all exact for finite doubles below 1e100. */
 
 /* The limits of a view. */
 typedef struct verify_view {
@@ -45,7 +45,7 @@ bool verify_faces(const verify_view *view, const double p[3], const double *cons
  * this cosine? */
 bool verify_apart(const double *const t[3], const double p[3], const double q[3], double cosine);
 
-/* Patches: the parts that faces are seen in, or the faces. */
+/* ---- patches: the parts that faces are seen in, or the faces (patches.c) ---- */
 
 /* A point between the vertices of a face, rounded; their numbers ascend. */
 typedef struct verify_mix {
@@ -143,7 +143,7 @@ static inline void verify_patch_spots(const verify_surface *surface, size_t patc
         spots[i] = verify_spot_of(surface, verify_patch_corners(surface, patch)[i]);
 }
 
-/* What one point sees, by a map of directions. */
+/* ---- what one point sees, by a map of directions (sight.c) ---- */
 
 /* Working memory for points, one at a time; one thread. */
 typedef struct verify_sight verify_sight;
@@ -158,7 +158,7 @@ STARG_DROP(verify_sight, verify_sight)
 starg_status verify_look(verify_sight *sight, const double p[3], const verify_view *view,
                          const uint8_t **vertices, const uint8_t **patches);
 
-/* The scene of a guards result as the verifier sees it. */
+/* ---- the scene of a guards result as the verifier sees it (space.c) ---- */
 
 /* The surface of the model and of the obstacles of a result, which faces out of its free space; of
  * a plain solid verify_surface_create. `obstacles` has one mesh for each that the result names.

@@ -5,13 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Exact sums of products of three doubles, their signs and values.
- *
- * A long accumulator [Kulisch, Miranker: Computer Arithmetic in Theory and Practice, 1981]: a
- * fixed-point number wide enough for every product of three doubles below 2^361, subnormals
- * included, so that additions are never rounded. One for positive and one for negative products:
- * comparing the two gives the sign. No scaling, no differences, no cases: a polynomial is expanded
- * in its coordinates, term by term. Allocates nothing. */
+/* ---- exact sums of products of three doubles, their signs and values (exact_sum.c) ---- */
 
 /* Bit 0 is worth 2^(-3 x 1074); 2^32 products below 2^1083 need 3222 + 1115 bits. */
 enum { EXACT_SUM_WORDS = 68 };
@@ -38,8 +32,9 @@ int exact_sum_sign(const exact_sum *sum);
 /* The sum times 2^scale, rounded: off by less than 2^-52 of it. */
 double exact_sum_value(const exact_sum *sum, int scale);
 
-/* The geometric decisions of the verifier, all exact for finite doubles below 1e100. Independent of
- * the predicates of the engines: other formulas, other arithmetic. */
+/* ---- the geometric decisions of the verifier (signs.c) ---- */
+/* All exact for finite doubles below 1e100. Independent of the predicates of the engines: other
+ * formulas, other arithmetic. */
 
 /* What is looked at: a point, or one between the vertices of a face, which lies in its plane as its
  * doubles do not. Signs are those of the point itself. */

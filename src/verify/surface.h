@@ -6,7 +6,8 @@
 #include "core/memory.h"
 #include "starguard/mesh.h"
 
-/* Disjoint sets: parent[i] is another member of the set of i, or i if it is the lowest one. */
+/* ---- disjoint sets ---- */
+/* parent[i] is another member of the set of i, or i if it is the lowest one. */
 
 /* The lowest member of the set of i. */
 static inline uint32_t verify_root(uint32_t *parent, uint32_t i) {
@@ -22,7 +23,7 @@ static inline void verify_join(uint32_t *parent, uint32_t i, uint32_t j) {
     parent[a > b ? a : b] = a > b ? b : a;
 }
 
-/* The verifier's model: a copy with oriented shells, and winding numbers. */
+/* ---- the verifier's model: a copy with oriented shells, and winding numbers (surface.c) ---- */
 
 typedef struct verify_surface {
     starg_context *context;
@@ -43,10 +44,6 @@ typedef struct verify_surface {
 } verify_surface;
 
 /* Is the face a target? */
-static inline bool verify_is_clear(const verify_surface *surface, size_t face) {
-    return surface->clear != NULL && surface->clear[face];
-}
-
 static inline bool verify_is_target(const verify_surface *surface, size_t face) {
     return surface->importance == NULL || surface->importance[face] > 0;
 }
@@ -86,8 +83,9 @@ static inline void verify_corners(const verify_surface *surface, size_t face, co
 int verify_winding(const verify_surface *surface, const uint32_t *faces, size_t count,
                    const double p[3], bool *on_surface);
 
-/* Lengths and areas in doubles, in a unit near the size of the model, so that neither huge nor tiny
- * coordinates overflow or underflow. They decide only claims with a tolerance. */
+/* ---- lengths and areas in doubles, in a unit near the size of the model (measure.c) ---- */
+/* So that neither huge nor tiny coordinates overflow or underflow. They decide only claims with a
+ * tolerance. */
 
 /* The power of two that brings the model's extent to about 1. */
 int verify_scale(const verify_surface *surface);
@@ -129,7 +127,7 @@ double verify_squared_distance(const verify_surface *surface, size_t face, const
 /* Distance from p to the nearest face, in the model's own unit. */
 double verify_distance(const verify_surface *surface, const double p[3], size_t faces, int scale);
 
-/* Boxes around the faces of a surface, for queries near a point, in a box, or along a segment. */
+/* ---- boxes around faces, for queries near a point, in a box, along a segment (tree.c) ---- */
 
 typedef struct verify_tree verify_tree;
 
@@ -162,13 +160,13 @@ const verify_surface *verify_tree_surface(const verify_tree *tree);
 /* verify_winding of all its faces, using only those near a segment (verify/winding.c). Exact. */
 int verify_tree_winding(const verify_tree *tree, const double p[3], bool *on_surface);
 
-/* Shells: components of a surface connected through edges of exactly two faces. */
+/* ---- shells: components of a surface connected through edges of two faces (shells.c) ---- */
 
 /* Finds shells as disjoint sets of faces: *parent (face_count) is a block of the context. Errors:
  * MEMORY. */
 starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent);
 
-/* Parts of a model that do not see each other. */
+/* ---- parts of a model that do not see each other (parts.c) ---- */
 
 /* By face, the part that it bounds, numbered by their lowest faces; *part is a block of the
  * context. The surface is that of a plain solid, and no point of this sees faces of two parts.

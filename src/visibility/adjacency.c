@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "visibility/adjacency.h"
+#include "visibility/scene.h"
 
 #include "core/memory.h"
 #include "mesh/topology.h"

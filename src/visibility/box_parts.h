@@ -11,7 +11,8 @@
 #include "geometry/predicates.h"
 #include "visibility/box.h"
 
-/* Triangles that a segment may meet, four boxes at a time in single precision. */
+/* ---- triangles that a segment may meet, four boxes at a time (box_tree.c) ---- */
+/* In single precision. */
 
 typedef struct box_tree box_tree;
 

@@ -4,7 +4,6 @@
 #ifndef STARG_VISIBILITY_CONTOURS_H
 #define STARG_VISIBILITY_CONTOURS_H
 
-#include "visibility/adjacency.h"
 #include "visibility/cube.h"
 #include "visibility/scene.h"
 

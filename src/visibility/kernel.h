@@ -4,8 +4,8 @@
 #ifndef STARG_VISIBILITY_KERNEL_H
 #define STARG_VISIBILITY_KERNEL_H
 
+#include "core/compiler.h"
 #include "core/context.h"
-#include "core/private.h"
 #include "mesh/solid.h"
 #include "starguard/kernel.h"
 
@@ -27,8 +27,8 @@ bool kernel_sees_all(const kernel_faces *surface, const double point[3])
 int kernel_winding(const kernel_faces *surface, const double point[3])
     STARG_PRIVATE(kernel_winding);
 
-/* The parts of a solid: connected components of its interior. No point sees faces of two of them,
- * so bounds for parts add up. */
+/* ---- the parts of a solid: connected components of its interior (parts.c) ---- */
+/* No point sees faces of two of them, so bounds for parts add up. */
 
 typedef struct solid_parts {
     size_t count;

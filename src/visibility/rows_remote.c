@@ -9,7 +9,7 @@
  * Cost: per helper about 36 bytes a face, and its search structures; a bit per column of each
  * row. */
 #include "core/bits.h"
-#include "visibility/rows.h"
+#include "visibility/scene.h"
 
 static const char STAGE[] = "visibility";
 

@@ -8,7 +8,6 @@
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "visibility/adjacency.h"
 
 /* Numbers the vertices in the order in which the faces use them, leaf by leaf. */
 static void order_vertices(visibility_scene *scene) {

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Data of a solid shared by all engines: its vertices and faces in spatial order, the faces'
  * planes, and on which side of them a point lies. Immutable once made. */
-#ifndef STARG_VISIBILITY_SCENE_H
-#define STARG_VISIBILITY_SCENE_H
+#pragma once
+
+#include "core/compiler.h"
+#include "core/parallel.h"
+#include "geometry/bvh.h"
+#include "mesh/mesh.h"
+#include "mesh/solid.h"
+#include "starguard/visibility.h"
+#include "visibility/sensor.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-#include "geometry/sight_tree.h"
-#include "mesh/solid.h"
-#include "starguard/visibility.h"
-#include "visibility/sensor.h"
 
 #define SCENE_NONE UINT32_MAX
 
@@ -61,6 +63,8 @@ sides_run sides_run_neon;
 #elif defined(__x86_64__)
 sides_run sides_run_avx2, sides_run_avx512;
 #endif
+
+/* ---- the scene: vertices and faces in spatial order, planes, sides of points (scene.c) ---- */
 
 typedef struct visibility_scene {
     starg_context *context;
@@ -262,6 +266,11 @@ scene_point scene_point_of(const visibility_scene *scene, size_t rank, const pat
 /* The same for a corner of a patch, or for a vertex. */
 scene_point scene_point_at(const visibility_scene *scene, uint32_t slot);
 
+/* Where faces count from either side: the rank of the other side of a face, else SCENE_NONE. */
+uint32_t scene_back(const visibility_scene *scene, size_t rank);
+
+/* ---- engines: what a point sees (grid.c, tree.c, sweep.c, contours.c, fastest.c) ---- */
+
 /* An algorithm that finds the vertices seen from a point. */
 typedef struct visibility_engine {
     /* Memory for one thread; *scratch is freed by free_scratch. */
@@ -279,11 +288,7 @@ typedef struct visibility_engine {
 extern const visibility_engine visibility_grid, visibility_tree, visibility_sweep,
     visibility_contours, visibility_fastest;
 
-/* starg_visibility for callers that can use a partial result: at the time limit, finished[i] = 1
- * marks the finished rows, and there is no error. */
-starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
-                             size_t count, const starg_visibility_options *options,
-                             uint8_t *finished, starg_bits **out);
+/* ---- what single points see, by the tree (tree.c) ---- */
 
 /* Does p, strictly inside and with these sides, see the vertex or point in `slot`, by the tree? */
 bool scene_sees_slot(const visibility_scene *scene, const double p[3], const int8_t *side,
@@ -303,8 +308,7 @@ bool scene_sees_point(const visibility_scene *scene, const double p[3], const sc
 bool scene_sees_patch(const visibility_scene *scene, const double p[3], size_t patch,
                       const starg_visibility_options *options);
 
-/* Where faces count from either side: the rank of the other side of a face, else SCENE_NONE. */
-uint32_t scene_back(const visibility_scene *scene, size_t rank);
+/* ---- is every point of a triangle visible? (whole.c) ---- */
 
 /* Is every point of a triangle in the face of `rank` visible from p? Its three corners are, and p
  * is on the face's inner side. `side` holds the sides of p by rank, or is NULL. *blocker, if not
@@ -317,4 +321,96 @@ bool triangle_is_wholly_visible(const visibility_scene *scene, const double p[3]
 bool patch_is_wholly_visible(const visibility_scene *scene, const double p[3], const int8_t *side,
                              size_t rank, size_t patch);
 
-#endif
+/* ---- the boundary by slots and ranks: edges, faces at vertices, parents (adjacency.c) ---- */
+/* Candidate parents are for trees along edges. Immutable once made. */
+
+enum { FAN = 8, CHOICES = 3 };
+
+/* An edge runs from a to b in the face `left`, and back in `right`. */
+typedef struct adjacency_edge {
+    uint32_t left, right, a, b;
+} adjacency_edge;
+
+typedef struct visibility_adjacency {
+    starg_context *context;
+    size_t edge_count;
+    adjacency_edge *edges; /* sorted by the lower slot of their ends, for memory locality */
+    /* The neighbours of a slot in counter-clockwise order seen from outside, and at the same
+     * positions the ranks of the faces between each and the next one. */
+    uint32_t *fan_start;            /* slot -> its first position; one more entry than slots */
+    uint32_t *neighbour, *fan_face; /* FAN entries more */
+    uint32_t *parents;    /* slot x CHOICES -> neighbours that come before it in the order, nearest
+                             first, the last repeated; or itself for the root of a shell */
+    uint32_t *first_face; /* slot -> one of its faces */
+    uint32_t *order;      /* slots, shell by shell */
+    size_t shell_count;
+    uint32_t *shell_start; /* shell -> its first position in order, its root; and the end */
+} visibility_adjacency;
+
+/* Every vertex and edge must be manifold, as those of a solid are. O(n). Errors: MEMORY. */
+starg_status adjacency_create(starg_context *context, const visibility_scene *scene,
+                              visibility_adjacency **out);
+void adjacency_free(visibility_adjacency *adjacency);
+STARG_DROP(adjacency, visibility_adjacency)
+
+/* ---- rows of the visibility matrix (visibility.c) ---- */
+
+/* The columns of visibility rows. */
+
+static inline size_t target_columns(const starg_solid *solid, starg_target target) {
+    return target == STARG_TARGET_VERTICES  ? solid->mesh->vertex_count
+           : target == STARG_TARGET_CORNERS ? 3 * solid->mesh->face_count
+                                            : solid_patch_count(solid);
+}
+
+/* A matrix under construction: row i is what point i sees. */
+typedef struct visibility_job {
+    const visibility_scene *scene;
+    const starg_visibility_options *options;
+    const double *points;
+    size_t count;
+    starg_bits *rows;
+    uint8_t *finished;               /* by point; may be NULL */
+    const visibility_engine *engine; /* follows from the options; visibility_fill sets it */
+    const size_t *starts; /* the first point of each place, if directions of one are done in turn */
+} visibility_job;
+
+/* Makes the scene that the options' engine needs for `count` points. Errors: MEMORY. */
+starg_status visibility_scene_for(starg_context *context, const starg_solid *solid,
+                                  const starg_visibility_options *options, size_t count,
+                                  visibility_scene **out);
+
+/* Fills the rows, initially zero, in this process or, with `remote`, in others as well. Errors:
+ * MEMORY, CANCELLED, TIME, RANK. */
+starg_status visibility_fill(starg_context *context, const visibility_job *job,
+                             const starg_parallel_remote *remote);
+
+/* starg_visibility for callers that can use a partial result: at the time limit, finished[i] = 1
+ * marks the finished rows, and there is no error. */
+starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
+                             size_t count, const starg_visibility_options *options,
+                             uint8_t *finished, starg_bits **out);
+
+/* ---- rows that other processes compute (rows_remote.c) ---- */
+
+/* Is there enough work to share? */
+bool visibility_is_shared(starg_context *context, const visibility_job *job);
+
+/* Packs what points see in: the solid and the options. Errors: MEMORY. */
+starg_status visibility_pack_scene(starg_context *context, const starg_solid *solid,
+                                   const starg_visibility_options *options, size_t points,
+                                   starg_bytes *out);
+
+/* Reads it; *solid may be set even on failure. Errors: MEMORY, RANK. */
+starg_status visibility_unpack_scene(starg_context *context, starg_bytes_reader *bytes,
+                                     starg_solid **solid, starg_visibility_options *options);
+
+/* Packs the job for helpers. Errors: MEMORY. */
+starg_status visibility_pack(starg_context *context, const visibility_job *job, starg_bytes *out);
+
+/* A starg_parallel_remote's take, with a visibility_job for `shared`. */
+starg_status visibility_take(starg_context *context, void *shared, size_t first, size_t count,
+                             starg_bytes_reader *reply);
+
+/* Computes rows for another process. */
+extern const ranks_work visibility_ranks_work STARG_PRIVATE(visibility_ranks_work);

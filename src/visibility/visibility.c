@@ -7,7 +7,7 @@
 #include "core/fields.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "visibility/rows.h"
+#include "visibility/scene.h"
 
 static const char STAGE[] = "visibility";
 

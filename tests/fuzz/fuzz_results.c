@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "guard/guards_fields.h"
+#include "guard/stages.h"
 #include "morph/map.h"
 #include "records.h"
 #include "shape/measures.h"

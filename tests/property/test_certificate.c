@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/int128.h"
+#include "core/compiler.h"
 #include "core/rng.h"
-#include "guard/bound.h"
+#include "guard/prices.h"
 #include "models.h"
 #include "verify/everywhere.h"
 #include "verify/facts.h"

@@ -10,7 +10,7 @@
 #include "core/rng.h"
 #include "mesh/solid.h"
 #include "models.h"
-#include "skeleton/conform.h"
+#include "skeleton/skeleton.h"
 
 typedef struct face_key {
     uint32_t v[3];

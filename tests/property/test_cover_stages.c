@@ -4,15 +4,8 @@
 #include <math.h>
 
 #include "core/rng.h"
-#include "cover/dual.h"
-#include "cover/greedy.h"
-#include "cover/ilp.h"
-#include "cover/local.h"
-#include "cover/reduce.h"
-#include "cover/relax.h"
-#include "cover/search.h"
+#include "cover/cover.h"
 #include "cover/solver.h"
-#include "cover/weight_bound.h"
 #include "cover_oracle.h"
 #include "support.h"
 

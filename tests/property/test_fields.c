@@ -12,7 +12,7 @@
 
 #include "core/memory.h"
 #include "core/rng.h"
-#include "guard/guards_fields.h"
+#include "guard/stages.h"
 #include "morph/map.h"
 #include "records.h"
 #include "shape/measures.h"

@@ -11,7 +11,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "guard/patched.h"
+#include "guard/stages.h"
 #include "models.h"
 #include "starguard/space.h"
 #include "starguard/verify.h"

@@ -11,7 +11,6 @@
 #include "core/rng.h"
 #include "geometry/vec3.h"
 #include "guard/cells.h"
-#include "guard/choose.h"
 #include "guard/search_parts.h"
 #include "guard/stages.h"
 #include "models.h"

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "core/record.h"
+#include "core/json.h"
 
 enum { RECORD_BYTES = 1 << 15 };
 

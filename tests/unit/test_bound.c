@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "core/rng.h"
-#include "guard/bound.h"
 #include "guard/prices.h"
 
 enum { MOST_ROWS = 25 };

@@ -8,7 +8,7 @@
 #include <zlib.h>
 
 #include "core/rng.h"
-#include "export/lettering.h"
+#include "export/export.h"
 #include "starguard/picture.h"
 #include "support.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/rng.h"
 #include "mesh/topology.h"
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 
 enum { MOST = 512, GRID = 1000 };
 

@@ -13,8 +13,7 @@
 #include <unistd.h>
 
 #include "core/rng.h"
-#include "export/page_data.h"
-#include "export/piece_surfaces.h"
+#include "export/export.h"
 #include "models.h"
 #include "starguard/page.h"
 #include "starguard/picture.h"

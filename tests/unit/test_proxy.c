@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The level of detail used for the medial axis of a large model. */
-#include "guard/proxy.h"
+#include "guard/candidates.h"
 #include "models.h"
 #include "starguard/check.h"
 #include "starguard/guard.h"

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/ranks.h"
+#include "core/parallel.h"
 #include "core/rng.h"
 #include "models.h"
 #include "network.h"

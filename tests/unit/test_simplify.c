@@ -12,8 +12,8 @@
 #include <string.h>
 
 #include "core/rng.h"
-#include "mesh/levels/collapse.h"
 #include "mesh/levels/heap.h"
+#include "mesh/levels/levels.h"
 #include "mesh/solid.h"
 #include "models.h"
 #include "starguard/check.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "guard/weights.h"
+#include "guard/candidates.h"
 #include "models.h"
 
 static starg_mesh *scaled(starg_context *context, const starg_mesh *mesh, int exponent) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "mesh/formats/numbers.h"
+/* Numbers of a file in text or binary data. */
+#include "mesh/formats/scan.h"
 
 starg_place numbers_place(const number_scan *numbers) {
     if (numbers->encoding == NUMBERS_TEXT)

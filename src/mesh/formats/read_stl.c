@@ -6,8 +6,8 @@
  * then whether the header contains a zero byte, which text never does. */
 #include <strings.h>
 
+#include "mesh/formats/io.h"
 #include "mesh/formats/scan.h"
-#include "mesh/weld.h"
 
 enum { HEADER = 84, RECORD = 50 };
 

@@ -5,7 +5,7 @@
  *
  * Two passes: the elements, of which only places are kept, and the arrays, piece by piece. Corners
  * and the ends of their polygons are read side by side, so that nothing but the mesh grows. */
-#include "mesh/formats/vtp.h"
+#include "mesh/formats/vtk.h"
 
 static const char STAGE[] = STARG_MESH_FILE;
 

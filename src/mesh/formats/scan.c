@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Scanner for text in memory: words between blanks, with their lines. Callers can restrict a read
+ * to the current line. Lines end with LF, CR LF or CR. */
 #include "mesh/formats/scan.h"
 
 #include <float.h>

@@ -8,7 +8,7 @@
 #define ZLIB_CONST
 #include <zlib.h>
 
-#include "mesh/formats/vtp.h"
+#include "mesh/formats/vtk.h"
 
 static const char STAGE[] = STARG_MESH_FILE;
 

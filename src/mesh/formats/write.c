@@ -1,13 +1,45 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a mesh of any format; the file gets its name once it is complete. */
+#include <inttypes.h>
 #include <math.h>
 
 #include "mesh/formats/io.h"
-#include "mesh/single.h"
+#include "mesh/mesh.h"
+
+/* OFF: counts, vertices, faces with a colour (0 to 255) after the indices. */
+static void write_off(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
+    const uint8_t *colors = extras->colors;
+    fprintf(stream, "OFF\n%zu %zu 0\n", mesh->vertex_count, mesh->face_count);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const double *p = mesh->vertices + 3 * i;
+        fprintf(stream, "%.17g %.17g %.17g\n", p[0], p[1], p[2]);
+    }
+    for (size_t i = 0; i < mesh->face_count; i++) {
+        const uint32_t *f = mesh->faces + 3 * i;
+        fprintf(stream, "3 %" PRIu32 " %" PRIu32 " %" PRIu32, f[0], f[1], f[2]);
+        if (colors != NULL)
+            fprintf(stream, " %d %d %d", colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]);
+        fputc('\n', stream);
+    }
+}
+
+/* OBJ: lines of v and f; indices count from 1. Face colours are not supported. */
+static void write_obj(FILE *stream, const starg_mesh *mesh, const starg_mesh_extras *extras) {
+    if (extras->note[0] != '\0')
+        fprintf(stream, "# %s\n", extras->note);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const double *p = mesh->vertices + 3 * i;
+        fprintf(stream, "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
+    }
+    for (size_t i = 0; i < mesh->face_count; i++) {
+        const uint32_t *f = mesh->faces + 3 * i;
+        fprintf(stream, "f %" PRIu32 " %" PRIu32 " %" PRIu32 "\n", f[0] + 1, f[1] + 1, f[2] + 1);
+    }
+}
 
 static starg_mesh_writer *const writers[] = {
-    [STARG_MESH_OFF] = starg_off_write,
-    [STARG_MESH_OBJ] = starg_obj_write,
+    [STARG_MESH_OFF] = write_off,
+    [STARG_MESH_OBJ] = write_obj,
     [STARG_MESH_PLY_ASCII] = starg_ply_write_ascii,
     [STARG_MESH_PLY_BINARY] = starg_ply_write_binary,
     [STARG_MESH_STL_ASCII] = starg_stl_write_ascii,

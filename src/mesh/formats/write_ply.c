@@ -3,7 +3,6 @@
  * green, blue, and texture coordinates of a face's corners as a list of float named texcoord, which
  * many programs read. */
 #include "mesh/formats/io.h"
-#include "mesh/formats/pack.h"
 
 typedef enum number_type { BYTE, INT, FLOAT, DOUBLE } number_type;
 

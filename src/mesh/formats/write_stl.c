@@ -2,7 +2,6 @@
 /* STL: each triangle with its normal and its three points. Binary STL holds single precision. */
 #include "geometry/vec3.h"
 #include "mesh/formats/io.h"
-#include "mesh/formats/pack.h"
 
 /* The three points of a face and its unit normal, zero for a zero-area face. */
 static void look_up(const starg_mesh *mesh, size_t face, double points[3][3], double normal[3]) {

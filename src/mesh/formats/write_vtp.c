@@ -2,7 +2,6 @@
 /* VTK XML polydata, arrays appended raw, each behind its length in 8 bytes: double coordinates,
  * triangles, and as data of cells `color` (red, green, blue) and `mark`, where there are any. */
 #include "mesh/formats/io.h"
-#include "mesh/formats/pack.h"
 
 static void put_u64(FILE *stream, uint64_t value) {
     unsigned char bytes[8];

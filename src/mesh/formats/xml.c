@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tags of an XML text, one after another, in linear time. */
-#include "mesh/formats/vtp.h"
+#include "mesh/formats/vtk.h"
 
 xml_scan xml_scan_make(const starg_source *source) {
     return (xml_scan){source, source->bytes, source->bytes + source->size, 1};

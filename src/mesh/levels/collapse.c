@@ -12,9 +12,10 @@
  * between the old and the new star is covered by the tetrahedra of the new position with the old
  * faces: another component that touches no new face is inside or outside as a whole, so testing one
  * of its points is enough. The component's volume shows whether it turns inside out. */
-#include "mesh/levels/collapse.h"
+#include "mesh/levels/levels.h"
 
 #include "geometry/predicates.h"
+#include "geometry/vec3.h"
 
 /* Cosine of the largest rotation of a normal. */
 static const double LARGEST_TURN = 0.2;

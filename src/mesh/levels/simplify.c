@@ -8,7 +8,7 @@
  * into it, plus a very small share of the weight for their corners. The share keeps the linear
  * system of the best position away from singular and distributes vertices evenly where planes do
  * not determine the position. Edges wait in a queue by the error of their best placement: the
- * optimum of the two quadrics, the midpoint or an end. If the rules (collapse.h) reject a
+ * optimum of the two quadrics, the midpoint or an end. If the rules (collapse.c) reject a
  * placement, the edge returns with its next best; if they reject all, it waits until one of its
  * ends changes or the queue is empty. Then all edges enter again, as long as that gains enough.
  *
@@ -20,8 +20,9 @@
  * log n), 5 to 15 us a collapse, mostly for nearby faces. */
 #include "starguard/simplify.h"
 
-#include "mesh/levels/collapse.h"
+#include "geometry/vec3.h"
 #include "mesh/levels/heap.h"
+#include "mesh/levels/levels.h"
 
 /* Share of the weight for points: small compared with the planes of any real feature. */
 static const double POINT_SHARE = 1e-6;
@@ -32,6 +33,80 @@ enum {
     LEAST_GAIN = 1000,    /* another round needs one collapse per this many vertices */
     LARGE = 100000        /* vertices above which the queue is coarse */
 };
+
+/* ---- quadric error metrics [Garland, Heckbert 1997] ---- */
+
+/* Weighted sum of squared distances to planes and points, as a polynomial in the offset d from a
+ * reference point: d.Ad + 2 b.d + c. */
+typedef struct quadric {
+    double xx, xy, xz, yy, yz, zz; /* A */
+    double b[3], c;
+} quadric;
+
+/* Adds a plane through the reference point; the length of `normal` is the weight. Adds the point
+ * itself with `share` of the weight. */
+static void quadric_add_plane(quadric *q, const double normal[3], double share) {
+    double weight = vec3_length(normal);
+    if (!(weight > 0))
+        return;
+    q->xx += normal[0] * normal[0] / weight + share * weight;
+    q->xy += normal[0] * normal[1] / weight;
+    q->xz += normal[0] * normal[2] / weight;
+    q->yy += normal[1] * normal[1] / weight + share * weight;
+    q->yz += normal[1] * normal[2] / weight;
+    q->zz += normal[2] * normal[2] / weight + share * weight;
+}
+
+/* out = A d */
+static void quadric_apply(const quadric *q, const double d[3], double out[3]) {
+    out[0] = q->xx * d[0] + q->xy * d[1] + q->xz * d[2];
+    out[1] = q->xy * d[0] + q->yy * d[1] + q->yz * d[2];
+    out[2] = q->xz * d[0] + q->yz * d[1] + q->zz * d[2];
+}
+
+static double quadric_error(const quadric *q, const double d[3]) {
+    double ad[3];
+    quadric_apply(q, d, ad);
+    return vec3_dot(d, ad) + 2 * vec3_dot(q->b, d) + q->c;
+}
+
+/* Moves the reference point by d. */
+static void quadric_shift(quadric *q, const double d[3]) {
+    double ad[3];
+    quadric_apply(q, d, ad);
+    q->c += vec3_dot(d, ad) + 2 * vec3_dot(q->b, d);
+    vec3_along(q->b, 1, ad, q->b);
+}
+
+/* Adds a quadric with the same reference point. */
+static void quadric_add(quadric *q, const quadric *other) {
+    q->xx += other->xx;
+    q->xy += other->xy;
+    q->xz += other->xz;
+    q->yy += other->yy;
+    q->yz += other->yz;
+    q->zz += other->zz;
+    vec3_along(q->b, 1, other->b, q->b);
+    q->c += other->c;
+}
+
+/* The offset of least error, A d = -b by root-free Cholesky decomposition; false if A is too close
+ * to singular. */
+static bool quadric_optimum(const quadric *q, double d[3]) {
+    double least = 1e-10 * (q->xx + q->yy + q->zz);
+    double p0 = q->xx, l1 = q->xy / p0, l2 = q->xz / p0;
+    double p1 = q->yy - l1 * q->xy, m = q->yz - l2 * q->xy, l3 = m / p1;
+    double p2 = q->zz - l2 * q->xz - l3 * m;
+    if (!(p0 > least && p1 > least && p2 > least))
+        return false;
+    double y0 = -q->b[0], y1 = -q->b[1] - l1 * y0, y2 = -q->b[2] - l2 * y0 - l3 * y1;
+    d[2] = y2 / p2;
+    d[1] = y1 / p1 - l3 * d[2];
+    d[0] = y0 / p0 - l1 * d[1] - l2 * d[2];
+    return true;
+}
+
+/* ---- the surface and its queue ---- */
 
 typedef struct simplifier {
     starg_context *context;

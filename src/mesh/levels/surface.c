@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Working surface of the simplification: applies a collapse to positions, edge numbers and
  * component volumes. Cost: O(degree of the removed vertex). */
-#include "mesh/levels/surface.h"
+#include "mesh/levels/levels.h"
 
 #include "geometry/vec3.h"
 

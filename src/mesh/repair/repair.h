@@ -7,8 +7,8 @@
 #include "mesh/topology.h"
 #include "starguard/repair.h"
 
-/* Working mesh of repair: an indexed face set that the stages change in place, and that records the
- * origin of its vertices and faces. It does not use mesh/halfedges.h, because edges may have any
+/* ---- working mesh: an indexed face set with the origin of its elements (repair_state.c) ---- */
+/* The stages change it in place. It does not use mesh/halfedges.h, because edges may have any
  * number of faces in either direction until repair is done. */
 
 #define REPAIR_STAGE "repair"
@@ -97,12 +97,7 @@ typedef struct repair_keys {
 starg_status repair_keys_add(starg_context *context, repair_keys *keys, uint64_t key);
 bool repair_keys_have(const repair_keys *keys, uint64_t key);
 
-/* The key of the edge between two vertices. */
-static inline uint64_t repair_edge_key(uint32_t a, uint32_t b) {
-    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
-/* Finds faces of the changing mesh that cross a triangle. */
+/* ---- faces of the changing mesh that cross a triangle (repair_index.c) ---- */
 
 /* A tree over a copy of the faces. Changed faces must be marked REPAIR_GONE and added again; faces
  * added later are tested one by one. */
@@ -129,7 +124,7 @@ void repair_index_query(const repair_index *index, const uint32_t corner[3], bvh
 /* Does the triangle cross any existing face? */
 bool repair_index_crosses(const repair_index *index, const uint32_t corner[3]);
 
-/* Triangulates a closed loop of vertices in space. */
+/* ---- triangles for a closed loop of vertices in space (repair_fill.c) ---- */
 
 typedef STARG_ARRAY(uint32_t) fill_list;
 

@@ -4,7 +4,7 @@
  *
  * Faces that stay come first, in order, then the parts of the others. */
 #include "mesh/repair/repair.h"
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 
 enum { MOST_SUGGESTED = 20000 }; /* faces of a mesh for which distances are tried */
 

@@ -22,6 +22,11 @@ typedef struct filler {
     fill_list loop, triangles;
 } filler;
 
+/* The key of the edge between two vertices. */
+static uint64_t repair_edge_key(uint32_t a, uint32_t b) {
+    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
 static bool edge_is_taken(const void *user, uint32_t a, uint32_t b) {
     return repair_keys_have(user, repair_edge_key(a, b));
 }

@@ -7,7 +7,7 @@
 #include "geometry/exact_points.h"
 #include "mesh/union/union.h"
 
-/* Which faces of a surface meet away from common corners, and where. */
+/* ---- which faces of a surface meet away from common corners, and where (contacts.c) ---- */
 
 typedef struct union_contact {
     uint32_t face[2];
@@ -27,7 +27,7 @@ starg_status union_find_contacts(const union_surface *surface, const bvh *tree, 
 starg_status union_find_ends(const union_surface *surface, const uint32_t *point,
                              exact_points *points, union_contact *contact);
 
-/* Constrained triangulation of points and segments of one plane, exact. */
+/* ---- constrained triangulation of points and segments of a plane, exact (triangulation.c) ---- */
 
 /* The line of a segment: through two vertices, or where the plane meets that of a face. */
 typedef struct triangulation_carrier {
@@ -64,6 +64,8 @@ starg_status triangulation_constrain(triangulation *t, uint32_t a, uint32_t b,
 /* Flips edges that are on no segment until no angle opposite to one is needlessly large. */
 starg_status triangulation_improve(triangulation *t);
 
+/* ---- a surface cut along its intersections: triangles with exact corners (arrangement.c) ---- */
+
 typedef struct union_triangle {
     uint32_t corner[3]; /* a vertex of the surface, or vertex count + index into `added`       */
     uint32_t face;      /* a face of the surface that holds it                                 */
@@ -90,7 +92,7 @@ void union_complex_free(union_complex *complex);
 void union_complex_place(const union_complex *complex, uint32_t corner, exact_point *out);
 const double *union_complex_rounded(const union_complex *complex, uint32_t corner);
 
-/* Which triangles of a cut surface separate inside from outside. */
+/* ---- which triangles of a cut surface separate inside from outside (windings.c) ---- */
 
 /* Sets keep[t] for every triangle t with a winding number below 1 in front and of 1 or more behind.
  * `tree` is over the complex's surface. Errors: MEMORY, CANCELLED, TIME. */

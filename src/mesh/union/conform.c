@@ -18,7 +18,7 @@
  *
  * Rounding alone needs two or three rounds; an end to them is counted, not proven, and so is one to
  * the number of faces. Cost of a round: that of near.c, and of the triangulations. */
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 
 #include <float.h>
 #include <stdlib.h>

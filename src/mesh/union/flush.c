@@ -19,7 +19,7 @@
 #include "core/rng.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 
 enum { NEAR = 4 };
 

@@ -16,7 +16,7 @@
 #include "geometry/bvh.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 
 enum { CROSSINGS_PER_FACE = 32, SPARE_CROSSINGS = 20000, PAIRS_PER_CLOCK = 4096 };
 

@@ -11,7 +11,7 @@
 
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 
 enum { LEAST_FACES = 32 };
 

@@ -8,7 +8,7 @@
 
 #include "core/rng.h"
 #include "geometry/vec3.h"
-#include "mesh/union/conform.h"
+#include "mesh/union/union.h"
 
 typedef struct weld_grid {
     const double *vertices;

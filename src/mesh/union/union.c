@@ -18,15 +18,13 @@
  * surface that grows to more than MOST_GROWTH times the largest of the first rounds is given up.
  * Invariants: vertices of the mesh never move but by step 0, faces that meet no others stay as they
  * are, and the result has no pair of step 1. */
-#include "mesh/union/union.h"
+#include "mesh/union/arrangement.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/union/arrangement.h"
-#include "mesh/union/conform.h"
 
 enum { EXACT_ROUNDS = 4, MOST_ROUNDS = 20, MOST_GROWTH = 8, SPARE_FACES = 4096 };
 

@@ -330,7 +330,7 @@ int partition_sides(const partition *p, uint32_t number, const partition_plane *
  * MEMORY. */
 starg_status partition_separate(partition *p, uint32_t number);
 
-/* ---- extracts: some pieces as a partition of their own, on which a change can be tried ---- */
+/* ---- extracts: some pieces as a partition of their own, to try a change (partition.c) ---- */
 
 /* The part contains the requested pieces, in their order, with all of their facets, then other
  * pieces that have facets at an edge of these, with only those facets. The lists map numbers in the
@@ -444,7 +444,7 @@ starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
 /* Moves each guard to the centre of its kernel if that is certified and better. Errors: MEMORY. */
 starg_status apply_centers(partition *p, region_scratch *scratch);
 
-/* ---- tetrahedra ---- */
+/* ---- tetrahedra (partition.c) ---- */
 
 /* One tetrahedron for each facet of each piece, with the piece's guard as its fourth vertex; all
  * are positive because the guard is strictly inside the facet's plane. Points come first, in their

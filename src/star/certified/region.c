@@ -23,7 +23,7 @@
 
 #include <math.h>
 
-#include "core/versions.h"
+#include "core/compiler.h"
 #include "geometry/linear_program.h"
 #include "geometry/vec3.h"
 
@@ -332,7 +332,7 @@ static starg_status find_heights(const region *r, const double normal[3], region
 enum { LANES = 8 };
 
 /* The loop that the search for cuts spends its time in: written so that compilers make vector code
- * of it (core/versions.h). */
+ * of it (core/compiler.h). */
 STARG_SEVERAL_VERSIONS
 static size_t scan(const double *block, const double *lowest, double bound, const double point[3],
                    double room) {

@@ -5,7 +5,7 @@
 #include "mesh/levels/heap.h"
 #include "star/piece_faces.h"
 
-/* What the stages of the paper's decomposition share. */
+/* ---- what the stages of the paper's decomposition share (paper.c) ---- */
 
 #define PAPER_STAGE "growth"
 #define PAPER_NONE  UINT32_MAX
@@ -61,7 +61,7 @@ static inline size_t paper_pieces(const paper_state *s) {
     return s->guards.count / 3;
 }
 
-/* What guards see of the vertices of tetrahedra, and what follows from it for growth. */
+/* ---- what guards see of vertices, and what follows from it for growth (view.c) ---- */
 
 /* A part of the mesh: tetrahedra and their vertices, none twice. */
 typedef struct paper_domain {
@@ -91,7 +91,7 @@ void view_clear(paper_guard *g, const paper_domain *domain);
 starg_status views_create(paper_state *s, const paper_domain *all, const double *positions,
                           size_t count, paper_guard *guards);
 
-/* What hangs together by faces and has no colour yet. */
+/* ---- what hangs together by faces and has no colour yet (uncoloured.c) ---- */
 
 typedef struct component_search {
     paper_domain found;
@@ -107,7 +107,7 @@ void component_free(component_search *c);
 /* Finds the uncoloured component of a tetrahedron, breadth first. */
 void component_find(const paper_state *s, component_search *c, uint32_t tetrahedron);
 
-/* On which tetrahedra does the visibility of a tetrahedron depend? */
+/* ---- on which tetrahedra does the visibility of a tetrahedron depend? (dependency.c) ---- */
 
 /* The first tetrahedron, in the order of the mesh, whose closed hull holds p; PAPER_NONE outside.
  */
@@ -124,7 +124,7 @@ uint32_t dependency_predecessor(const paper_state *s, const paper_guard *g, uint
 /* Vertices of a tetrahedron that the guard sees, 0 to 4. */
 int dependency_seen(const paper_state *s, const paper_guard *g, uint32_t tetrahedron);
 
-/* How many tetrahedra depend on each. */
+/* ---- how many tetrahedra depend on each (cost.c) ---- */
 
 /* Fills the costs of the `count` tetrahedra of `domain` (none twice) from the guard's `toward`.
  * `waiting` and `stack` have room for every tetrahedron of the mesh; `waiting` is zero in the
@@ -132,7 +132,7 @@ int dependency_seen(const paper_state *s, const paper_guard *g, uint32_t tetrahe
 void cost_accumulate(const paper_state *s, paper_guard *g, const uint32_t *domain, size_t count,
                      uint32_t *waiting, uint32_t *stack);
 
-/* Region growing by node merging. */
+/* ---- region growing by node merging (growth.c) ---- */
 
 /* Guards whose pieces grow: guard i gives colour first_colour + i. */
 typedef struct paper_front {
@@ -155,7 +155,7 @@ void growth_relaxed(paper_state *s, const paper_front *front, const uint32_t *do
  * those that hang together with no region stay as they are. */
 void growth_absorb(paper_state *s, const uint32_t *domain, size_t count);
 
-/* What no guard's region holds. */
+/* ---- what no guard's region holds (uncoloured.c) ---- */
 
 /* Guards each uncoloured component anew and grows again, until every tetrahedron has a colour.
  * There are no more than `max_pieces` pieces (0: any number) unless parts of the mesh have no guard
@@ -163,7 +163,7 @@ void growth_absorb(paper_state *s, const uint32_t *domain, size_t count);
  * CANCELLED. */
 starg_status uncoloured_regrow(paper_state *s, size_t max_pieces, bool *time_limited);
 
-/* Smoothing of the borders between pieces. */
+/* ---- smoothing of the borders between pieces (smooth.c) ---- */
 
 /* Moves inner vertices where pieces meet; every tetrahedron stays positive. Errors: MEMORY,
  * CANCELLED. */

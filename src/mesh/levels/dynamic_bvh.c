@@ -3,7 +3,7 @@
  * and its ancestors grow; dead faces leave it. Boxes never shrink, so no face is missed.
  * Rebuilding when half of the faces are dead keeps boxes tight and costs at most twice the first
  * construction in total. */
-#include "mesh/repair/dynamic_bvh.h"
+#include "mesh/levels/levels.h"
 
 #include <math.h>
 

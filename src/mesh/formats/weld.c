@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "mesh/weld.h"
+/* Welding: merges points at exactly equal positions. */
+#include "mesh/formats/io.h"
 
 #include "core/rng.h"
 
