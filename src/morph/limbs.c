@@ -16,6 +16,7 @@
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "limbs";
+enum { WORK = 20 }; /* faces that may be looked at for cuts, over the number of all */
 
 static void free_surface(limb_surface *s) {
     RELEASE(s->places[0].data, s->places[1].data, s->faces.data, s->sides.data, s->at.data);
@@ -97,7 +98,8 @@ static starg_status fill(starg_context *context, const limb_trial *trial, compat
                                       .faces = s->faces.data,
                                       .sides = s->sides.data,
                                       .count = s->faces.count / 3,
-                                      .piece_count = trial->piece_count};
+                                      .piece_count = trial->piece_count,
+                                      .work = WORK * (s->faces.count / 3)};
     size_t left;
     TRY(compatible_fill(context, &input, out, &left));
     *found = left == 0;

@@ -28,7 +28,7 @@ static const double SPACING = 0.2; /* of planes, in radii at the ends of limbs *
 static const double CLEAR = 0.9;   /* of a joint's radius: no plane is that near */
 static const double TIP = 0.05;    /* of a limb's length: no plane is that near to its end */
 static const double ROOMY = 0.02;  /* of hubs, over the extent of loops */
-static const double ALIKE = 0.3;   /* of the mean length of edges: that near are mates */
+static const double ALIKE = 1.0;   /* of the mean length of edges: that near are mates */
 
 /* A plane at a share of a limb's length: across it, or inclined to one of four sides. */
 typedef struct cut_plane {

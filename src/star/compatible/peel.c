@@ -19,7 +19,7 @@
  * Invariants: those of cones.c. What rounding makes of the pieces is checked by exact signs, as of
  * all others.
  *
- * Cost: PLANES to PLANES_MOST times linear programs in the faces of the piece. */
+ * Cost: linear programs in the faces of the piece for PLANES_LEAST to MORE * PLANES planes. */
 #include "star/compatible/peel.h"
 
 #include <stdlib.h>
@@ -29,7 +29,8 @@
 
 static const char STAGE[] = "cones";
 
-enum { PLANES = 64, PLANES_MOST = 256, SEARCHED = 8, TRIES = 100, CHORDS = 12 };
+enum { PLANES = 64, PLANES_LEAST = 16, MORE = 4, SEARCHED = 8, TRIES = 100, CHORDS = 12 };
+enum { FACES = 2000 };             /* with so many there are PLANES */
 static const double ROOMY = 0.02;  /* of feet, over the extent of walls */
 static const double MARGIN = 1e-3; /* of points that see a leaf, over its size */
 static const double TURN = 1e-3;   /* the sine of an angle at a notch, at least */
@@ -442,6 +443,13 @@ static void draw_notch(peeling *m, bool *found) {
             m->heights[m->faces.data[i]] = 0;
 }
 
+/* Fewer planes where each costs more. */
+static int planes_for(size_t faces) {
+    return faces < FACES                           ? PLANES
+           : faces > FACES * PLANES / PLANES_LEAST ? PLANES_LEAST
+                                                   : (int)(FACES * PLANES / faces);
+}
+
 static starg_status choose_leaf(peeling *m, bool *found) {
     cone_builder *b = m->b;
     TRY(cones_list_edges(b, m->which, &m->edges));
@@ -452,7 +460,8 @@ static starg_status choose_leaf(peeling *m, bool *found) {
     for (int end = 0; end < 2; end++)
         TRY(bvh_create(b->context, b->places[end].data, m->faces.data, m->faces.count / 3,
                        &m->trees[end]));
-    for (int i = 0; i < PLANES || (i < PLANES_MOST && m->best.kind == WALL_NONE); i++) {
+    const int planes = planes_for(m->faces.count / 3);
+    for (int i = 0; i < planes || (i < MORE * planes && m->best.kind == WALL_NONE); i++) {
         bool drawn = true;
         m->end = m->blind[0] && m->blind[1] ? (i / 2 + i / SEARCHED) % 2 : m->blind[1];
         if (i % 2 == 1)
