@@ -121,6 +121,13 @@ class StarMaps(Case):
             if report["tetrahedra"] < 1000:
                 self.fills("m.vtu", solids["a"], solids["b"])
 
+    def test_limbs(self):
+        """Animals of other limbs, which no surface map that comes first leads to."""
+        for name in "horse", "human":
+            self.run_text("sample", name, "--vertices", "500", "-o", f"{name}.off")
+        self.run_text("map", "--solid", "horse.off", "human.off", "--steps", "5", "-o", "m.vtu")
+        self.run_text("verify", "horse.off", "human.off", "m.vtu")
+
     @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
     def test_shapes(self):
         """To a ball and a cube: A's vertices are on them, and verify sees where one is not."""

@@ -317,8 +317,10 @@ static starg_status list_steps(const cone_builder *b, uint32_t which, const edge
         if (side == 2)
             PUSH(b->context, STAGE, out, step_through(corners, heights));
         for (int k = 0; k < 3 && (side == 1 || side == 0); k++) {
-            uint32_t u = corners[k], v = corners[(k + 1) % 3], beyond = cones_across(edges, u, v);
-            if (heights[u] != 0 || heights[v] != 0 || beyond == NOWHERE)
+            uint32_t u = corners[k], v = corners[(k + 1) % 3], beyond = NOWHERE;
+            if (heights[u] == 0 && heights[v] == 0)
+                beyond = cones_across(edges, u, v);
+            if (beyond == NOWHERE)
                 continue;
             cones_corners_of(b, beyond, which, other);
             if (side_of(other, heights) == -1)
