@@ -251,6 +251,62 @@ static void test_fill(void **state) {
         test_context_free(contexts[i]);
 }
 
+/* ---- failing memory ---- */
+
+/* The allocation that fails, counted from when it is set; blocks in use. */
+static size_t failing, asked, blocks;
+
+static void *allocate(void *user, size_t size) {
+    (void)user;
+    void *block = ++asked == failing ? NULL : malloc(size);
+    blocks += block != NULL;
+    return block;
+}
+
+static void release(void *user, void *block) {
+    (void)user;
+    blocks--;
+    free(block);
+}
+
+/* Allocations at even distances fail, one at a time: that is the status, and nothing is left. */
+static void test_memory(void **state) {
+    size_t all = 0, times = test_size(40, 400);
+    (void)state;
+    for (size_t i = 0; i <= times; i++) { /* the first time none fails */
+        starg_context_options options;
+        starg_context *context;
+        compatible_cones cones;
+        bool found = false;
+        starg_context_options_default(&options);
+        options.threads = 1;
+        options.allocator = (starg_allocator){allocate, release, NULL};
+        failing = 0;
+        assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+        model models[2] = {make_model(context, "maze", 1), make_model(context, "comb", 1)};
+        const starg_mesh *const meshes[2] = {models[0].mesh, models[1].mesh};
+        size_t before = blocks;
+        context->seed = 1;
+        asked = 0;
+        failing = i * all / (times + 1);
+        starg_status status = limbs_fill(context, meshes, &cones, &found);
+        bool failed = failing > 0 && asked >= failing;
+        failing = 0;
+        if (i == 0)
+            all = asked;
+        assert_int_equal(status, failed ? STARG_ERROR_MEMORY : STARG_OK);
+        assert_int_equal(found, !failed);
+        if (found)
+            compatible_cones_free(context, &cones);
+        assert_int_equal(blocks, before);
+        for (int end = 0; end < 2; end++)
+            free_model(&models[end]);
+        starg_context_free(context);
+        assert_int_equal(blocks, 0);
+    }
+    print_message("%zu of %zu allocations failed\n", times, all);
+}
+
 /* A solid with a handle has no tree. */
 static void test_handle(void **state) {
     starg_context *context = test_context(1);
@@ -274,7 +330,7 @@ static void test_handle(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs), cmocka_unit_test(test_itself), cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_fill),  cmocka_unit_test(test_handle),
+        cmocka_unit_test(test_fill),  cmocka_unit_test(test_memory), cmocka_unit_test(test_handle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
