@@ -90,7 +90,8 @@ class Forged(support.Case):
 
     def test_certificates_of_points(self):
         self.run_text("sample", "horse", "--vertices", "500", "-o", "h.off")
-        prove = ["--no-refine", "--count", "60", "--prove", "--prove-work", "20000", "--certificate"]
+        less = ["--effort", "quick", "--prove-work", "100000"] if support.LONG else ["--no-refine", "--prove-work", "20000"]
+        prove = [*less, "--count", "60", "--prove", "--certificate"]
         self.guard(*prove, "faces.txt", model="h.off")
         faces = self.read("g.json")
         bound = self.guard("--target", "points", *prove, "points.txt", model="h.off")["lower_bound_everywhere"]
@@ -123,7 +124,7 @@ class Forged(support.Case):
         forged = self.guard("--method", "ilp", "--no-refine")
         forged["options"]["redundancy"] = 2
         self.refused(forged, "what fewer than 2 guards see")
-        forged = self.guard("--no-refine", "--within", "-9,-9,-9,9,9,9", "--clearance", "0.01", "--count", "60")
+        forged = self.guard("--no-refine", "--within", "-1,-1,0,1,1,1", "--clearance", "0.01", "--count", "60")
         forged["options"]["redundancy"] = 2
         self.refused(forged, "what fewer than 2 guards see")
 
@@ -201,8 +202,8 @@ class Forged(support.Case):
         self.refused_pieces(forged, "margins are radii")
 
     def test_bound_for_pieces(self):
-        self.run_text("sample", "l-room", "--vertices", "500", "-o", "maze.off")
-        prove = ["--prove", "--prove-work", "5000"]
+        self.run_text("sample", "gallery", "--vertices", "500", "-o", "maze.off")
+        prove = ["--prove", "--prove-work", "20000"]
         self.decompose(*prove, model="maze.off")
         plain = self.read("p.json")
         report = self.decompose(*prove, "--certificate", "why.txt", model="maze.off")
