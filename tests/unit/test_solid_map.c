@@ -697,6 +697,7 @@ static void test_refused(void **state) {
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
+    const starg_solid_map_options *options = test_rounds(0, 1) == 1 ? NULL : &QUICK;
     shape s = shape_cube(3);
     starg_mesh *a = test_mesh_of(context, &s);
     size_t size = 3 * starg_mesh_vertex_count(a);
@@ -705,14 +706,14 @@ static void test_refused(void **state) {
     assert_non_null(images);
     for (size_t i = 0; i < size; i++) /* mirrored */
         images[i] = starg_mesh_vertices(a)[i] * (i % 3 == 0 ? -1 : 1);
-    assert_int_equal(starg_solid_map_create(context, a, images, &QUICK, &map), STARG_ERROR_MESH);
+    assert_int_equal(starg_solid_map_create(context, a, images, options, &map), STARG_ERROR_MESH);
     assert_null(map);
     memcpy(images, starg_mesh_vertices(a), size * sizeof *images);
     for (size_t k = 0; k < 3; k++) /* a vertex through the other side */
         images[k] = 4 + 0.3 * (double)k;
-    assert_int_equal(starg_solid_map_create(context, a, images, &QUICK, &map), STARG_ERROR_MESH);
+    assert_int_equal(starg_solid_map_create(context, a, images, options, &map), STARG_ERROR_MESH);
     images[0] = NAN;
-    assert_int_equal(starg_solid_map_create(context, a, images, NULL, &map), STARG_ERROR_RANGE);
+    assert_int_equal(starg_solid_map_create(context, a, images, options, &map), STARG_ERROR_RANGE);
     starg_mesh_free(a);
     shape_free(&s);
     free(images);
