@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memory and time end (docs/robustness.md): the status and the message are those of the contract, and
 no output is left or changed. With STARGUARD_LONG=1 in many more steps."""
+import functools
 import json
 import os
 import resource
@@ -15,18 +16,20 @@ from support import PROGRAM, SLOWNESS, processor_time_of_ended
 from writing import LONG, Writing, limit
 
 
+@functools.cache
+def least():
+    """Addresses that are needed to start at all."""
+    size = 16 << 20
+    while subprocess.run([PROGRAM, "--version"], capture_output=True, check=False,
+                         preexec_fn=limit(resource.RLIMIT_AS, size)).returncode != 0:
+        size += 1 << 20
+    return size
+
+
 @unittest.skipIf(support.SANITIZE, "sanitizers need all the addresses there are")
 class Memory(Writing):
     """RLIMIT_AS: done, or status 3 with a message about memory; never a signal, never half a file.
     What CBC, SQLite, Eigen, jansson and the C library allocate on their own counts here."""
-
-    def least(self):
-        """Addresses that are needed to start at all."""
-        size = 16 << 20
-        while subprocess.run([PROGRAM, "--version"], capture_output=True, check=False,
-                             preexec_fn=limit(resource.RLIMIT_AS, size)).returncode != 0:
-            size += 1 << 20
-        return size
 
     def attempt(self, size, words, outputs):
         """The status, with all that it promises."""
@@ -42,7 +45,7 @@ class Memory(Writing):
 
     def sweep(self, words, outputs, step):
         """From next to nothing until it is enough."""
-        size, failures = self.least(), 0
+        size, failures = least(), 0
         while self.attempt(size, words, outputs) != 0:
             failures += 1
             size += step
@@ -67,7 +70,7 @@ class Memory(Writing):
 
     def test_database(self):
         before = self.read("shapes.db")
-        size, step = self.least(), 1 << (18 if LONG else 23)
+        size, step = least(), 1 << (18 if LONG else 23)
         for _ in range(400):
             self.write("shapes.db", before)
             done = self.attempt_add(size)
@@ -94,7 +97,7 @@ class Memory(Writing):
                         ["guard", "-", "-o", "g.json"]):
             with open("/dev/zero", "rb") as zero:
                 _, err = self.run_text(*command, stdin=zero, status=3,
-                                       preexec_fn=limit(resource.RLIMIT_AS, 300 << 20))
+                                       preexec_fn=limit(resource.RLIMIT_AS, 120 << 20))
             self.assertIn("out of memory", err)
             self.assertEqual(self.names(), self.made)
 

@@ -61,11 +61,11 @@ class Messages(support.Case):
 
     def test_intersections_are_of_the_model(self):
         """Levels of detail cross themselves as the model does; what is told is about the model, once."""
-        ball = self.ball(1200)
+        ball = self.ball(600)
         self.write("two.off", join((ball, 0, 1, False), (ball, .7, 1, False)))
         found = self.run_json("check", "two.off")["findings"]["self_intersections"]
-        log = self.run_json("guard", "two.off", "-o", "g.json", "--coarsest", "500", "--step", "1000",
-                            "--count", "50")["log"]
+        log = self.run_json("guard", "two.off", "-o", "g.json", "--coarsest", "500", "--step", "500",
+                            "--count", "50", "--no-refine")["log"]
         told = [line["message"] for line in log if "faces intersect" in line["message"]]
         self.assertEqual(len(told), 1, log)
         first = found["first"][0]

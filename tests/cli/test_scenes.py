@@ -309,7 +309,7 @@ class Scenes(Case):
 
     def test_export(self):
         """Cameras with the right field of view; results of scenes can be shown."""
-        self.guards("room.off", "--obstacles", "crate.off", "--fov", "90,60")
+        self.guards("room.off", "--obstacles", "crate.off", "--fov", "90,60", "--patch", "off")
         self.run_text("export", "g.json", "-o", "g.glb")
         with open(self.path("g.glb"), "rb") as file:
             data = file.read()
@@ -460,7 +460,8 @@ class Scenes(Case):
                 _, err = self.run_text(*words, status=2)
                 self.assertIn(says, err)
                 self.assertNotIn(never, err)
-        self.run_text("guard", "loose.off", "--soup", "--two-sided", "-o", "n.json", "--no-refine", "--count", "50")
+        self.run_text("guard", "loose.off", "--soup", "--two-sided", "-o", "n.json", "--no-refine", "--count", "50",
+                      "--patch", "off")
         for model, holes in [("loose.off", True), ("triple.off", False)]:
             _, err = self.run_text("decompose", model, "-o", "p.vtk", status=2)
             self.assertIn("of its diagonal away", err)
@@ -623,7 +624,7 @@ class Scenes(Case):
                 (["room.off", "--fov", "200,60"], 1, "--fov takes H,V"),
                 (["room.off", "--fov", "90"], 1, "--fov takes H,V"),
                 (["room.off", "--fov", "90,0"], 1, "--fov takes H,V"),
-                (["room.off", "--fov", "90,60", "--cone", "90"], 1, "exclude each other"),
+                (["room.off", "--fov", "90,60", "--cone", "90", "--count", "5"], 1, "exclude each other"),
                 (["room.off", "--up", "1,2"], 1, "--up takes X,Y,Z"),
                 (["room.off", "--incidence", "95"], 1, "at most 90"),
                 (["room.off", "--incidence", "60", "--target", "vertices"], 1, "incidence"),

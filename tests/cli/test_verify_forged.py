@@ -90,7 +90,8 @@ class Forged(support.Case):
 
     def test_certificates_of_points(self):
         self.run_text("sample", "horse", "--vertices", "500", "-o", "h.off")
-        prove = ["--effort", "quick", "--count", "60", "--prove", "--prove-work", "100000", "--certificate"]
+        less = ["--effort", "quick", "--prove-work", "100000"] if support.LONG else ["--no-refine", "--prove-work", "20000"]
+        prove = [*less, "--count", "60", "--prove", "--certificate"]
         self.guard(*prove, "faces.txt", model="h.off")
         faces = self.read("g.json")
         bound = self.guard("--target", "points", *prove, "points.txt", model="h.off")["lower_bound_everywhere"]

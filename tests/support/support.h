@@ -40,7 +40,7 @@ size_t test_rounds(size_t usual, size_t thorough);
  * the program is built. */
 size_t test_size(size_t usual, size_t thorough);
 
-/* Step through a family of models: 1 with STARGUARD_LONG, else 3. */
+/* Step through a family of models: 1 with STARGUARD_LONG, else 5. */
 size_t test_step(void);
 
 /* Asserts that a status is STARG_OK; prints the context's message otherwise. */

@@ -134,8 +134,17 @@ static double *twist(const starg_mesh *a, double turn, double middle, double str
     return images;
 }
 
-/* Two poses of a cat; or, in less time, a beam of 204 vertices and the same twisted by half a turn.
- */
+/* Of 204 vertices. */
+static starg_mesh *beam(starg_context *context) {
+    char cells[15 * 3 * 3];
+    memset(cells, '#', sizeof cells);
+    shape s = shape_cells(cells, 15, 3, 3);
+    starg_mesh *mesh = test_mesh_of(context, &s);
+    shape_free(&s);
+    return mesh;
+}
+
+/* Two poses of a cat; or, in less time, a beam and the same twisted by half a turn. */
 static void need_cats(void) {
     if (cats.map != NULL)
         return;
@@ -144,11 +153,7 @@ static void need_cats(void) {
         cats.a = test_pose(cats.context, "cat", 0, VERTICES);
         cats.b = test_pose(cats.context, "cat", 1, VERTICES);
     } else {
-        char cells[15 * 3 * 3];
-        memset(cells, '#', sizeof cells);
-        shape s = shape_cells(cells, 15, 3, 3);
-        cats.a = test_mesh_of(cats.context, &s);
-        shape_free(&s);
+        cats.a = beam(cats.context);
         double *images = twist(cats.a, 0.2, 1.5, 1, 1);
         cats.b = moved(cats.context, cats.a, images);
         free(images);
@@ -193,7 +198,8 @@ static void test_few_pieces(void **state) {
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
-    starg_mesh *a = test_pose(context, "torus", 0, 800), *b = test_pose(context, "torus", 1, 800);
+    size_t size = test_size(VERTICES, 800);
+    starg_mesh *a = test_pose(context, "torus", 0, size), *b = test_pose(context, "torus", 1, size);
     starg_solid_map *map;
     test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
     print_message("%zu pieces\n", map->piece_count);
@@ -262,6 +268,18 @@ static void test_descent(void **state) {
     test_context_free(context);
 }
 
+/* A dog becomes a ball, and a ball a cube; in less time a beam and a ball of fewer faces. */
+static starg_mesh *to_be_shaped(starg_context *context, int goal) {
+    if (test_rounds(0, 1) == 1)
+        return test_sample_mesh(context, goal == STARG_SOLID_BALL ? "dog" : "sphere", VERTICES);
+    if (goal == STARG_SOLID_BALL)
+        return beam(context);
+    shape s = shape_blob(3, 2);
+    starg_mesh *mesh = test_mesh_of(context, &s);
+    shape_free(&s);
+    return mesh;
+}
+
 static void test_shapes(void **state) {
     (void)state;
     if (!has_tetgen())
@@ -270,7 +288,7 @@ static void test_shapes(void **state) {
     starg_mesh *a, *b;
     for (int goal = 0; goal < 2; goal++) {
         starg_solid_map *map;
-        a = test_sample_mesh(context, goal == STARG_SOLID_BALL ? "dog" : "sphere", VERTICES);
+        a = to_be_shaped(context, goal);
         test_ok(context, starg_solid_map_to(context, a, (starg_solid_shape)goal, &QUICK, &map));
         for (size_t v = 0; v < starg_mesh_vertex_count(a); v++) {
             const double *p = map->images + 3 * v;
@@ -679,6 +697,7 @@ static void test_refused(void **state) {
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
+    const starg_solid_map_options *options = test_rounds(0, 1) == 1 ? NULL : &QUICK;
     shape s = shape_cube(3);
     starg_mesh *a = test_mesh_of(context, &s);
     size_t size = 3 * starg_mesh_vertex_count(a);
@@ -687,14 +706,14 @@ static void test_refused(void **state) {
     assert_non_null(images);
     for (size_t i = 0; i < size; i++) /* mirrored */
         images[i] = starg_mesh_vertices(a)[i] * (i % 3 == 0 ? -1 : 1);
-    assert_int_equal(starg_solid_map_create(context, a, images, NULL, &map), STARG_ERROR_MESH);
+    assert_int_equal(starg_solid_map_create(context, a, images, options, &map), STARG_ERROR_MESH);
     assert_null(map);
     memcpy(images, starg_mesh_vertices(a), size * sizeof *images);
     for (size_t k = 0; k < 3; k++) /* a vertex through the other side */
         images[k] = 4 + 0.3 * (double)k;
-    assert_int_equal(starg_solid_map_create(context, a, images, NULL, &map), STARG_ERROR_MESH);
+    assert_int_equal(starg_solid_map_create(context, a, images, options, &map), STARG_ERROR_MESH);
     images[0] = NAN;
-    assert_int_equal(starg_solid_map_create(context, a, images, NULL, &map), STARG_ERROR_RANGE);
+    assert_int_equal(starg_solid_map_create(context, a, images, options, &map), STARG_ERROR_RANGE);
     starg_mesh_free(a);
     shape_free(&s);
     free(images);
