@@ -16,7 +16,7 @@
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "limbs";
-enum { WORK = 60 }; /* faces that may be looked at for cuts, over the number of all */
+enum { WORK = 30 }; /* faces that may be looked at for cuts, over the number of all */
 
 static void free_surface(limb_surface *s) {
     RELEASE(s->places[0].data, s->places[1].data, s->faces.data, s->sides.data, s->at.data);
