@@ -44,10 +44,11 @@ STARG_API starg_status starg_solid_map_create(starg_context *context, const star
                                               starg_solid_map **out);
 
 /* Maps the solid A to the solid B by a map of their surfaces that has an overlay
- * (starg_map_overlay): the surface of the tetrahedra is A and B, subdivided in their faces. A's
- * tetrahedra go to B in A's connectivity first, which may meet itself, and are then divided along
- * the overlay. `options` may be NULL. Errors: as above, and ARGUMENT (no overlay), MESH (parts of
- * the overlay that are too thin for doubles). */
+ * (starg_map_overlay): the surface of the tetrahedra is A and B, subdivided in their faces. Where
+ * no pieces are found along a map via the sphere without landmarks, another one takes its place,
+ * by the limbs of both. What is left is A's tetrahedra, which go to B in A's connectivity first,
+ * which may meet itself, and are then divided along the overlay. `options` may be NULL. Errors: as
+ * above, and ARGUMENT (no overlay), MESH (parts of the overlay that are too thin for doubles). */
 STARG_API starg_status starg_solid_map_overlay(starg_context *context, const starg_mesh *a,
                                                const starg_mesh *b, const starg_map *map,
                                                const starg_solid_map_options *options,

@@ -132,7 +132,7 @@ static bool meets_walls(const limb_cuts *cuts, int end, const section *s) {
     return false;
 }
 
-/* How often a loop goes round a point, in its plane. */
+/* Does a loop go round a point, in its plane? */
 static bool goes_round(const loop_places *loop, const double point[3]) {
     double angle = 0;
     size_t count = loop->points.count / 3;

@@ -6,7 +6,8 @@
  * linear on each is a homeomorphism of the solids.
  *
  * Stages with an overlay: cones about a point of each kernel (solid_stars.c), or in pieces that are
- * star-shaped in both (star/compatible/cones.c). If there are none, to B in A's connectivity as
+ * star-shaped in both (star/compatible/cones.c), or, with another map of the surfaces unless one is
+ * given, in pieces between limbs (limbs.c). If there are none, to B in A's connectivity as
  * below, which may meet itself; then divide the tetrahedra along the overlay (solid_overlay.c), and
  * put its corners into place on B.
  *
@@ -494,6 +495,8 @@ static starg_status spread_cones(starg_context *context, const starg_mesh *a, co
         NEW_ZERO(context, STAGE, out->labels, c->tetrahedra.count / 4);
         out->count = 1;
     } else if (map->kind != STARG_MAP_SAME) {
+        TRY(solids_check_crossings(context, a, "A"));
+        TRY(solids_check_crossings(context, b, "B"));
         TRY(spread_pieces(divided, second, LITTLE, c, out));
         if (out->labels == NULL && map->kind == STARG_MAP_SPHERE && map->pair_count == 0)
             TRY(spread_limbs(a, b, c, out));

@@ -19,19 +19,37 @@ static const char STAGE[] = "consistent pieces";
 
 /* ---- ends ---- */
 
-static starg_status check_end(const starg_morph *m, int end, const starg_solid *solid) {
+static starg_status fail_end(starg_context *context, const char *what, const starg_solid *solid) {
     const starg_finding *found = solid->check->findings;
-    size_t crossing = found[STARG_FINDING_SELF_INTERSECTION].count;
-    size_t touching = found[STARG_FINDING_SELF_CONTACT].count;
-    size_t flat = found[STARG_FINDING_DEGENERATE_FACE].count;
-    if (crossing + touching + flat == 0)
-        return STARG_OK;
-    return starg_fail(m->context, STARG_ERROR_MESH, STAGE,
-                      "%s (%zu pairs of its faces pass through one another, %zu touch, %zu faces "
-                      "have no area), so that it cannot be filled with tetrahedra; 'starguard "
-                      "repair' may help, and the surface can be cut without (--guards)",
-                      end == 0 ? "A meets itself" : "B in A's connectivity meets itself", crossing,
-                      touching, flat);
+    return starg_fail(
+        context, STARG_ERROR_MESH, STAGE,
+        "%s meets itself (%zu pairs of its faces pass through one another, %zu touch, "
+        "%zu faces have no area), so that it cannot be filled with tetrahedra; "
+        "'starguard repair' may help, and the surface can be cut without (--guards)",
+        what, found[STARG_FINDING_SELF_INTERSECTION].count, found[STARG_FINDING_SELF_CONTACT].count,
+        found[STARG_FINDING_DEGENERATE_FACE].count);
+}
+
+static bool meets_itself(const starg_solid *solid) {
+    const starg_finding *found = solid->check->findings;
+    return found[STARG_FINDING_SELF_INTERSECTION].count + found[STARG_FINDING_SELF_CONTACT].count +
+               found[STARG_FINDING_DEGENERATE_FACE].count >
+           0;
+}
+
+static starg_status check_end(const starg_morph *m, int end, const starg_solid *solid) {
+    return meets_itself(solid)
+               ? fail_end(m->context, end == 0 ? "A" : "B in A's connectivity", solid)
+               : STARG_OK;
+}
+
+starg_status solids_check_crossings(starg_context *context, const starg_mesh *mesh,
+                                    const char *what) {
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    TRY(solid_make(context, mesh, &solid));
+    return solid->check->findings[STARG_FINDING_SELF_INTERSECTION].count > 0
+               ? fail_end(context, what, solid)
+               : STARG_OK;
 }
 
 static starg_status make_end(const starg_morph *m, int end, starg_solid **out) {
@@ -49,13 +67,8 @@ starg_status solids_check_last(const starg_morph *m) {
 starg_status solids_last_meets_itself(const starg_morph *m, bool *out) {
     starg_solid *solid = NULL;
     starg_status status = morph_solid(m, 1, &solid);
-    if (status == STARG_OK) {
-        const starg_finding *found = solid->check->findings;
-        *out = found[STARG_FINDING_SELF_INTERSECTION].count +
-                   found[STARG_FINDING_SELF_CONTACT].count +
-                   found[STARG_FINDING_DEGENERATE_FACE].count >
-               0;
-    }
+    if (status == STARG_OK)
+        *out = meets_itself(solid);
     starg_solid_free(solid);
     return status;
 }

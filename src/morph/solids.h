@@ -27,6 +27,11 @@ starg_status solids_last_meets_itself(const starg_morph *m, bool *out);
 /* Checks that the last end bounds a solid without self-intersections. Errors: MESH, MEMORY. */
 starg_status solids_check_last(const starg_morph *m);
 
+/* Checks that no faces of a surface pass through one another; `what` it is called. Errors: MESH,
+ * MEMORY. */
+starg_status solids_check_crossings(starg_context *context, const starg_mesh *mesh,
+                                    const char *what);
+
 /* Divides the tetrahedra of A so that their surface is an overlay: its vertices come first, in its
  * order, and c->surface is the caller's to set (solid_overlay.c). Errors: MESH (parts of A too thin
  * for doubles), MEMORY. */

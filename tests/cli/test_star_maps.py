@@ -2,6 +2,7 @@
 """Maps and morphs of solids that end at B itself: star-shaped pairs, pairs that are cut alike into pieces, and
 what --connectivity a tells. Results are checked by `verify`, and small ones here in rational numbers."""
 import itertools
+import os
 import random
 import shutil
 import unittest
@@ -120,6 +121,17 @@ class StarMaps(Case):
             self.run_text("verify", "a.off", "b.off", "m.vtu")
             if report["tetrahedra"] < 1000:
                 self.fills("m.vtu", solids["a"], solids["b"])
+
+    def test_crossing(self):
+        """A solid one of whose arms passes through the other is refused, whichever way."""
+        vertices, faces = star_solids.blocks([(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0), (2, 1, 0)])
+        bent = [(x - 1.7, y, z + 0.2) if y == 2 and x > 1 else (x, y, z) for x, y, z in vertices]
+        self.write_all([("U", (vertices, faces)), ("bent", (bent, faces)),
+                        ("stairs", star_solids.blocks([(x, y, 0) for x in range(4) for y in range(x + 1)]))])
+        for a, b, which in ("bent", "stairs", "A"), ("stairs", "bent", "B"):
+            _, err = self.run_text("map", "--solid", f"{a}.off", f"{b}.off", "-o", "m.vtu", status=2)
+            self.assertIn(f"{which} meets itself", err)
+            self.assertFalse(os.path.exists(self.path("m.vtu")))
 
     def test_limbs(self):
         """Animals of other limbs, which no surface map that comes first leads to."""
