@@ -70,15 +70,6 @@ void limbs_free_cuts(limb_cuts *cuts) {
 
 /* ---- the surfaces ---- */
 
-static uint64_t name_of(uint32_t u, uint32_t v) {
-    return u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
-}
-
-static int by_name(const void *left, const void *right) {
-    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return (a > b) - (a < b);
-}
-
 static starg_status begin_side(starg_context *context, const starg_mesh *mesh, cone_builder *b) {
     uint32_t whole, number;
     *b = (cone_builder){.context = context,
@@ -191,19 +182,20 @@ static starg_status find_left(const limb_cuts *cuts, int end, const section *s, 
         if (node->to == NOWHERE)
             on[node->from] = 1;
         else
-            PUSH(cuts->context, STAGE, &crossed, name_of(node->from, node->to));
+            PUSH(cuts->context, STAGE, &crossed, cones_edge_name(node->from, node->to));
     }
     if (crossed.count > 0)
-        qsort(crossed.data, crossed.count, sizeof *crossed.data, by_name);
+        qsort(crossed.data, crossed.count, sizeof *crossed.data, cones_by_edge_name);
     sets_make(sets, b->about.count);
     *left = NOWHERE;
     for (size_t i = 0; i < b->corners.count; i++) {
         uint32_t u = b->corners.data[i], v = b->corners.data[i % 3 == 2 ? i - 2 : i + 1];
         const double p = b->heights.data[u], q = b->heights.data[v];
-        const uint64_t name = name_of(u, v);
+        const uint64_t name = cones_edge_name(u, v);
         bool opposite = cones_are_opposite(p, q);
-        bool crosses = opposite && crossed.count > 0 &&
-                       bsearch(&name, crossed.data, crossed.count, sizeof name, by_name) != NULL;
+        bool crosses =
+            opposite && crossed.count > 0 &&
+            bsearch(&name, crossed.data, crossed.count, sizeof name, cones_by_edge_name) != NULL;
         if (!crosses && !on[u] && !on[v])
             sets_join(sets, u, v);
         if (crosses)
@@ -480,17 +472,18 @@ static starg_status number_parts(limb_cuts *cuts, int end, const edge_list *edge
         const number_list *loop = &cuts->walls.data[i].loops[end];
         for (size_t j = 0; j < loop->count; j++)
             PUSH(cuts->context, STAGE, &rims,
-                 name_of(loop->data[j], loop->data[(j + 1) % loop->count]));
+                 cones_edge_name(loop->data[j], loop->data[(j + 1) % loop->count]));
     }
     if (rims.count > 0)
-        qsort(rims.data, rims.count, sizeof *rims.data, by_name);
+        qsort(rims.data, rims.count, sizeof *rims.data, cones_by_edge_name);
     sets_make(labels, b->corners.count / 3);
     for (size_t i = 0; i < edges->count; i++) {
         uint32_t u = (uint32_t)(edges->data[i].edge >> 32), v = (uint32_t)edges->data[i].edge;
-        uint64_t name = name_of(u, v);
+        uint64_t name = cones_edge_name(u, v);
         uint32_t beyond = cones_across(edges, u, v);
-        if (beyond != NOWHERE && (rims.count == 0 || bsearch(&name, rims.data, rims.count,
-                                                             sizeof name, by_name) == NULL))
+        if (beyond != NOWHERE &&
+            (rims.count == 0 ||
+             bsearch(&name, rims.data, rims.count, sizeof name, cones_by_edge_name) == NULL))
             sets_join(labels, edges->data[i].triangle, beyond);
     }
     for (uint32_t t = 0; t < b->corners.count / 3; t++)

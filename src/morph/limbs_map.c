@@ -45,25 +45,17 @@ static void free_disk(disk *d) {
     RELEASE(d->rims.data, d->on.data, d->edges.data, d->corners, d->from, d->rim.data, d->flat);
 }
 
-static uint64_t name_of(uint32_t u, uint32_t v) {
-    return u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
-}
-
-static int by_name(const void *left, const void *right) {
-    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return (a > b) - (a < b);
-}
-
 static bool is_rim(const disk *d, uint32_t u, uint32_t v) {
-    const uint64_t name = name_of(u, v);
-    return bsearch(&name, d->rims.data, d->rims.count, sizeof name, by_name) != NULL;
+    const uint64_t name = cones_edge_name(u, v);
+    return bsearch(&name, d->rims.data, d->rims.count, sizeof name, cones_by_edge_name) != NULL;
 }
 
 static starg_status add_rim(disk *d, const number_list *path, bool closed) {
     starg_context *context = d->b->context;
     for (size_t i = 0; i + !closed < path->count; i++)
-        PUSH(context, STAGE, &d->rims, name_of(path->data[i], path->data[(i + 1) % path->count]));
-    qsort(d->rims.data, d->rims.count, sizeof *d->rims.data, by_name);
+        PUSH(context, STAGE, &d->rims,
+             cones_edge_name(path->data[i], path->data[(i + 1) % path->count]));
+    qsort(d->rims.data, d->rims.count, sizeof *d->rims.data, cones_by_edge_name);
     while (d->on.count < d->b->about.count)
         PUSH(context, STAGE, &d->on, 0);
     for (size_t i = 0; i < path->count; i++)

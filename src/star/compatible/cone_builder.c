@@ -280,8 +280,7 @@ typedef struct cut_step {
 static uint64_t node_name(const cut_node *node) {
     if (node->to == NOWHERE)
         return edge_name(node->from, node->from);
-    return node->from < node->to ? edge_name(node->from, node->to)
-                                 : edge_name(node->to, node->from);
+    return cones_edge_name(node->from, node->to);
 }
 
 static int by_start(const void *left, const void *right) {

@@ -55,6 +55,15 @@ typedef struct cone_builder {
     size_t work;    /* faces of pieces for which cuts were sought */
 } cone_builder;
 
+/* The same for an edge whichever way it runs; their order. */
+static inline uint64_t cones_edge_name(uint32_t u, uint32_t v) {
+    return u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
+}
+static inline int cones_by_edge_name(const void *left, const void *right) {
+    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+    return (a > b) - (a < b);
+}
+
 /* A state of the builder. Vertices stay where they are, so that their number tells which there are;
  * lists of triangles follow from the sides. */
 typedef struct cone_state {
