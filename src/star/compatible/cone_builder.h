@@ -55,7 +55,7 @@ typedef struct cone_builder {
     size_t work;    /* faces of pieces for which cuts were sought */
 } cone_builder;
 
-/* The same for an edge whichever way it runs; their order. */
+/* A name for an edge, whichever way it runs, and the order of names. */
 static inline uint64_t cones_edge_name(uint32_t u, uint32_t v) {
     return u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
 }
