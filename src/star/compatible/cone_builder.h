@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pieces bounded by triangles that lie in two places at once (cones.c divides them, peel.c makes
+/* Pieces bounded by triangles that lie in two places at once (cones.c divides them, peel.c chooses
  * the cuts). */
 #pragma once
 
@@ -161,3 +161,45 @@ bool cones_is_inside(const bvh *tree, const loop_places *loop, const double hub[
 starg_status cones_part(cone_builder *b, uint32_t which, const edge_list *edges,
                         const cut_node *loop, size_t count, uint32_t fresh)
     STARG_PRIVATE(cones_part);
+
+/* ---- cuts (cone_cuts.c) ---- */
+
+/* The point with the most room below the planes of faces, its room as a share of their size, the
+ * root of their area, and how much of that it sees. */
+typedef struct side_view {
+    double point[3], room, area, seen;
+} side_view;
+
+/* Outward, twice as long as the triangle's area. */
+void cones_find_normal(const cone_builder *b, int end, const uint32_t corner[3], double out[3])
+    STARG_PRIVATE(cones_find_normal);
+/* The half-space below a plane with an outward normal, as a row of a linear program of which the
+ * fourth variable is the distance from the planes. */
+void cones_put_row(const double normal[3], const double point[3], double *row)
+    STARG_PRIVATE(cones_put_row);
+/* Sees faces from the point with the most room below them and below `further` rows, `count` x 5;
+ * it is sought about `center`. Errors: MEMORY. */
+starg_status cones_see(const cone_builder *b, int end, const number_list *faces,
+                       const double *further, size_t count, const double center[3], double extent,
+                       side_view *out) STARG_PRIVATE(cones_see);
+/* Heights over the plane of a face at a notch, an edge where the solid turns by more than half a
+ * turn: such cuts leave no ledges. What looks up to the plane is above, and so are the faces in it,
+ * which the loops then pass on the side of the notch. *found: there is a notch. */
+void cones_draw_notch(cone_builder *b, uint32_t which, int end, const number_list *faces,
+                      const edge_list *edges, double *heights, bool *found)
+    STARG_PRIVATE(cones_draw_notch);
+/* What hangs together above the cut, also through faces that lie in it: sets of vertices. `flat`:
+ * vertices of such faces. */
+void cones_find_parts(const number_list *faces, const double *heights, uint32_t *part,
+                      uint8_t *flat) STARG_PRIVATE(cones_find_parts);
+/* The same heights where all but one part is below. */
+void cones_keep_part(const number_list *faces, const double *heights, uint32_t *part, uint32_t root,
+                     double *out) STARG_PRIVATE(cones_keep_part);
+/* The faces on one side of a cut; those that it crosses are on both. Errors: MEMORY. */
+starg_status cones_list_side(const cone_builder *b, const number_list *faces, const double *heights,
+                             bool below, number_list *out) STARG_PRIVATE(cones_list_side);
+/* Divides the edges that cross the cut of b->heights, and gives what is above to a new piece.
+ * *done: the cut is one loop, `rim`. Errors: MEMORY. */
+starg_status cones_part_leaf(cone_builder *b, uint32_t which, const number_list *faces,
+                             edge_list *edges, cut_loops *rim, uint32_t *leaf, bool *done)
+    STARG_PRIVATE(cones_part_leaf);

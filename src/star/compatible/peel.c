@@ -26,17 +26,16 @@
 
 #include "geometry/linear_program.h"
 #include "geometry/vec3.h"
+#include "mesh/topology.h"
 
 static const char STAGE[] = "cones";
 
-enum { PLANES = 64, PLANES_LEAST = 16, MORE = 4, SEARCHED = 8, TRIES = 100, CHORDS = 12 };
+enum { PLANES = 64, PLANES_LEAST = 16, MORE = 4, SEARCHED = 8, CHORDS = 12 };
 enum { FACES = 2000 };             /* with so many there are PLANES */
 static const double ROOMY = 0.02;  /* of feet, over the extent of walls */
 static const double MARGIN = 1e-3; /* of points that see a leaf, over its size */
-static const double TURN = 1e-3;   /* the sine of an angle at a notch, at least */
 static const double DEPTH = 0.4;   /* of the way from g to where D is not seen: there walls turn */
 static const double CUT = 10;      /* any cut is better than none */
-static const double LEVEL = 1e-9;  /* of the heights: those of vertices in a face's plane */
 
 /* The wall of a cut in the place where it is not flat. */
 typedef struct cut_wall {
@@ -78,144 +77,46 @@ static void peeling_free(peeling *m) {
             m->heights, m->part, m->flat, m->own);
 }
 
-static const double *at(const peeling *m, uint32_t vertex) {
-    return cones_place_of(m->b, m->end, vertex);
-}
-
 /* ---- leaves ---- */
-
-static uint32_t root_of(uint32_t *part, uint32_t v) {
-    while (part[v] != v)
-        v = part[v] = part[part[v]];
-    return v;
-}
-
-static void join(uint32_t *part, uint32_t u, uint32_t v) {
-    uint32_t a = root_of(part, u), c = root_of(part, v);
-    part[a > c ? a : c] = a > c ? c : a;
-}
-
-/* What is joined above the cut, also through faces that lie in it. */
-static void find_parts(peeling *m) {
-    const number_list *faces = &m->faces;
-    for (size_t i = 0; i < faces->count; i++) {
-        m->part[faces->data[i]] = faces->data[i];
-        m->flat[faces->data[i]] = 0;
-    }
-    for (size_t i = 0; i < faces->count; i += 3) {
-        const uint32_t *corner = faces->data + i;
-        bool flat =
-            m->heights[corner[0]] == 0 && m->heights[corner[1]] == 0 && m->heights[corner[2]] == 0;
-        for (int k = 0; k < 3 && flat; k++) {
-            m->flat[corner[k]] = 1;
-            join(m->part, corner[k], corner[(k + 1) % 3]);
-        }
-    }
-    for (size_t i = 0; i < faces->count; i++) {
-        uint32_t u = faces->data[i], v = faces->data[i % 3 == 2 ? i - 2 : i + 1];
-        double p = m->heights[u], q = m->heights[v];
-        if ((p > 0 && (q > 0 || m->flat[v])) || (q > 0 && m->flat[u]))
-            join(m->part, u, v);
-    }
-}
 
 /* The part above a loop, or NOWHERE. */
 static uint32_t part_above(peeling *m, const cut_node *loop, size_t count) {
     for (size_t i = 0; i < count; i++)
         if (loop[i].to != NOWHERE)
-            return root_of(m->part, m->heights[loop[i].from] > 0 ? loop[i].from : loop[i].to);
+            return sets_find(m->part, m->heights[loop[i].from] > 0 ? loop[i].from : loop[i].to);
     uint32_t t = cones_across(&m->edges, loop[1].from, loop[0].from), corners[3];
     if (t == NOWHERE)
         return NOWHERE;
     cones_corners_of(m->b, t, m->which, corners);
     for (int k = 0; k < 3; k++)
         if (m->heights[corners[k]] > 0)
-            return root_of(m->part, corners[k]);
-    return root_of(m->part, corners[0]);
-}
-
-/* Half-space below a plane with an outward normal, with `room` for the last variable. */
-static void put_row(const double normal[3], const double point[3], double *row) {
-    double size = vec3_length(normal);
-    for (int k = 0; k < 3; k++)
-        row[k] = size > 0 ? normal[k] / size : 0;
-    row[3] = size > 0 ? 1 : 0;
-    row[4] = size > 0 ? vec3_dot(normal, point) / size : 1;
-}
-
-/* The point with the most room below the planes of faces, its room as a share of their size, the
- * root of their area, and how much of that it sees. */
-typedef struct side_view {
-    double point[3], room, area, seen;
-} side_view;
-
-static void find_normal(const peeling *m, int end, const uint32_t corner[3], double out[3]) {
-    vec3_triangle_normal(cones_place_of(m->b, end, corner[0]), cones_place_of(m->b, end, corner[1]),
-                         cones_place_of(m->b, end, corner[2]), out);
+            return sets_find(m->part, corners[k]);
+    return sets_find(m->part, corners[0]);
 }
 
 /* Faces on one side, seen from there; in the place of the plane also the wall, with `vertex` on the
  * side of the leaf, in the other place from near the loop. */
 static starg_status see_side(const peeling *m, int end, uint32_t vertex, bool beyond,
                              side_view *out) {
-    SCOPED double *rows = NULL;
-    SCOPED uint32_t *order = NULL;
-    linear_solution solution;
     const loop_places *wall = end == m->end ? &m->wall : &m->image;
-    size_t count = 0;
-    double way[3], normal[3], down[3];
-    NEW(m->b->context, STAGE, rows, 5 * (m->side.count / 3 + 6));
-    NEW(m->b->context, STAGE, order, m->side.count / 3 + 6);
-    *out = (side_view){.room = 0};
-    for (size_t i = 0; i < m->side.count; i += 3) {
-        const uint32_t *corner = m->side.data + i;
-        find_normal(m, end, corner, normal);
-        out->area += 0.5 * vec3_length(normal);
-        put_row(normal, cones_place_of(m->b, end, corner[0]), rows + 5 * count++);
-    }
+    double rows[6][5] = {{0}}, way[3], down[3];
     vec3_subtract(cones_place_of(m->b, end, vertex), wall->mean, way);
     bool turned = (vec3_dot(way, wall->normal) < 0) != beyond;
     for (int k = 0; k < 3; k++)
         down[k] = turned ? wall->normal[k] : -wall->normal[k];
     if (end == m->end)
-        put_row(down, wall->mean, rows + 5 * count++);
+        cones_put_row(down, wall->mean, rows[0]);
     for (int k = 0; k < 6 && end != m->end; k++) { /* no farther from the loop than its extent */
-        double *row = rows + 5 * count++, sign = k < 3 ? 1 : -1;
-        for (int i = 0; i < 5; i++)
-            row[i] = i == k % 3 ? sign : 0;
-        row[4] = sign * wall->mean[k % 3] + wall->extent;
+        double sign = k < 3 ? 1 : -1;
+        rows[k][k % 3] = sign;
+        rows[k][4] = sign * wall->mean[k % 3] + wall->extent;
     }
-    double size = sqrt(out->area);
-    linear_program program = {.dimension = 4,
-                              .rows = rows,
-                              .count = count,
-                              .objective = {0, 0, 0, 1},
-                              .radius = 64 * (size + wall->extent)};
-    vec3_copy(wall->mean, program.center);
-    linear_program_solve(&program, order, NULL, &solution);
-    out->room = solution.feasible && size > 0 ? solution.point[3] / size : 0;
-    vec3_copy(solution.point, out->point);
-    for (size_t i = 0; i < m->side.count; i += 3) {
-        const uint32_t *corner = m->side.data + i;
-        find_normal(m, end, corner, normal);
-        vec3_subtract(cones_place_of(m->b, end, corner[0]), out->point, way);
-        out->seen += vec3_dot(way, normal) > 0 ? 0.5 * vec3_length(normal) : 0;
-    }
-    return STARG_OK;
+    return cones_see(m->b, end, &m->side, rows[0], end == m->end ? 1 : 6, wall->mean, wall->extent,
+                     out);
 }
 
-/* The triangles of the piece on one side of a cut; those that it crosses are on both. */
-static starg_status list_side(peeling *m, bool beyond) {
-    m->side.count = 0;
-    for (size_t i = 0; i < m->faces.count; i += 3) {
-        const uint32_t *corner = m->faces.data + i;
-        bool on = false;
-        for (int k = 0; k < 3; k++)
-            on = on || (beyond ? m->own[corner[k]] < 0 : m->own[corner[k]] > 0);
-        for (int k = 0; k < 3 && on; k++)
-            PUSH(m->b->context, STAGE, &m->side, corner[k]);
-    }
-    return STARG_OK;
+static starg_status list_side(peeling *m, bool below) {
+    return cones_list_side(m->b, &m->faces, m->own, below, &m->side);
 }
 
 /* The directions of a loop's nodes from a point. */
@@ -246,7 +147,7 @@ static starg_status find_direction(const peeling *m, const double *ways, size_t 
     for (size_t i = 0; i < count; i++) {
         double normal[3];
         vec3_cross(ways + 3 * ((i + 1) % count), ways + 3 * i, normal);
-        put_row(normal, origin, rows + 5 * i);
+        cones_put_row(normal, origin, rows + 5 * i);
     }
     const linear_program program = {
         .dimension = 4, .rows = rows, .count = count, .objective = {0, 0, 0, 1}, .radius = 1};
@@ -300,7 +201,7 @@ static bool go_from_g(const peeling *m, const double direction[3], double out[3]
     double reach = INFINITY;
     for (size_t i = 0; i < m->side.count; i += 3) {
         double normal[3], way[3];
-        find_normal(m, end, m->side.data + i, normal);
+        cones_find_normal(m->b, end, m->side.data + i, normal);
         vec3_subtract(cones_place_of(m->b, end, m->side.data[i]), m->g, way);
         if (vec3_dot(normal, direction) > 0)
             reach = fmin(reach, vec3_dot(normal, way) / vec3_dot(normal, direction));
@@ -382,11 +283,7 @@ static starg_status weigh_leaf(peeling *m, uint32_t part) {
 /* Is a part above the cut bounded by one loop? Then it is weighed; all else is below. */
 static starg_status try_part(peeling *m, uint32_t part) {
     bool simple;
-    for (size_t i = 0; i < m->faces.count; i++) {
-        uint32_t v = m->faces.data[i];
-        bool other = m->heights[v] > 0 && root_of(m->part, v) != part;
-        m->own[v] = other ? -m->heights[v] : m->heights[v];
-    }
+    cones_keep_part(&m->faces, m->heights, m->part, part, m->own);
     TRY(cones_find_loops(m->b, m->which, &m->edges, m->own, &m->rim, &simple));
     return simple && m->rim.lengths.count == 1 ? weigh_leaf(m, part) : STARG_OK;
 }
@@ -398,7 +295,7 @@ static starg_status weigh_cut(peeling *m) {
     TRY(cones_find_loops(m->b, m->which, &m->edges, m->heights, &m->loops, &simple));
     if (!simple)
         return STARG_OK;
-    find_parts(m);
+    cones_find_parts(&m->faces, m->heights, m->part, m->flat);
     loop = m->loops.nodes.data;
     for (size_t i = 0; i < m->loops.lengths.count; loop += m->loops.lengths.data[i++]) {
         uint32_t part = part_above(m, loop, m->loops.lengths.data[i]);
@@ -406,41 +303,6 @@ static starg_status weigh_cut(peeling *m) {
             TRY(try_part(m, part));
     }
     return STARG_OK;
-}
-
-/* Heights over the plane of a face at a notch, an edge where the solid turns by more than half a
- * turn: such cuts leave no ledges. What looks up to the plane is above, and so are the faces in it,
- * which the loops then pass on the side of the notch. */
-static void draw_notch(peeling *m, bool *found) {
-    *found = false;
-    for (int i = 0; i < TRIES && !*found; i++) {
-        size_t f = 3 * (size_t)starg_rng_below(&m->b->rng, m->faces.count / 3), k = i % 3;
-        const uint32_t *corner = m->faces.data + f;
-        uint32_t beyond = cones_across(&m->edges, corner[k], corner[(k + 1) % 3]), other[3];
-        double normal[3], way[3];
-        vec3_triangle_normal(at(m, corner[0]), at(m, corner[1]), at(m, corner[2]), normal);
-        double size = vec3_length(normal);
-        if (beyond == NOWHERE || !(size > 0))
-            continue;
-        cones_corners_of(m->b, beyond, m->which, other);
-        double rise = 0, reach = 0;
-        for (int j = 0; j < 3; j++) {
-            vec3_subtract(at(m, other[j]), at(m, corner[0]), way);
-            rise = fmax(rise, vec3_dot(normal, way) / size);
-            reach = fmax(reach, vec3_length(way));
-        }
-        *found = rise > TURN * reach;
-        for (int j = 0; j < 3; j++)
-            normal[j] /= -size;
-        if (*found)
-            cones_find_heights(m->b, m->end, &m->faces, normal, at(m, corner[0]), m->heights);
-    }
-    double most = 0;
-    for (size_t i = 0; i < m->faces.count && *found; i++)
-        most = fmax(most, fabs(m->heights[m->faces.data[i]]));
-    for (size_t i = 0; i < m->faces.count && *found; i++)
-        if (fabs(m->heights[m->faces.data[i]]) < LEVEL * most)
-            m->heights[m->faces.data[i]] = 0;
 }
 
 /* Fewer planes where each costs more. */
@@ -465,7 +327,7 @@ static starg_status choose_leaf(peeling *m, bool *found) {
         bool drawn = true;
         m->end = m->blind[0] && m->blind[1] ? (i / 2 + i / SEARCHED) % 2 : m->blind[1];
         if (i % 2 == 1)
-            draw_notch(m, &drawn);
+            cones_draw_notch(b, m->which, m->end, &m->faces, &m->edges, m->heights, &drawn);
         else if (i % SEARCHED == 0)
             TRY(cones_search_plane(b, m->which, m->end, &m->faces, m->heights, &drawn));
         else
@@ -478,30 +340,6 @@ static starg_status choose_leaf(peeling *m, bool *found) {
 }
 
 /* ---- the leaf ---- */
-
-/* Divides the edges that cross the cut on the leaf's side, and gives the leaf its triangles. */
-static starg_status part_leaf(peeling *m, bool *done) {
-    cone_builder *b = m->b;
-    double *heights = b->heights.data;
-    size_t former = b->about.count;
-    for (size_t i = 0; i < m->faces.count; i++) {
-        uint32_t u = m->faces.data[i], v = m->faces.data[i % 3 == 2 ? i - 2 : i + 1];
-        double p = heights[u], q = heights[v];
-        if (u < v && cones_are_opposite(p, q)) {
-            TRY(cones_split_edge(b, u, v, p / (p - q)));
-            heights = b->heights.data;
-        }
-    }
-    for (size_t v = former; v < b->about.count; v++)
-        heights[v] = 0;
-    TRY(cones_list_edges(b, m->which, &m->edges));
-    TRY(cones_find_loops(b, m->which, &m->edges, heights, &m->rim, done));
-    *done = *done && m->rim.lengths.count == 1;
-    if (!*done)
-        return STARG_OK;
-    TRY(cones_open_piece(b, 0, &m->leaf));
-    return cones_part(b, m->which, &m->edges, m->rim.nodes.data, m->rim.nodes.count, m->leaf);
-}
 
 /* ---- walls ---- */
 
@@ -578,7 +416,7 @@ static starg_status peel(peeling *m, int end, peel_verdict *out) {
     for (size_t i = 0; i < m->faces.count; i++)
         m->own[m->faces.data[i]] = m->b->heights.data[m->faces.data[i]];
     *out = PEEL_BROKEN;
-    TRY(part_leaf(m, &done));
+    TRY(cones_part_leaf(m->b, m->which, &m->faces, &m->edges, &m->rim, &m->leaf, &done));
     if (!done)
         return STARG_OK;
     TRY(cones_place_loop(m->b, m->end, m->rim.nodes.data, m->rim.nodes.count, &m->wall));
