@@ -5,14 +5,16 @@
  * one is made that suits the solids.
  *
  * Stages: limbs of both by their skeletons, in pairs (limbs_tree.c); flat walls across pairs of
- * limbs, which part both into pieces that correspond (limbs_cut.c); the surfaces of each pair of
- * pieces, mapped onto each other so that the walls' loops correspond (limbs_map.c); pieces with
- * kernels in both are filled by cones, others are cut further (star/compatible/cones.c).
+ * limbs, which part both into pieces that correspond (limbs_cut.c), and further ones until the
+ * pieces are star-shaped in both (limbs_part.c); the surfaces of each pair of pieces, mapped onto
+ * each other so that the walls' loops correspond (limbs_map.c). Pieces are filled by cones; those
+ * that resisted are cut further (star/compatible/cones.c).
  *
  * Where a surface map comes first and cuts follow, a flat wall in one solid has any loop in the
  * other. Here walls are flat in both. Cost: that of its stages. */
 #include "morph/limbs.h"
 
+#include "core/parallel.h"
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "limbs";
@@ -47,47 +49,47 @@ static starg_status add_walls(const limb_cuts *cuts, limb_surface *out) {
 /* What comes of beginning with the limbs of one solid, or of the other one. */
 typedef struct limb_trial {
     limb_surface surface;
-    size_t piece_count;
+    size_t piece_count, resisting;
     bool found;
 } limb_trial;
 
-static starg_status map_pieces(limb_tree trees[2], limb_trial *out) {
-    starg_context *context = trees[0].context;
+typedef struct limb_trials {
+    const limb_tree *trees;
+    limb_trial trial[2];
+} limb_trials;
+
+static starg_status map_pieces(starg_context *context, limb_tree trees[2], limb_trial *out) {
     SCOPED limb_pairs pairs = {0};
     SCOPED_BY(limbs_free_cuts) limb_cuts cuts = {.context = context};
     TRY(limbs_pair(trees, &pairs));
     TRY(limbs_cut(context, trees, &pairs, &cuts));
     out->piece_count = cuts.piece_count;
+    out->resisting = cuts.resisting;
     out->found = cuts.piece_count > 1;
     for (uint32_t p = 0; p < cuts.piece_count && out->found; p++)
         TRY(limbs_map_piece(&cuts, p, &out->surface, &out->found));
     return out->found ? add_walls(&cuts, &out->surface) : STARG_OK;
 }
 
-static void swap_trees(limb_tree trees[2]) {
-    const limb_tree former = trees[0];
-    trees[0] = trees[1];
-    trees[1] = former;
+static void free_trees(limb_tree (*trees)[2]) {
+    limbs_free_tree(&(*trees)[0]);
+    limbs_free_tree(&(*trees)[1]);
 }
 
-/* Limbs that are added to the trees are taken away again. */
-static starg_status map_pieces_from(limb_tree trees[2], int first, limb_trial *out) {
-    const limb_tree before[2] = {trees[0], trees[1]};
-    if (first == 1)
-        swap_trees(trees);
-    starg_status status = map_pieces(trees, out);
+static starg_status map_from(starg_context *context, void *shared, void *scratch, size_t first) {
+    limb_trials *all = shared;
+    limb_trial *out = &all->trial[first];
+    SCOPED_BY(free_trees) limb_tree trees[2] = {{.context = context}, {.context = context}};
+    (void)scratch;
+    for (size_t i = 0; i < 2; i++)
+        TRY(limbs_copy_tree(context, &all->trees[i ^ first], &trees[i]));
+    TRY(map_pieces(context, trees, out));
     if (first == 1) {
-        swap_trees(trees);
         double *const former = out->surface.places[0].data;
         out->surface.places[0].data = out->surface.places[1].data;
         out->surface.places[1].data = former;
     }
-    for (int end = 0; end < 2; end++) {
-        trees[end].nodes.count = before[end].nodes.count;
-        trees[end].points.count = before[end].points.count;
-        trees[end].limbs.count = before[end].limbs.count;
-    }
-    return status;
+    return STARG_OK;
 }
 
 static starg_status fill(starg_context *context, const limb_trial *trial, compatible_cones *out,
@@ -106,21 +108,27 @@ static starg_status fill(starg_context *context, const limb_trial *trial, compat
     return STARG_OK;
 }
 
-static void free_trials(limb_trial (*trials)[2]) {
-    for (int i = 0; i < 2; i++)
-        free_surface(&(*trials)[i].surface);
+static void free_trials(limb_trials *all) {
+    free_surface(&all->trial[0].surface);
+    free_surface(&all->trial[1].surface);
 }
 
-/* From the solid whose limbs give fewer faces, else from the other one. */
-static starg_status fill_either(limb_tree trees[2], compatible_cones *out, bool *found) {
-    SCOPED_BY(free_trials) limb_trial trials[2] = {{.found = false}, {.found = false}};
-    for (int first = 0; first < 2; first++)
-        TRY(map_pieces_from(trees, first, &trials[first]));
-    bool second = trials[1].surface.faces.count < trials[0].surface.faces.count;
-    int best = trials[1].found && (second || !trials[0].found);
+/* From the solid whose limbs leave fewer pieces that resist, or give fewer faces, else from the
+ * other one. */
+static starg_status fill_either(starg_context *context, const limb_tree trees[2],
+                                compatible_cones *out, bool *found) {
+    SCOPED_BY(free_trials) limb_trials all = {.trees = trees};
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = 2, .shared = &all, .item = map_from, .silent = true};
+    TRY(starg_parallel_for(context, &loop));
+    const limb_trial *a = &all.trial[0], *b = &all.trial[1];
+    const bool fewer = a->resisting != b->resisting
+                           ? b->resisting < a->resisting
+                           : b->surface.faces.count < a->surface.faces.count;
+    int best = b->found && (fewer || !a->found);
     for (int i = 0; i < 2 && !*found; i++, best = 1 - best)
-        if (trials[best].found)
-            TRY(fill(trees[0].context, &trials[best], out, found));
+        if (all.trial[best].found)
+            TRY(fill(context, &all.trial[best], out, found));
     return STARG_OK;
 }
 
@@ -136,11 +144,10 @@ starg_status limbs_fill(starg_context *context, const starg_mesh *const meshes[2
         STARG_TRY(limbs_find_tree(context, solids[end], &trees[end], &good));
     }
     if (good)
-        STARG_TRY(fill_either(trees, out, found));
+        STARG_TRY(fill_either(context, trees, out, found));
 done:
-    for (int end = 0; end < 2; end++) {
-        limbs_free_tree(&trees[end]);
-        starg_solid_free(solids[end]);
-    }
+    free_trees(&trees);
+    starg_solid_free(solids[0]);
+    starg_solid_free(solids[1]);
     return status;
 }

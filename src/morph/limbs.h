@@ -38,6 +38,8 @@ typedef struct limb_tree {
 /* *found: there is a tree with a limb. Errors: those of the skeleton. */
 starg_status limbs_find_tree(starg_context *context, const starg_solid *solid, limb_tree *out,
                              bool *found);
+/* Errors: MEMORY. */
+starg_status limbs_copy_tree(starg_context *context, const limb_tree *tree, limb_tree *out);
 void limbs_free_tree(limb_tree *tree);
 
 /* A limb and the end that it begins with. */
@@ -79,14 +81,18 @@ typedef struct limb_cuts {
     cone_builder sides[2];
     number_list mates; /* per vertex of the first surface: the one of the second, or NOWHERE */
     STARG_ARRAY(limb_wall) walls;
-    size_t piece_count;
+    size_t piece_count, resisting; /* the latter are not star-shaped in both */
 } limb_cuts;
 
-/* Cuts both at pairs of limbs, alike, and then opens walls between pieces whose union is
- * star-shaped in both. Errors: MEMORY, CANCELLED. */
+/* Cuts both at pairs of limbs, alike, opens walls between pieces whose union is star-shaped in
+ * both, and divides those that are not. Errors: MEMORY, CANCELLED. */
 starg_status limbs_cut(starg_context *context, const limb_tree trees[2], const limb_pairs *pairs,
                        limb_cuts *out);
 void limbs_free_cuts(limb_cuts *cuts);
+
+/* Adds walls until all pieces are star-shaped in both solids, or resist. `surfaces`: those of the
+ * solids. Errors: MEMORY, CANCELLED. (limbs_part.c) */
+starg_status limbs_part(limb_cuts *cuts, bvh *const surfaces[2]);
 
 /* Divides edges of two paths, or loops, so that they have the same number of vertices, by their
  * lengths, and makes those mates. Errors: MEMORY. */

@@ -8,7 +8,8 @@
  * loop about its limb is a wall if some point of its plane sees all of it from inside, and if it
  * meets no other wall; where there is one in both solids, both are cut. What is between walls are
  * the pieces. From the ends of limbs inward, walls are opened between pieces whose union has a
- * kernel in both solids. Then all is done once more with the walls that are left.
+ * kernel in both solids. Then all is done once more with the walls that are left, and pieces that
+ * are not star-shaped in both solids are divided further (limbs_part.c).
  *
  * Invariant: the walls of a solid without handles part it into a tree of pieces, and the trees are
  * the same. Cost: O(n log n) for each plane, a linear program in both solids for each wall. */
@@ -649,16 +650,18 @@ starg_status limbs_cut(starg_context *context, const limb_tree trees[2], const l
     for (int round = 0; round < 2 && good; round++) {
         SCOPED uint32_t *first = NULL, *second = NULL;
         TRY(cut_at_places(context, &plan, &places, out));
-        for (size_t i = 0; i < out->walls.count && round == 1; i++) {
-            turn_loops(out, &out->walls.data[i]);
-            TRY(limbs_match_paths(out, out->walls.data[i].loops, true));
-        }
         NEW(context, STAGE, first, out->sides[0].corners.count / 3);
         NEW(context, STAGE, second, out->sides[1].corners.count / 3);
         uint32_t *const labels[2] = {first, second};
         TRY(number_pieces(out, labels, &good));
         if (good)
             TRY(round == 0 ? open_walls(out, labels, &places) : part(out, labels));
+    }
+    if (good)
+        TRY(limbs_part(out, plan.surfaces));
+    for (size_t i = 0; i < out->walls.count && good; i++) {
+        turn_loops(out, &out->walls.data[i]);
+        TRY(limbs_match_paths(out, out->walls.data[i].loops, true));
     }
     if (!good)
         out->piece_count = 0;

@@ -31,6 +31,21 @@ void limbs_free_tree(limb_tree *tree) {
     RELEASE(tree->nodes.data, tree->points.data, tree->limbs.data);
 }
 
+starg_status limbs_copy_tree(starg_context *context, const limb_tree *tree, limb_tree *out) {
+    *out = *tree;
+    out->context = context;
+    memset(&out->nodes, 0, sizeof out->nodes);
+    memset(&out->points, 0, sizeof out->points);
+    memset(&out->limbs, 0, sizeof out->limbs);
+    for (size_t i = 0; i < tree->nodes.count; i++)
+        PUSH(context, STAGE, &out->nodes, tree->nodes.data[i]);
+    for (size_t i = 0; i < tree->points.count; i++)
+        PUSH(context, STAGE, &out->points, tree->points.data[i]);
+    for (size_t i = 0; i < tree->limbs.count; i++)
+        PUSH(context, STAGE, &out->limbs, tree->limbs.data[i]);
+    return STARG_OK;
+}
+
 /* ---- the tree ---- */
 
 /* What is left of a skeleton once it is a tree. */

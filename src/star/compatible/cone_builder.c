@@ -482,6 +482,8 @@ starg_status cones_part(cone_builder *b, uint32_t which, const edge_list *edges,
     PUSH(b->context, STAGE, &stack, cones_across(edges, loop[1].from, loop[0].from));
     while (stack.count > 0) {
         uint32_t t = stack.data[--stack.count], corners[3];
+        if (t == NOWHERE)
+            continue; /* across a rim */
         size_t side = side_of_triangle(b, t, 0) == which ? 0 : 1;
         if (side_of_triangle(b, t, side) != which)
             continue;

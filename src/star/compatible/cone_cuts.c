@@ -3,8 +3,8 @@
  * the division of a piece.
  *
  * A cut is given by heights of the piece's vertices: it passes where they are 0. What is above, and
- * hangs together there, is a part; a leaf is a part that is bounded by one loop. Cost: linear in the
- * faces of the piece, but for n log n where edges are listed. */
+ * hangs together there, is a part; a leaf is a part that is bounded by one loop. Cost: linear in
+ * the faces of the piece, but for n log n where edges are listed. */
 #include "star/compatible/cone_builder.h"
 
 #include "geometry/linear_program.h"
