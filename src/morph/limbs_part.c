@@ -24,11 +24,17 @@
 static const char STAGE[] = "limbs";
 enum { DRAWN = 96, AIMED = 24, AIMED_MORE = 96, SEARCHED = 12 }; /* planes for a piece, for a set */
 enum { WALLS_MOST = 64, PAIRED = 8, LEVELS = 8 };
-enum { RUNS = 8, CUTS_MOST = 8 };  /* for a piece */
+enum {
+    RUNS = 8,
+    CUTS_MOST = 30,
+    WORK = 8,
+    EASY = 30000
+};                                 /* runs for a piece, their cuts, and corners looked at */
 static const double ROOMY = 0.02;  /* of hubs, over the extent of loops */
 static const double STEEPEST = 10; /* doublings of the noise in directions of planes */
-static const double CHIP = 1.17;   /* the score of a chip; that of planes is at most 1.2 */
-static const double STAR = 0.1;    /* what a star-shaped side counts, beside shares that are seen */
+static const double CHIP = 0.97;   /* what a chip counts, for shares that are seen */
+/* What a star-shaped side counts, beside shares that are seen: in every other run. */
+static const double STAR[2] = {0.1, 0.5};
 static const double MARGIN = 1e-3; /* of points that see a side, over its size */
 
 /* The best cut for a set of walls: those on the side without the first one. */
@@ -44,11 +50,12 @@ typedef struct piece_side {
     const bvh *surface; /* of the solid */
     uint32_t which;
     int end;
+    double bonus; /* of star-shaped sides */
     bool blind;
-    double guard[3];    /* sees all of it if it is not blind */
-    number_list walls;  /* around the piece */
-    number_list faces;  /* of the surface */
-    number_list beside; /* faces on one side of a cut, with walls */
+    double guard[3];             /* sees all of it if it is not blind */
+    number_list walls;           /* around the piece */
+    number_list faces, vertices; /* of the surface */
+    number_list beside;          /* faces on one side of a cut, with walls */
     edge_list edges;
     cut_loops rim;
     loop_places wall;
@@ -62,8 +69,8 @@ static void free_side(piece_side *s) {
     for (size_t i = 0; i < s->best.count; i++)
         starg_release(s->cuts->context, s->best.data[i].heights);
     cones_free_loops(&s->rim);
-    RELEASE(s->walls.data, s->faces.data, s->beside.data, s->edges.data, s->wall.points.data,
-            s->heights, s->own, s->part, s->flat, s->best.data);
+    RELEASE(s->walls.data, s->faces.data, s->vertices.data, s->beside.data, s->edges.data,
+            s->wall.points.data, s->heights, s->own, s->part, s->flat, s->best.data);
 }
 
 static cone_builder *builder(const piece_side *s) {
@@ -94,7 +101,16 @@ static starg_status add_wall(piece_side *s, size_t i) {
     return STARG_OK;
 }
 
-/* Which walls are above? *apart: none is on both sides, or met, and the first one is below. */
+static uint64_t all_walls(const piece_side *s) {
+    return s->walls.count > 0 ? UINT64_MAX >> (WALLS_MOST - s->walls.count) : 0;
+}
+
+static void turn(const piece_side *s, double *heights) {
+    for (size_t i = 0; i < s->vertices.count; i++)
+        heights[s->vertices.data[i]] *= -1;
+}
+
+/* Which walls are above? *apart: none is on both sides, or met. */
 static uint64_t set_above(const piece_side *s, bool *apart) {
     uint64_t set = 0;
     *apart = true;
@@ -105,7 +121,6 @@ static uint64_t set_above(const piece_side *s, bool *apart) {
             *apart = above ? s->own[loop->data[j]] > 0 : s->own[loop->data[j]] < 0;
         set |= (uint64_t)above << i;
     }
-    *apart = *apart && (set & 1) == 0;
     return set;
 }
 
@@ -151,13 +166,19 @@ static starg_status keep(piece_side *s, uint64_t set, double score) {
 }
 
 /* Weighs one part above a plane; all else is below. */
-static starg_status weigh_part(piece_side *s, uint32_t root) {
+static starg_status weigh_part(piece_side *s, uint32_t root, bool through) {
     cone_builder *b = builder(s);
     double hub[3], room, share;
     int star;
     bool good;
     cones_keep_part(&s->faces, s->heights, s->part, root, s->own);
-    const uint64_t set = set_above(s, &good);
+    if (!through)
+        cones_drop_flat(&s->faces, s->flat, s->own);
+    uint64_t set = set_above(s, &good);
+    if (set & 1) { /* the other side is the one without the first wall */
+        set = all_walls(s) & ~set;
+        turn(s, s->own);
+    }
     if (good)
         TRY(cones_find_loops(b, s->which, &s->edges, s->own, &s->rim, &good));
     if (!good || s->rim.lengths.count != 1)
@@ -167,32 +188,20 @@ static starg_status weigh_part(piece_side *s, uint32_t root) {
     if (!(room > ROOMY) || !cones_is_inside(s->surface, &s->wall, hub))
         return STARG_OK;
     TRY(see_both(s, set, &share, &star));
-    return s->blind || star == 2 ? keep(s, set, share + STAR * star) : STARG_OK;
+    return s->blind || star == 2 ? keep(s, set, share + s->bonus * star) : STARG_OK;
 }
 
 /* Weighs all parts on both sides of a plane. */
 static starg_status weigh_plane(piece_side *s) {
-    SCOPED number_list roots = {0};
     cones_snap(&s->faces, s->heights);
     for (int side = 0; side < 2; side++) {
-        roots.count = 0;
-        cones_find_parts(&s->faces, s->heights, s->part, s->flat);
-        for (size_t i = 0; i < s->faces.count; i++) {
-            uint32_t v = s->faces.data[i];
-            if (s->heights[v] > 0 && s->part[v] == v) {
-                bool known = false;
-                for (size_t j = 0; j < roots.count && !known; j++)
-                    known = roots.data[j] == v;
-                if (!known)
-                    PUSH(s->cuts->context, STAGE, &roots, v);
-            }
+        cones_find_parts(&s->faces, s->heights, side == 0, s->part, s->flat);
+        for (size_t i = 0; i < s->vertices.count; i++) {
+            const uint32_t v = s->vertices.data[i];
+            if (s->heights[v] > 0 && s->part[v] == v)
+                TRY(weigh_part(s, v, side == 0));
         }
-        for (size_t i = 0; i < roots.count; i++)
-            TRY(weigh_part(s, roots.data[i]));
-        for (size_t i = 0; i < s->faces.count; i++)
-            s->own[s->faces.data[i]] = -s->heights[s->faces.data[i]];
-        for (size_t i = 0; i < s->faces.count; i++)
-            s->heights[s->faces.data[i]] = s->own[s->faces.data[i]];
+        turn(s, s->heights);
     }
     return STARG_OK;
 }
@@ -264,7 +273,7 @@ static void find_span(const double *heights, const uint32_t *vertices, size_t co
  * *found: it is one. */
 static double draw_level(piece_side *s, uint64_t set, bool above, bool *found) {
     double level = 0, span[2], all[2];
-    find_span(s->heights, s->faces.data, s->faces.count, all);
+    find_span(s->heights, s->vertices.data, s->vertices.count, all);
     for (size_t i = 0; i < s->walls.count; i++) {
         const number_list *loop = &wall_at(s, i)->loops[s->end];
         find_span(s->heights, loop->data, loop->count, span);
@@ -300,10 +309,8 @@ static starg_status aim_planes(piece_side *s, uint64_t set) {
         vec3_along(normal, 2 * most, noise, normal);
         cones_find_heights(b, 0, &s->faces, normal, origin, s->heights);
         const double level = draw_level(s, set, n % 2 == 0, &found);
-        for (size_t i = 0; i < s->faces.count; i++)
-            s->own[s->faces.data[i]] = s->heights[s->faces.data[i]] - level;
-        for (size_t i = 0; i < s->faces.count; i++)
-            s->heights[s->faces.data[i]] = s->own[s->faces.data[i]];
+        for (size_t i = 0; i < s->vertices.count; i++)
+            s->heights[s->vertices.data[i]] -= level;
         if (found)
             TRY(weigh_plane(s));
     }
@@ -313,7 +320,7 @@ static starg_status aim_planes(piece_side *s, uint64_t set) {
 /* Planes that part one wall, or two, from the other ones. */
 static starg_status aim_at_few(piece_side *s) {
     const size_t count = s->walls.count;
-    const uint64_t all = count > 0 ? (UINT64_MAX >> (WALLS_MOST - count)) : 0;
+    const uint64_t all = all_walls(s);
     for (size_t i = 0; i < count; i++)
         for (size_t j = i; j < count && (j == i || count <= PAIRED); j++) {
             uint64_t set = (uint64_t)1 << i | (uint64_t)1 << j;
@@ -346,7 +353,12 @@ static starg_status open_side(limb_cuts *cuts, const bvh *surface, int end, uint
     NEW(cuts->context, STAGE, s->heights, b->about.count);
     NEW(cuts->context, STAGE, s->own, b->about.count);
     NEW(cuts->context, STAGE, s->part, b->about.count);
-    NEW(cuts->context, STAGE, s->flat, b->about.count);
+    NEW_ZERO(cuts->context, STAGE, s->flat, b->about.count);
+    for (size_t i = 0; i < s->faces.count; i++)
+        if (s->flat[s->faces.data[i]] == 0) {
+            s->flat[s->faces.data[i]] = 1;
+            PUSH(cuts->context, STAGE, &s->vertices, s->faces.data[i]);
+        }
     return STARG_OK;
 }
 
@@ -371,7 +383,7 @@ static starg_status choose_set(piece_side sides[2], uint64_t *out, bool *found) 
     for (int end = 0; end < 2; end++)
         if (!sides[end].blind && cut_of(&sides[end], 0) == NULL)
             PUSH(sides[end].cuts->context, STAGE, &sides[end].best,
-                 ((set_cut){.set = 0, .score = CHIP}));
+                 ((set_cut){.set = 0, .score = CHIP + 2 * sides[end].bonus}));
     for (size_t i = 0; i < sides[0].best.count; i++) {
         const set_cut *first = &sides[0].best.data[i], *second = cut_of(&sides[1], first->set);
         if (second != NULL && first->score + second->score > most) {
@@ -469,9 +481,10 @@ static void free_sides(piece_side (*sides)[2]) {
 
 /* Cuts a piece, and what becomes of it, until all is star-shaped in both solids. *cuts_left falls
  * by the cuts; *done: all is. */
-static starg_status divide(limb_cuts *cuts, bvh *const surfaces[2], uint32_t which,
+static starg_status divide(limb_cuts *cuts, bvh *const surfaces[2], uint32_t which, double bonus,
                            size_t *cuts_left, bool *done) {
     const size_t former = cuts->piece_count;
+    size_t work = 0, most = 0;
     *done = true;
     for (size_t next = former - 1; next < cuts->piece_count && *done; next++) {
         bool blind = true;
@@ -482,8 +495,12 @@ static starg_status divide(limb_cuts *cuts, bvh *const surfaces[2], uint32_t whi
             for (int end = 0; end < 2; end++)
                 TRY(open_side(cuts, surfaces[end], end, next < former ? which : (uint32_t)next,
                               &sides[end]));
+            sides[0].bonus = sides[1].bonus = bonus;
             blind = sides[0].blind || sides[1].blind;
-            *done = !blind || (*cuts_left > 0 && sides[0].walls.count <= WALLS_MOST);
+            work += sides[0].faces.count + sides[1].faces.count;
+            most = most > 0 ? most : WORK * work + EASY;
+            *done =
+                !blind || (*cuts_left > 0 && work <= most && sides[0].walls.count <= WALLS_MOST);
             if (blind && *done) {
                 TRY(cut_piece(cuts, sides, &found, &good));
                 *done = found && good;
@@ -560,14 +577,16 @@ static starg_status divide_best(limb_cuts *cuts, bvh *const surfaces[2], uint32_
     SCOPED_BY(free_state) part_state before = {.context = cuts->context};
     starg_rng best[2];
     size_t fewest = CUTS_MOST + 1;
+    int chosen = 0;
     TRY(save(cuts, &before));
     for (int run = 0; run < RUNS && fewest > 1; run++) {
         const starg_rng begun[2] = {cuts->sides[0].rng, cuts->sides[1].rng};
         size_t left = fewest - 1;
-        TRY(divide(cuts, surfaces, which, &left, done));
+        TRY(divide(cuts, surfaces, which, STAR[run % 2], &left, done));
         if (*done) {
             fewest = fewest - 1 - left;
             memcpy(best, begun, sizeof best);
+            chosen = run;
             if (fewest == 0)
                 return STARG_OK;
         }
@@ -576,7 +595,7 @@ static starg_status divide_best(limb_cuts *cuts, bvh *const surfaces[2], uint32_
     *done = fewest <= CUTS_MOST;
     for (int end = 0; end < 2 && *done; end++)
         cuts->sides[end].rng = best[end];
-    return *done ? divide(cuts, surfaces, which, &fewest, done) : STARG_OK;
+    return *done ? divide(cuts, surfaces, which, STAR[chosen % 2], &fewest, done) : STARG_OK;
 }
 
 static starg_status rename_piece(limb_cuts *cuts, uint32_t from, uint32_t to) {

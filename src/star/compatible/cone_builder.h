@@ -188,13 +188,16 @@ starg_status cones_see(const cone_builder *b, int end, const number_list *faces,
 void cones_draw_notch(cone_builder *b, uint32_t which, int end, const number_list *faces,
                       const edge_list *edges, double *heights, bool *found)
     STARG_PRIVATE(cones_draw_notch);
-/* What hangs together above the cut, also through faces that lie in it: sets of vertices. `flat`:
+/* What hangs together above the cut, or through faces that lie in it: sets of vertices. `flat`:
  * vertices of such faces. */
-void cones_find_parts(const number_list *faces, const double *heights, uint32_t *part,
+void cones_find_parts(const number_list *faces, const double *heights, bool through, uint32_t *part,
                       uint8_t *flat) STARG_PRIVATE(cones_find_parts);
 /* The same heights where all but one part is below. */
 void cones_keep_part(const number_list *faces, const double *heights, uint32_t *part, uint32_t root,
                      double *out) STARG_PRIVATE(cones_keep_part);
+/* Faces that lie in the cut come to be below it, but for their vertices next to what is above. */
+void cones_drop_flat(const number_list *faces, const uint8_t *flat, double *heights)
+    STARG_PRIVATE(cones_drop_flat);
 /* The faces on one side of a cut; those that it crosses are on both. Errors: MEMORY. */
 starg_status cones_list_side(const cone_builder *b, const number_list *faces, const double *heights,
                              bool below, number_list *out) STARG_PRIVATE(cones_list_side);

@@ -54,7 +54,7 @@ void cones_draw_notch(cone_builder *b, uint32_t which, int end, const number_lis
 
 /* ---- parts ---- */
 
-void cones_find_parts(const number_list *faces, const double *heights, uint32_t *part,
+void cones_find_parts(const number_list *faces, const double *heights, bool through, uint32_t *part,
                       uint8_t *flat) {
     for (size_t i = 0; i < faces->count; i++) {
         part[faces->data[i]] = faces->data[i];
@@ -65,13 +65,14 @@ void cones_find_parts(const number_list *faces, const double *heights, uint32_t 
         bool in = heights[corner[0]] == 0 && heights[corner[1]] == 0 && heights[corner[2]] == 0;
         for (int k = 0; k < 3 && in; k++) {
             flat[corner[k]] = 1;
-            sets_join(part, corner[k], corner[(k + 1) % 3]);
+            if (through)
+                sets_join(part, corner[k], corner[(k + 1) % 3]);
         }
     }
     for (size_t i = 0; i < faces->count; i++) {
         uint32_t u = faces->data[i], v = faces->data[i % 3 == 2 ? i - 2 : i + 1];
         double p = heights[u], q = heights[v];
-        if ((p > 0 && (q > 0 || flat[v])) || (q > 0 && flat[u]))
+        if ((p > 0 && (q > 0 || (through && flat[v]))) || (through && q > 0 && flat[u]))
             sets_join(part, u, v);
     }
 }
@@ -82,6 +83,22 @@ void cones_keep_part(const number_list *faces, const double *heights, uint32_t *
         uint32_t v = faces->data[i];
         bool other = heights[v] > 0 && sets_find(part, v) != root;
         out[v] = other ? -heights[v] : heights[v];
+    }
+}
+
+void cones_drop_flat(const number_list *faces, const uint8_t *flat, double *heights) {
+    double least = 0;
+    for (size_t i = 0; i < faces->count; i++)
+        least = fmin(least, heights[faces->data[i]]);
+    for (size_t i = 0; i < faces->count; i++)
+        if (flat[faces->data[i]])
+            heights[faces->data[i]] = least;
+    for (size_t i = 0; i < faces->count; i++) {
+        uint32_t u = faces->data[i], v = faces->data[i % 3 == 2 ? i - 2 : i + 1];
+        if (heights[u] > 0 && flat[v])
+            heights[v] = 0;
+        if (heights[v] > 0 && flat[u])
+            heights[u] = 0;
     }
 }
 

@@ -295,7 +295,7 @@ static starg_status weigh_cut(peeling *m) {
     TRY(cones_find_loops(m->b, m->which, &m->edges, m->heights, &m->loops, &simple));
     if (!simple)
         return STARG_OK;
-    cones_find_parts(&m->faces, m->heights, m->part, m->flat);
+    cones_find_parts(&m->faces, m->heights, true, m->part, m->flat);
     loop = m->loops.nodes.data;
     for (size_t i = 0; i < m->loops.lengths.count; loop += m->loops.lengths.data[i++]) {
         uint32_t part = part_above(m, loop, m->loops.lengths.data[i]);
