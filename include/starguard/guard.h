@@ -29,8 +29,8 @@ typedef enum starg_guard_method {
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
-/* For refine_lines: what suits the effort and the model. For the best effort that is 4,000,000 and,
- * for each guard of the candidates, 10 for each face, but at least 200,000. */
+/* For refine_lines: what suits the effort and the model. For the best effort that is 6,000,000 and,
+ * for each guard of the candidates, 15 for each face, but at least 300,000. */
 #define STARG_DEFAULT_LINES UINT64_MAX
 
 /* Candidates to begin with: 1,000. With less than the best effort 200 where a search for better

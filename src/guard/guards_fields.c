@@ -225,8 +225,8 @@ static const starg_field OPTIONS[] = {
      .value = "N",
      .help = "pilp: budget of refinement, counted in sight lines (about a microsecond each) and "
              "what takes as long.",
-     .default_text = "by effort; for best 4,000,000, and for each guard 10 for each face, at least "
-                     "200,000"},
+     .default_text = "by effort; for best 6,000,000, and for each guard 15 for each face, at least "
+                     "300,000"},
     {.key = "prove",
      .option = "prove",
      .group = "number",

@@ -43,8 +43,9 @@ static const double FIRST_FINEST = 1.0 / 16;
 /* Most work of cells for better guards, and the number of columns above which it is less. */
 static const double MOST_CELL_WORK = 5e6, EASY_COLUMNS = 1e4;
 
-/* The share of the best effort that proofs get even if nothing is left of it. */
-static const double LEAST_PROOF = 0.1;
+/* The share of the best effort that proofs get even if nothing is left of it: their cells also show
+ * where else guards may stand. */
+static const double LEAST_PROOF = 0.4;
 
 typedef enum search_phase { PHASE_IMPROVE = 0, PHASE_PROVE = 1 } search_phase;
 
@@ -117,8 +118,7 @@ static double most_cell_work(const search *s) {
 }
 
 /* All phases. If the effort is to be the best, a proof begins with what is left of the budget, and
- * at least with a tenth of it: cells also show where else guards may stand. *improving: the work
- * for better guards. */
+ * at least with LEAST_PROOF of it. *improving: the work for better guards. */
 static starg_status run(search *s, bool improves, uint64_t *improving) {
     const starg_guard_options *o = s->problem->options;
     s->effort.nodes = FEW_NODES;

@@ -33,7 +33,7 @@ enum {
 static const char STAGE[] = "search";
 
 /* Shares of the work of the best effort: of what any model gets, and of what each guard adds. */
-static const double QUICK[2] = {0.05, 0.05}, NORMAL[2] = {0.25, 0.45}, BEST[2] = {1, 1};
+static const double QUICK[2] = {0.05, 0.05}, NORMAL[2] = {0.25, 0.45}, BEST[2] = {1.5, 1.5};
 
 /* Programs grow with the guards, and their rows with the faces. */
 static double work_of(const search *s, const double share[2]) {

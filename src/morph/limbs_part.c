@@ -16,23 +16,19 @@
  *
  * Invariant: that of limbs_cut.c. Cost: a linear program in the faces of the piece for each plane.
  */
+#include <stdlib.h>
+
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/limbs.h"
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "limbs";
-enum { DRAWN = 96, AIMED = 24, AIMED_MORE = 96, SEARCHED = 12 }; /* planes for a piece, for a set */
+enum { DRAWN = 64, AIMED = 24, AIMED_MORE = 96, SEARCHED = 12 }; /* planes for a piece, for a set */
 enum { WALLS_MOST = 64, PAIRED = 8, LEVELS = 8 };
-enum {
-    RUNS = 8,
-    CUTS_MOST = 30,
-    WORK = 8,
-    EASY = 30000
-};                                 /* runs for a piece, their cuts, and corners looked at */
+enum { RUNS = 4, CUTS_MOST = 8 };  /* for a piece */
 static const double ROOMY = 0.02;  /* of hubs, over the extent of loops */
 static const double STEEPEST = 10; /* doublings of the noise in directions of planes */
-static const double CHIP = 0.97;   /* what a chip counts, for shares that are seen */
 /* What a star-shaped side counts, beside shares that are seen: in every other run. */
 static const double STAR[2] = {0.1, 0.5};
 static const double MARGIN = 1e-3; /* of points that see a side, over its size */
@@ -295,12 +291,19 @@ static double draw_level(piece_side *s, uint64_t set, bool above, bool *found) {
     return level;
 }
 
+static const set_cut *cut_of(const piece_side *s, uint64_t set) {
+    for (size_t i = 0; i < s->best.count; i++)
+        if (s->best.data[i].set == set)
+            return &s->best.data[i];
+    return NULL;
+}
+
 /* Planes below the walls of a set, in directions about that from the other ones. */
 static starg_status aim_planes(piece_side *s, uint64_t set) {
     cone_builder *b = builder(s);
     const double origin[3] = {0, 0, 0};
     const int planes = s->blind ? AIMED : AIMED_MORE;
-    for (int n = 0; n < planes; n++) {
+    for (int n = 0; n < planes && (s->blind || cut_of(s, set) == NULL); n++) {
         double normal[3], noise[3];
         bool found;
         starg_rng_direction(&b->rng, noise);
@@ -362,28 +365,35 @@ static starg_status open_side(limb_cuts *cuts, const bvh *surface, int end, uint
     return STARG_OK;
 }
 
-static const set_cut *cut_of(const piece_side *s, uint64_t set) {
-    for (size_t i = 0; i < s->best.count; i++)
-        if (s->best.data[i].set == set)
-            return &s->best.data[i];
-    return NULL;
+static int by_score(const void *left, const void *right) {
+    const set_cut *a = left, *b = right;
+    if (a->score != b->score)
+        return a->score < b->score ? 1 : -1;
+    return (a->set > b->set) - (a->set < b->set);
 }
 
-/* The set with the best planes in both solids; *found: there is one. */
-static starg_status choose_set(piece_side sides[2], uint64_t *out, bool *found) {
+/* One solid is blind, and whatever leaves the other one star-shaped is alike there: the best set in
+ * the blind one that also has a plane in the other, or is empty, for which there is a chip. */
+static starg_status choose_for_blind(piece_side *blind, piece_side *star, uint64_t *out,
+                                     bool *found) {
+    if (blind->best.count > 0)
+        qsort(blind->best.data, blind->best.count, sizeof *blind->best.data, by_score);
+    for (size_t i = 0; i < blind->best.count && !*found; i++) {
+        *out = blind->best.data[i].set;
+        TRY(aim_planes(star, *out));
+        if (*out == 0 && cut_of(star, 0) == NULL)
+            PUSH(star->cuts->context, STAGE, &star->best, ((set_cut){.set = 0}));
+        *found = cut_of(star, *out) != NULL;
+    }
+    return STARG_OK;
+}
+
+/* Both are blind: the set with the best planes in both. */
+static starg_status choose_for_both(piece_side sides[2], uint64_t *out, bool *found) {
     double most = 0;
-    for (int end = 0; end < 2; end++)
-        if (sides[end].blind) {
-            TRY(draw_planes(&sides[end]));
-            TRY(aim_at_few(&sides[end]));
-        }
     for (int end = 0; end < 2; end++)
         for (size_t i = 0; i < sides[end].best.count; i++)
             TRY(aim_planes(&sides[1 - end], sides[end].best.data[i].set));
-    for (int end = 0; end < 2; end++)
-        if (!sides[end].blind && cut_of(&sides[end], 0) == NULL)
-            PUSH(sides[end].cuts->context, STAGE, &sides[end].best,
-                 ((set_cut){.set = 0, .score = CHIP + 2 * sides[end].bonus}));
     for (size_t i = 0; i < sides[0].best.count; i++) {
         const set_cut *first = &sides[0].best.data[i], *second = cut_of(&sides[1], first->set);
         if (second != NULL && first->score + second->score > most) {
@@ -393,6 +403,20 @@ static starg_status choose_set(piece_side sides[2], uint64_t *out, bool *found) 
     }
     *found = most > 0;
     return STARG_OK;
+}
+
+/* Which walls to part from the others; *found: planes or a chip do that in both solids. */
+static starg_status choose_set(piece_side sides[2], uint64_t *out, bool *found) {
+    *found = false;
+    for (int end = 0; end < 2; end++)
+        if (sides[end].blind) {
+            TRY(draw_planes(&sides[end]));
+            TRY(aim_at_few(&sides[end]));
+        }
+    if (sides[0].blind && sides[1].blind)
+        return choose_for_both(sides, out, found);
+    const int blind = sides[0].blind ? 0 : 1;
+    return choose_for_blind(&sides[blind], &sides[1 - blind], out, found);
 }
 
 /* A chip: what is near the middle of an edge, cut off by a fan about a point on the way to the
@@ -484,7 +508,6 @@ static void free_sides(piece_side (*sides)[2]) {
 static starg_status divide(limb_cuts *cuts, bvh *const surfaces[2], uint32_t which, double bonus,
                            size_t *cuts_left, bool *done) {
     const size_t former = cuts->piece_count;
-    size_t work = 0, most = 0;
     *done = true;
     for (size_t next = former - 1; next < cuts->piece_count && *done; next++) {
         bool blind = true;
@@ -497,10 +520,7 @@ static starg_status divide(limb_cuts *cuts, bvh *const surfaces[2], uint32_t whi
                               &sides[end]));
             sides[0].bonus = sides[1].bonus = bonus;
             blind = sides[0].blind || sides[1].blind;
-            work += sides[0].faces.count + sides[1].faces.count;
-            most = most > 0 ? most : WORK * work + EASY;
-            *done =
-                !blind || (*cuts_left > 0 && work <= most && sides[0].walls.count <= WALLS_MOST);
+            *done = !blind || (*cuts_left > 0 && sides[0].walls.count <= WALLS_MOST);
             if (blind && *done) {
                 TRY(cut_piece(cuts, sides, &found, &good));
                 *done = found && good;
