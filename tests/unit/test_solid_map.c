@@ -192,7 +192,7 @@ static void test_poses(void **state) {
     test_context_free(many);
 }
 
-/* Cuts through tetrahedra leave few pieces of a bent ring: some 20 without. */
+/* A bent ring needs few pieces. */
 static void test_few_pieces(void **state) {
     (void)state;
     if (!has_tetgen())
