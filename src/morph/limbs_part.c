@@ -24,9 +24,9 @@
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "limbs";
-enum { DRAWN = 64, AIMED = 24, AIMED_MORE = 96, SEARCHED = 12 }; /* planes for a piece, for a set */
+enum { DRAWN = 64, AIMED = 24, AIMED_MORE = 96, SEARCHED = 32 }; /* planes for a piece, for a set */
 enum { WALLS_MOST = 64, PAIRED = 8, LEVELS = 8 };
-enum { RUNS = 4, CUTS_MOST = 8 };  /* for a piece */
+enum { RUNS = 8, CUTS_MOST = 8 };  /* for a piece */
 static const double ROOMY = 0.02;  /* of hubs, over the extent of loops */
 static const double STEEPEST = 10; /* doublings of the noise in directions of planes */
 /* What a star-shaped side counts, beside shares that are seen: in every other run. */

@@ -261,7 +261,7 @@ static void check_filled(const compatible_cones *cones, const model models[2]) {
 static void test_fill(void **state) {
     starg_context *contexts[2] = {test_context(1), test_context(3)};
     (void)state;
-    for (uint64_t seed = 1; seed <= test_size(2, 6); seed++) {
+    for (uint64_t seed = 1; seed <= test_size(1, 6); seed++) {
         model models[2] = {make_model(contexts[0], "maze", seed),
                            make_model(contexts[0], "comb", seed)};
         const starg_mesh *const meshes[2] = {models[0].mesh, models[1].mesh};
@@ -309,7 +309,7 @@ static void release(void *user, void *block) {
 
 /* Allocations at even distances fail, one at a time: that is the status, and nothing is left. */
 static void test_memory(void **state) {
-    size_t all = 0, times = test_size(10, 100);
+    size_t all = 0, times = test_size(6, 100);
     (void)state;
     for (size_t i = 0; i <= times; i++) { /* the first time none fails */
         starg_context_options options;
