@@ -5,17 +5,20 @@
  * in both, until every piece has a kernel in both solids. The surfaces of a piece are not mapped
  * onto each other yet, so that a loop in one solid does not tell where it is in the other.
  *
- * Method: a flat wall across a piece parts the walls around it into two sets, and walls in the two
+ * Method: a wall across a piece parts the walls around it into two sets, and walls in the two
  * solids correspond if the sets are the same. In a solid where the piece is blind, planes of faces
- * at notches and random planes are tried, and in both solids planes that part the sets that were
- * found, drawn between the walls of one set and those of the other. Of all planes for a set that is
- * kept after which most of both sides is seen from a point of each. A piece that is star-shaped in
- * one solid remains so on both sides. The set with the best planes in both solids is cut, until all
- * is star-shaped. Of several runs that with the fewest cuts is taken. A piece that resists is
- * joined with one beside it, and that is divided.
+ * at notches, random ones, and planes drawn between one wall or two and the others are weighed: for
+ * each set that is kept after which most of both sides is seen from a point of each. The best set
+ * is cut for which there is also a plane in the other solid; if the piece is star-shaped there,
+ * both sides remain so. For the empty set there is always a wall then: a chip, what is near the
+ * middle of an edge, cut off by a fan about a point on the way to the guard.
  *
- * Invariant: that of limbs_cut.c. Cost: a linear program in the faces of the piece for each plane.
- */
+ * So a piece is cut until all is star-shaped, in several runs, of which that with the fewest cuts
+ * is taken; in every other one star-shaped sides count more. A piece that resists is joined with
+ * one beside it, and that is divided.
+ *
+ * Invariant: that of limbs_cut.c, but chips are not flat. Cost: a linear program in the faces of
+ * the piece for each plane. */
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
