@@ -20,7 +20,7 @@ export function percent(fraction) {
 }
 
 export function real(x) {
-    return String(Number(x.toPrecision(4)));
+    return Math.abs(x) < 1e6 ? String(Number(x.toPrecision(4))) : x.toExponential(2);
 }
 
 export function point(p) {
