@@ -74,7 +74,6 @@ static starg_status check_extension(cli_session *session, const cli_option *o, c
     static const cli_command *const likely[] = {&cli_command_export, &cli_command_view,
                                                 &cli_command_repair, &cli_command_decompose,
                                                 &cli_command_guard,  NULL};
-    static const cli_command *const exports[] = {&cli_command_export, NULL};
     const cli_command *command = session->command, *writer = NULL;
     const cli_option *by = NULL;
     const char letter[] = {o->letter, '\0'}, *slash = strrchr(name, '/');
@@ -82,16 +81,13 @@ static starg_status check_extension(cli_session *session, const cli_option *o, c
     const char *dashes = o->letter != 0 ? "-" : "--", *shown = o->letter != 0 ? letter : o->option;
     if (extension == NULL || writes(o, extension))
         return STARG_OK;
-    if (o->letter == 'o') /* what results are exported to, of VTK's formats the newer one */
-        writer = find_writer(exports, strcasecmp(extension, ".vtk") == 0 ? ".vtu" : extension,
-                             false, &by);
-    for (size_t i = 0; i < command->option_count && writer == NULL; i++)
+    for (size_t i = 0; i < command->option_count; i++)
         if (writes(&command->options[i], extension))
             return cli_fail(session, STARG_ERROR_ARGUMENT,
                             "%s%s writes %s, not '%.200s'; such files are written by --%s %s",
                             dashes, shown, o->value, name, command->options[i].option,
                             command->options[i].value);
-    writer = writer != NULL ? writer : find_writer(likely, extension, false, &by);
+    writer = find_writer(likely, extension, false, &by);
     writer = writer != NULL ? writer : find_writer(cli_commands, extension, false, &by);
     writer = writer != NULL ? writer : find_writer(likely, extension, true, &by);
     writer = writer != NULL ? writer : find_writer(cli_commands, extension, true, &by);
