@@ -2,20 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures maps and morphs between the 90 ordered pairs of ten plain star-shaped solids.
 
-usage: star_maps.py STARGUARD [--turned SEED] [--detail N] [--only WORD] [--balls N] [--animals VERTICES]
+usage: star_maps.py STARGUARD [--turned SEED] [--detail N] [--only WORD] [--balls N] [--mixed N] [--animals VERTICES]
 
 The solids are those of tests/cli/star_solids.py. Each pair is mapped by `map --solid` and morphed by
 `morph --method solid`, both by default, and both results are verified against B. Columns: tetrahedra; pieces;
 mean and worst ratio of singular values; keys of the morph; whether `verify` accepts map and morph; processor
 seconds of `map` and of `morph`. --balls takes N random pairs of other plain solids without holes instead, trees
-of cubes, spiked prisms, combs and piles of rings, and maps only. --animals takes the 56 ordered pairs of eight samples
+of cubes, spiked prisms, combs and piles of rings, and maps only; --mixed the same and knotted bars, and in two
+of three places a sample of 300 to 3,000 vertices. --animals takes the 56 ordered pairs of eight samples
 of about so many vertices, and the same to the ball and the cube; median is the ratio that half of A's volume is below,
 and above 10 a share of that volume. A pair that is refused has the reason instead. The last row counts.
 """
 import argparse
 import itertools
+import json
+import math
 import os
 import random
+import resource
 import subprocess
 import sys
 import tempfile
@@ -26,13 +30,19 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import plain_solids as plain  # noqa: E402  pylint: disable=wrong-import-position
 import star_solids  # noqa: E402  pylint: disable=wrong-import-position
 
+FIGURES = [*morph.SAMPLES, "vase", "bust", "table", "tool"]
+SOLID_SAMPLES = [*FIGURES, "polycube", "maze", "comb", "spikes", "l-room", "labyrinth", "star", "sphere"]
+
 
 def attempt(program, files, out, *words):
     """The report or None, the reason, whether it is verified, and seconds."""
+    before = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     try:
-        report, seconds = morph.seconds(program, *words)
+        report = morph.run(program, *words)
     except SystemExit as error:
-        return None, str(error).split(": ", 1)[1], False, 0
+        seconds = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - before
+        return None, str(error).split(": ", 1)[1], False, seconds
+    seconds = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - before
     verified = subprocess.run([program, "verify", *files, out, "--quiet"], check=False,
                               capture_output=True).returncode == 0
     return report, "yes" if verified else "no", verified, seconds
@@ -52,27 +62,61 @@ def measure(program, folder, files):
     return [*row, map_words, path_words, f"{map_seconds:.2f}", f"{path_seconds:.2f}"], map_holds, path_holds
 
 
-def measure_balls(program, folder, count):
+def random_ball(_program, rng, file):
+    name, solid = star_solids.random_ball(rng)
+    star_solids.write(file, solid)
+    return name
+
+
+def knotted_bar(rng):
+    """A bar along an open trefoil knot."""
+    steps, end = rng.randint(20, 60), rng.uniform(4, 5.9)
+    times = [end * i / steps for i in range(steps + 1)]
+    path = [[math.sin(t) + 2 * math.sin(2 * t), math.cos(t) - 2 * math.cos(2 * t), -math.sin(3 * t)] for t in times]
+    return plain.tube(path, [rng.uniform(0.2, 0.4)] * len(path), rng.randint(4, 12))
+
+
+def random_mixed(program, rng, file):
+    """A sample without holes, a knotted bar, or a random ball."""
+    listed = json.loads(subprocess.run([program, "sample", "--list", "--json"], check=True, capture_output=True).stdout)
+    poses = {sample["name"]: sample["poses"] for sample in listed["samples"]}
+    while rng.random() < 2 / 3:
+        name = rng.choice(SOLID_SAMPLES)
+        pose, size = str(rng.randrange(poses[name])), rng.randint(500 if name in FIGURES else 300, 3000)
+        morph.run(program, "sample", name, "--vertices", str(size), "--pose", pose, "-o", file)
+        with open(file, encoding="utf-8") as stream:
+            words = stream.read().split()
+        count, faces = int(words[1]), int(words[2])
+        corners = list(map(int, words[4 + 3 * count:]))
+        if star_solids.is_ball(range(count), [corners[4 * i + 1:4 * i + 4] for i in range(faces)]):
+            return f"{name} {pose} ({count})"
+    if rng.random() < 0.2:
+        star_solids.write(file, knotted_bar(rng))
+        return "knotted bar"
+    return random_ball(program, rng, file)
+
+
+def measure_random(program, folder, count, make, only):
     """Random pairs: whether they are mapped and verified, pieces, seconds."""
     print("| pair | tetrahedra | pieces | mean | worst | map | s |\n|---" + "|--:" * 4 + "|---|--:|")
-    held = 0
+    held = tried = 0
     for seed in range(count):
         rng = random.Random(seed)
-        files, names = [os.path.join(folder, f"{which}.off") for which in "ab"], []
-        for file in files:
-            name, solid = star_solids.random_ball(rng)
-            star_solids.write(file, solid)
-            names.append(name)
+        files = [os.path.join(folder, f"{which}.off") for which in "ab"]
+        pair = f"{seed}: " + " to ".join([make(program, rng, file) for file in files])
+        if only not in pair:
+            continue
         out = os.path.join(folder, "map.vtu")
-        mapped, words, holds, seconds = attempt(program, files, out, "map", "--solid", *files, "-o", out)
+        mapped, words, holds, seconds = attempt(program, files, out, "map", "--solid", *files, "-o", out,
+                                                "--time-limit", "300")
         row = ["", "", "", ""]
         if mapped is not None:
             row = [mapped["tetrahedra"], mapped["pieces"], f"{mapped['distortion']['mean']:.3g}",
                    f"{mapped['distortion']['worst']:.3g}"]
+        tried += 1
         held += holds
-        print(f"| {seed}: {' to '.join(names)} | " + " | ".join(map(str, [*row, words, f"{seconds:.2f}"])) + " |",
-              flush=True)
-    print(f"| {count} pairs | | | | | {held} | |")
+        print(f"| {pair} | " + " | ".join(map(str, [*row, words, f"{seconds:.2f}"])) + " |", flush=True)
+    print(f"| {tried} pairs | | | | | {held} | |")
 
 
 def array(text, name):
@@ -131,12 +175,14 @@ def main():
     parser.add_argument("--detail", type=int, default=1, help="finer round solids")
     parser.add_argument("--only", default="", help="pairs whose names hold this word")
     parser.add_argument("--balls", type=int, help="so many random pairs of other plain solids")
+    parser.add_argument("--mixed", type=int, help="so many random pairs of samples, knotted bars and those")
     parser.add_argument("--animals", type=int, help="pairs of samples with about so many vertices instead")
     arguments = parser.parse_args()
-    if arguments.balls is not None or arguments.animals is not None:
+    if arguments.balls or arguments.mixed or arguments.animals:
         with tempfile.TemporaryDirectory() as folder:
-            if arguments.balls is not None:
-                measure_balls(arguments.starguard, folder, arguments.balls)
+            if arguments.balls or arguments.mixed:
+                measure_random(arguments.starguard, folder, arguments.balls or arguments.mixed,
+                               random_ball if arguments.balls else random_mixed, arguments.only)
             else:
                 measure_animals(arguments.starguard, folder, arguments.animals, arguments.only)
         return

@@ -83,10 +83,13 @@ static starg_status check_extension(cli_session *session, const cli_option *o, c
         return STARG_OK;
     for (size_t i = 0; i < command->option_count; i++)
         if (writes(&command->options[i], extension))
-            return cli_fail(session, STARG_ERROR_ARGUMENT,
-                            "%s%s writes %s, not '%.200s'; such files are written by --%s %s",
-                            dashes, shown, o->value, name, command->options[i].option,
-                            command->options[i].value);
+            return cli_fail(
+                session, STARG_ERROR_ARGUMENT,
+                "%s%s writes %s, not '%.200s'; such files are written by --%s %s%s", dashes, shown,
+                o->value, name, command->options[i].option, command->options[i].value,
+                o->letter == 'o' && find_writer(likely, extension, false, &by) == likely[0]
+                    ? ", and of a whole result by 'starguard export'"
+                    : "");
     writer = find_writer(likely, extension, false, &by);
     writer = writer != NULL ? writer : find_writer(cli_commands, extension, false, &by);
     writer = writer != NULL ? writer : find_writer(likely, extension, true, &by);

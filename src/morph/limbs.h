@@ -89,6 +89,10 @@ typedef struct limb_cuts {
 starg_status limbs_cut(starg_context *context, const limb_tree trees[2], const limb_pairs *pairs,
                        limb_cuts *out);
 void limbs_free_cuts(limb_cuts *cuts);
+void limbs_free_loops(starg_context *context, limb_wall *walls, size_t count);
+
+/* The normal of a wall in one of the solids, as long as twice its area. */
+void limbs_find_normal(const limb_cuts *cuts, const limb_wall *wall, int end, double out[3]);
 
 /* Adds walls until all pieces are star-shaped in both solids, or resist. `surfaces`: those of the
  * solids. Errors: MEMORY, CANCELLED. (limbs_part.c) */

@@ -60,10 +60,14 @@ static void free_section(section *s) {
     RELEASE(s->wall.points.data);
 }
 
-void limbs_free_cuts(limb_cuts *cuts) {
-    for (size_t i = 0; i < cuts->walls.count; i++)
+void limbs_free_loops(starg_context *context, limb_wall *walls, size_t count) {
+    for (size_t i = 0; i < count; i++)
         for (int end = 0; end < 2; end++)
-            RELEASE(cuts->walls.data[i].loops[end].data);
+            starg_release(context, walls[i].loops[end].data);
+}
+
+void limbs_free_cuts(limb_cuts *cuts) {
+    limbs_free_loops(cuts->context, cuts->walls.data, cuts->walls.count);
     for (int end = 0; end < 2; end++)
         cones_free(&cuts->sides[end]);
     RELEASE(cuts->mates.data, cuts->walls.data);
@@ -425,21 +429,25 @@ starg_status limbs_match_paths(limb_cuts *cuts, number_list paths[2], bool close
     return STARG_OK;
 }
 
+void limbs_find_normal(const limb_cuts *cuts, const limb_wall *wall, int end, double out[3]) {
+    const cone_builder *b = &cuts->sides[end];
+    const number_list *loop = &wall->loops[end];
+    const double *hub = cones_place_of(b, 0, wall->hubs[end]);
+    out[0] = out[1] = out[2] = 0;
+    for (size_t i = 0; i < loop->count; i++) {
+        double p[3], q[3], cross[3];
+        vec3_subtract(cones_place_of(b, 0, loop->data[i]), hub, p);
+        vec3_subtract(cones_place_of(b, 0, loop->data[(i + 1) % loop->count]), hub, q);
+        vec3_cross(p, q, cross);
+        vec3_along(out, 1, cross, out);
+    }
+}
+
 /* Turns two loops so that both begin farthest in the direction of an axis across both. */
 static void turn_loops(const limb_cuts *cuts, limb_wall *wall) {
-    double normals[2][3] = {{0}};
+    double normals[2][3];
     for (int end = 0; end < 2; end++) {
-        const cone_builder *b = &cuts->sides[end];
-        const number_list *loop = &wall->loops[end];
-        for (size_t i = 0; i < loop->count; i++) {
-            double p[3], q[3], cross[3];
-            vec3_subtract(cones_place_of(b, 0, loop->data[i]),
-                          cones_place_of(b, 0, wall->hubs[end]), p);
-            vec3_subtract(cones_place_of(b, 0, loop->data[(i + 1) % loop->count]),
-                          cones_place_of(b, 0, wall->hubs[end]), q);
-            vec3_cross(p, q, cross);
-            vec3_along(normals[end], 1, cross, normals[end]);
-        }
+        limbs_find_normal(cuts, wall, end, normals[end]);
         vec3_normalize(normals[end]);
     }
     size_t axis = 0;

@@ -240,16 +240,8 @@ static void draw_way(piece_side *s, uint64_t set, bool across, double out[3]) {
             counts[0] > 0 && counts[1] > 0 ? sums[1][k] / counts[1] - sums[0][k] / counts[0] : 0;
     if (across && s->walls.count > 0) {
         const limb_wall *wall = wall_at(s, chosen);
-        const number_list *loop = &wall->loops[s->end];
-        const double *hub = at(s, wall->hubs[s->end]);
-        double normal[3] = {0, 0, 0};
-        for (size_t j = 0; j < loop->count; j++) {
-            double p[3], q[3], cross[3];
-            vec3_subtract(at(s, loop->data[j]), hub, p);
-            vec3_subtract(at(s, loop->data[(j + 1) % loop->count]), hub, q);
-            vec3_cross(p, q, cross);
-            vec3_along(normal, 1, cross, normal);
-        }
+        double normal[3];
+        limbs_find_normal(s->cuts, wall, s->end, normal);
         const bool left = wall->pieces[0] == s->which, above = set >> chosen & 1;
         for (int k = 0; k < 3; k++) /* outward if it is above */
             out[k] = left == above ? -normal[k] : normal[k];
@@ -544,14 +536,8 @@ typedef struct part_state {
     size_t piece_count;
 } part_state;
 
-static void free_walls(starg_context *context, limb_wall *walls, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        for (int end = 0; end < 2; end++)
-            starg_release(context, walls[i].loops[end].data);
-}
-
 static void free_state(part_state *s) {
-    free_walls(s->context, s->walls.data, s->walls.count);
+    limbs_free_loops(s->context, s->walls.data, s->walls.count);
     cones_free_state(&s->sides[0]);
     cones_free_state(&s->sides[1]);
     RELEASE(s->walls.data);
@@ -580,7 +566,7 @@ static starg_status save(const limb_cuts *cuts, part_state *out) {
 
 static starg_status restore(limb_cuts *cuts, const part_state *state) {
     cuts->piece_count = state->piece_count;
-    free_walls(cuts->context, cuts->walls.data, cuts->walls.count);
+    limbs_free_loops(cuts->context, cuts->walls.data, cuts->walls.count);
     cuts->walls.count = 0;
     for (size_t i = 0; i < state->walls.count; i++) {
         PUSH(cuts->context, STAGE, &cuts->walls, ((limb_wall){.hubs = {0, 0}}));
@@ -645,7 +631,7 @@ static starg_status open_wall(limb_cuts *cuts, size_t which, uint32_t *joined) {
     const uint32_t last = (uint32_t)--cuts->piece_count;
     const uint32_t low = wall->pieces[0] < wall->pieces[1] ? wall->pieces[0] : wall->pieces[1];
     const uint32_t high = wall->pieces[0] + wall->pieces[1] - low;
-    free_walls(cuts->context, wall, 1);
+    limbs_free_loops(cuts->context, wall, 1);
     cuts->walls.count--;
     memmove(wall, wall + 1, (cuts->walls.count - which) * sizeof *wall);
     TRY(rename_piece(cuts, high, low));

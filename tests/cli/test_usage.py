@@ -220,6 +220,7 @@ class Mistakes(support.Case):
                             ("repair m.off -o r.vtu", "export"), ("map m.off m.off -o m.vtu", "--solid"),
                             ("map --solid m.off m.off -o m.json", "--solid"), ("db matrix d -o m.html", "view"),
                             ("morph m.off m.off --frames 2 -o m.glb", "--glb FILE.glb"),
+                            ("guard m.off -o x.obj", "starguard export"),
                             ("view m.off -o v.png", "--picture FILE.png of"), ("sample cube -o c.png", "--picture")]:
             self.usage_error(*words.split(), says=says)
         self.run_text("guard", "m.off", "-o", "guards.txt")
