@@ -57,7 +57,7 @@ bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user);
 
 /* Winding number of the mesh about p, and whether p lies on a triangle (the number is then
  * meaningless). Exact for closed meshes: a vertical line, symbolically perturbed off every edge. */
-int bvh_winding(const bvh *tree, const double p[3], bool *on_surface);
+int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) STARG_PRIVATE(bvh_winding);
 
 /* Contribution of one triangle to the winding number about p: 1 where the upward line leaves
  * through it, -1 where it enters, 0 where it misses. */

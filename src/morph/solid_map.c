@@ -39,6 +39,7 @@
 
 static const char STAGE[] = "solid map";
 enum { UNFOLD_STEPS = 2000, ROUNDS = 8, FEW = 40 };
+enum { FULL_STEPS = 10000 }; /* tetrahedra, above which there are fewer steps */
 /* Faces that are looked at for cuts before another map of the surfaces is tried. */
 enum { LITTLE = 10000 };
 /* Ratios of singular values: from where they count as high, and what stands for more. */
@@ -181,10 +182,15 @@ static starg_status spread_or_approach(const starg_morph *m, deform_mesh *c, app
     return STARG_OK;
 }
 
-static starg_status relax(deform_mesh *c, size_t steps) {
+/* Fewer steps where there are many tetrahedra: the first ones bring most. The time limit ends it,
+ * as there is a map. */
+static starg_status relax(deform_mesh *c, size_t steps, double until) {
+    const size_t count = c->tetrahedra.count / 4;
+    const size_t most = count > FULL_STEPS ? steps * FULL_STEPS / count : steps;
     for (int end = 1; end >= 0; end--) {
-        const unfold_problem p = problem_of(c, end);
-        TRY(unfold_relax(&p, steps));
+        unfold_problem p = problem_of(c, end);
+        p.until = until;
+        TRY(unfold_relax(&p, most));
     }
     return STARG_OK;
 }
@@ -378,12 +384,14 @@ done:
     return status;
 }
 
-/* Less distortion, and pieces; releases the labels. */
+/* Less distortion, as long as there is time, and pieces; releases the labels. */
 static starg_status finish_spread(deform_mesh *c, cone_labels *cones, size_t steps,
                                   starg_solid_map **out) {
     SCOPED uint32_t *labels = cones->labels;
     cones->labels = NULL;
-    TRY(relax(c, steps));
+    const double until = starg_clock() + starg_seconds_left(c->context);
+    TIME_RULE(c->context, STARG_TIME_IGNORED);
+    TRY(relax(c, steps, until));
     return labels != NULL ? solid_map_finish_cones(c->context, c, labels, cones->count, out)
                           : solid_map_finish(c->context, c, true, out);
 }

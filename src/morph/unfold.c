@@ -442,7 +442,8 @@ static starg_status go_down(descent *d, size_t steps, double *energy) {
     bool made = true;
     d->pairs = 0;
     TRY(evaluate(d, d->p->now, d->slope, energy));
-    for (size_t i = 0; i < steps && made; i++) {
+    const bool may_end = d->by_volume && d->p->until > 0;
+    for (size_t i = 0; i < steps && made && !(may_end && starg_clock() > d->p->until); i++) {
         TRY(starg_check_cancel(d->p->context, STAGE));
         TRY(make_step(d, energy, &made));
     }

@@ -22,6 +22,7 @@ typedef struct unfold_problem {
     const uint32_t *tetrahedra; /* count x 4 */
     const double *rest;         /* vertex_count x 3: all tetrahedra are positive there */
     double *now;                /* vertex_count x 3: to be moved */
+    double until;               /* on starg_clock(), where relaxation ends; 0: it does not */
     unfold_springs springs;     /* none, or fixed = 0 and one for each vertex of the surface */
 } unfold_problem;
 
