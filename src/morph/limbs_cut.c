@@ -22,8 +22,6 @@
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "limbs";
-static const double PI = 3.14159265358979323846;
-static const double TURNS = 1;                   /* what all curvature counts, beside the area */
 enum { PLANES_MOST = 32, CAPS = 14, LEANS = 5 }; /* across a limb; a cap; at a point */
 static const double LEAN = 0.5;    /* tangent of the angle by which planes are inclined */
 static const double CAP = 0.6;     /* heights of caps fall so */
@@ -77,30 +75,6 @@ void limbs_free_cuts(limb_cuts *cuts) {
 
 /* ---- the surfaces ---- */
 
-/* Gives vertices the share of the surface's area that they have in its total curvature, by which
- * limbs count as much as a wide trunk. */
-static starg_status find_turns(const starg_mesh *mesh, cone_builder *b) {
-    double turned = 0, area = 0;
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        PUSH(b->context, STAGE, &b->turns, -2 * PI);
-    for (size_t i = 0; i < 3 * mesh->face_count; i++) {
-        const size_t first = i - i % 3;
-        const double *at = mesh->vertices + 3 * (size_t)mesh->faces[i];
-        double p[3], q[3], cross[3];
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[first + (i + 1) % 3], at, p);
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[first + (i + 2) % 3], at, q);
-        vec3_cross(p, q, cross);
-        area += vec3_length(cross) / 6;
-        b->turns.data[mesh->faces[i]] += atan2(vec3_length(cross), vec3_dot(p, q));
-    }
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        turned += fabs(b->turns.data[v]);
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        b->turns.data[v] =
-            fabs(b->turns.data[v]) / turned * TURNS * area / (double)b->about.data[v].count;
-    return STARG_OK;
-}
-
 static starg_status begin_side(starg_context *context, const starg_mesh *mesh, cone_builder *b) {
     uint32_t whole, number;
     *b = (cone_builder){.context = context,
@@ -117,7 +91,7 @@ static starg_status begin_side(starg_context *context, const starg_mesh *mesh, c
         const uint32_t sides[2] = {whole, NOWHERE};
         TRY(cones_add_triangle(b, mesh->faces + 3 * f, sides));
     }
-    return find_turns(mesh, b);
+    return STARG_OK;
 }
 
 /* ---- planes across limbs ---- */

@@ -8,9 +8,8 @@
  * Method: planes are drawn at notches, at random, and between the walls of a set and the others. Of
  * what hangs together above a plane the rest of the surface is below. A cut is worth the share of
  * the piece that faces towards a point on its side: points inside are drawn once for a piece, so
- * that a cut costs a sum over faces. Faces weigh their area, and the curvature at their corners, so
- * that a limb counts as much as a wide trunk. Sharp notches along which the cut runs count, too,
- * less those that it crosses: they would remain, and walls may not meet.
+ * that a cut costs a sum over faces. Sharp notches along which the cut runs count, too, less those
+ * that it crosses: they would remain, and walls may not meet.
  *
  * Cost: O(LIMB_VIEWS f) for a piece of f faces, and for each plane; a linear program in the faces
  * where all seems to be seen. */
@@ -37,8 +36,8 @@ void limb_side_free(limb_side *s) {
         starg_release(s->cuts->context, s->best.data[i].heights);
     cones_free_loops(&s->rim);
     RELEASE(s->walls.data, s->faces.data, s->vertices.data, s->beside.data, s->edges.data,
-            s->wall.points.data, s->heights, s->own, s->part, s->flat, s->touched, s->fronts,
-            s->notches.data, s->best.data);
+            s->wall.points.data, s->heights, s->own, s->part, s->flat, s->touched, s->shares,
+            s->fronts, s->notches.data, s->best.data);
 }
 
 /* Adds the triangles of a wall, outward for the piece. */
@@ -138,26 +137,18 @@ static double share_removed(const limb_side *s) {
     return s->notched > 0 ? sum / s->notched : 0;
 }
 
-/* Points inside, behind faces at random depths, and what faces weigh for them. */
-static starg_status draw_views(limb_side *s) {
+/* Points inside, behind faces at random depths; `size`: the root of the area. */
+static void draw_views(limb_side *s, double size) {
     cone_builder *b = limb_side_builder(s);
-    const size_t faces = s->faces.count / 3;
-    double size = 0;
-    NEW_ZERO(b->context, STAGE, s->fronts, faces * LIMB_VIEWS);
-    for (size_t f = 0; f < faces; f++) {
-        double normal[3];
-        cones_find_normal(b, 0, s->faces.data + 3 * f, normal);
-        size += vec3_length(normal);
-    }
-    size = sqrt(size);
-    for (int n = 0; n < LIMB_VIEWS && faces > 0; n++)
+    for (int n = 0; n < LIMB_VIEWS && s->faces.count > 0; n++)
         for (int i = 0; i < TRIES; i++) {
-            const uint32_t *corner = s->faces.data + 3 * starg_rng_below(&b->rng, faces);
+            const size_t f = starg_rng_below(&b->rng, s->faces.count / 3);
+            const uint32_t *corner = s->faces.data + 3 * f;
+            const double depth = size * exp2(-DEEPEST * starg_rng_unit(&b->rng));
             double normal[3];
             bool on;
             cones_find_normal(b, 0, corner, normal);
             vec3_normalize(normal);
-            const double depth = size * exp2(-DEEPEST * starg_rng_unit(&b->rng));
             for (int k = 0; k < 3; k++)
                 s->views[n][k] = (limb_side_at(s, corner[0])[k] + limb_side_at(s, corner[1])[k] +
                                   limb_side_at(s, corner[2])[k]) /
@@ -166,15 +157,27 @@ static starg_status draw_views(limb_side *s) {
             if (bvh_winding(s->surface, s->views[n], &on) == 1 && !on)
                 break;
         }
+}
+
+/* What each face counts for each of the points. */
+static starg_status find_fronts(limb_side *s) {
+    const size_t faces = s->faces.count / 3;
+    double normal[3], sum = 0;
+    NEW(s->cuts->context, STAGE, s->shares, faces);
+    NEW(s->cuts->context, STAGE, s->fronts, faces * LIMB_VIEWS);
     for (size_t f = 0; f < faces; f++) {
-        double normal[3];
+        cones_find_normal(limb_side_builder(s), 0, s->faces.data + 3 * f, normal);
+        sum += vec3_length(normal);
+    }
+    draw_views(s, sqrt(sum));
+    for (size_t f = 0; f < faces; f++) {
         const uint32_t *corner = s->faces.data + 3 * f;
-        const float weight = (float)cones_weigh(b, 0, corner, normal);
-        s->weight += weight;
-        for (int n = 0; n < LIMB_VIEWS; n++) {
+        cones_find_normal(limb_side_builder(s), 0, corner, normal);
+        s->shares[f] = (float)(vec3_length(normal) / sum);
+        for (size_t n = 0; n < LIMB_VIEWS; n++) {
             double way[3];
             vec3_subtract(limb_side_at(s, corner[0]), s->views[n], way);
-            s->fronts[f * LIMB_VIEWS + (size_t)n] = vec3_dot(way, normal) > 0 ? weight : 0;
+            s->fronts[f * LIMB_VIEWS + n] = vec3_dot(way, normal) > 0 ? s->shares[f] : 0;
         }
     }
     return STARG_OK;
@@ -202,9 +205,9 @@ static double share_seen(const limb_side *s, const double hub[3]) {
                 seen[side][n] += share * front[n];
             if (on[side]) {
                 double normal[3], way[3];
-                const double weight = cones_weigh(limb_side_builder(s), 0, corner, normal);
+                cones_find_normal(limb_side_builder(s), 0, corner, normal);
                 vec3_subtract(limb_side_at(s, corner[0]), beside[side], way);
-                most[side] += vec3_dot(way, normal) > 0 ? share * (float)weight : 0;
+                most[side] += vec3_dot(way, normal) > 0 ? share * s->shares[f] : 0;
             }
         }
     }
@@ -214,7 +217,7 @@ static double share_seen(const limb_side *s, const double hub[3]) {
         const int side = vec3_dot(way, s->wall.normal) < 0;
         most[side] = fmaxf(most[side], seen[side][n]);
     }
-    return s->weight > 0 ? (most[0] + most[1]) / s->weight : 0;
+    return most[0] + most[1];
 }
 
 /* Of how many sides all is seen from a point. */
@@ -432,7 +435,7 @@ starg_status limb_side_open(limb_cuts *cuts, const bvh *surface, int end, uint32
     TRY(cones_list_faces(b, which, &s->beside));
     for (size_t i = 0; i < s->walls.count; i++)
         TRY(limb_side_add_wall(s, i));
-    TRY(draw_views(s));
+    TRY(find_fronts(s));
     const kernel_faces all = {b->places[0].data, s->beside.data, s->beside.count / 3};
     TRY(kernel_find(cuts->context, &all, &kernel));
     s->blind = kernel.verdict != STARG_KERNEL_INTERIOR;

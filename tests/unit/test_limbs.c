@@ -23,8 +23,8 @@ static model make_model(starg_context *context, const char *name, uint64_t seed)
     starg_sample_options options;
     model out;
     starg_sample_options_default(&options);
-    options.vertex_count =
-        strcmp(name, "octopus") == 0 || strcmp(name, "human") == 0 ? 500 : VERTICES;
+    const bool cubes = strstr("maze comb polycube", name) != NULL;
+    options.vertex_count = cubes ? VERTICES : 500;
     context->seed = seed;
     test_ok(context, starg_sample_create(context, name, &options, &out.mesh));
     test_ok(context, starg_solid_create(context, out.mesh, &out.solid));
@@ -187,15 +187,14 @@ static bool has_kernel(starg_context *context, const limb_cuts *cuts, int end, u
     return kernel.verdict == STARG_KERNEL_INTERIOR;
 }
 
-/* Solids of cubes, and animals of which one has more and thinner limbs. */
+/* Solids of cubes, and a spanner, of which a piece that one point sees has to follow what a horse's
+ * hips need. */
 static void test_cuts(void **state) {
-    static const char *const names[][2] = {
-        {"maze", "comb"}, {"comb", "maze"}, {"human", "octopus"}};
-    static const size_t most_blind[] = {2, 2, 0};
+    static const char *const names[][2] = {{"maze", "comb"}, {"comb", "maze"}, {"tool", "horse"}};
     starg_context *context = test_context(1);
     (void)state;
     for (uint64_t seed = 0; seed < 3; seed++) {
-        const char *const *name = names[seed % 3];
+        const char *const *name = names[seed];
         model models[2] = {make_model(context, name[0], seed), make_model(context, name[1], seed)};
         limb_tree trees[2];
         limb_pairs pairs = {0};
@@ -219,7 +218,7 @@ static void test_cuts(void **state) {
         for (uint32_t p = 0; p < cuts.piece_count; p++)
             blind += !has_kernel(context, &cuts, 0, p) || !has_kernel(context, &cuts, 1, p);
         assert_int_equal(blind, cuts.resisting);
-        assert_true(blind <= most_blind[seed % 3]);
+        assert_int_equal(blind, 0);
         for (size_t i = 0; i < cuts.walls.count; i++) {
             const limb_wall *wall = &cuts.walls.data[i];
             assert_int_equal(wall->loops[0].count, wall->loops[1].count);

@@ -26,8 +26,7 @@ void cones_free(cone_builder *b) {
         STARG_ARRAY_FREE(b->context, &b->about.data[v]);
     for (size_t p = 0; p < b->pieces.count; p++)
         STARG_ARRAY_FREE(b->context, &b->pieces.data[p].triangles);
-    RELEASE(b->about.data, b->corners.data, b->sides.data, b->pieces.data, b->heights.data,
-            b->turns.data);
+    RELEASE(b->about.data, b->corners.data, b->sides.data, b->pieces.data, b->heights.data);
     region_scratch_free(&b->scratch);
 }
 

@@ -49,8 +49,6 @@ typedef struct cone_builder {
     number_list sides;              /* x 2: the pieces before and behind a triangle, or NOWHERE */
     STARG_ARRAY(cone_piece) pieces;
     STARG_ARRAY(double) heights; /* per vertex, of the piece that is cut */
-    STARG_ARRAY(double) turns;   /* per vertex, for the first ones: an area that counts, in addition
-                                  * to its own, for each triangle at it that is seen */
     region_scratch scratch;
     starg_rng rng;
     double balance; /* what a cut in the middle counts, beside what is seen */
@@ -175,9 +173,6 @@ typedef struct side_view {
 /* Outward, twice as long as the triangle's area. */
 void cones_find_normal(const cone_builder *b, int end, const uint32_t corner[3], double out[3])
     STARG_PRIVATE(cones_find_normal);
-/* The same, and the area with the turns of the corners. */
-double cones_weigh(const cone_builder *b, int end, const uint32_t corner[3], double out[3])
-    STARG_PRIVATE(cones_weigh);
 /* The half-space below a plane with an outward normal, as a row of a linear program of which the
  * fourth variable is the distance from the planes. */
 void cones_put_row(const double normal[3], const double point[3], double *row)

@@ -123,14 +123,6 @@ void cones_find_normal(const cone_builder *b, int end, const uint32_t corner[3],
                          cones_place_of(b, end, corner[2]), out);
 }
 
-double cones_weigh(const cone_builder *b, int end, const uint32_t corner[3], double out[3]) {
-    cones_find_normal(b, end, corner, out);
-    double weight = 0.5 * vec3_length(out);
-    for (int k = 0; k < 3; k++)
-        weight += corner[k] < b->turns.count ? b->turns.data[corner[k]] : 0;
-    return weight;
-}
-
 void cones_put_row(const double normal[3], const double point[3], double *row) {
     double size = vec3_length(normal);
     for (int k = 0; k < 3; k++)
