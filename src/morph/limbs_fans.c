@@ -115,7 +115,6 @@ static starg_status try_fan(limb_side *s, uint64_t inside, const double way[3]) 
     return STARG_OK;
 }
 
-/* Walls in directions next to that of one of them. */
 uint64_t limb_side_draw_near(limb_side *s) {
     cone_builder *b = limb_side_builder(s);
     const size_t first = starg_rng_below(&b->rng, s->walls.count);
@@ -132,7 +131,6 @@ uint64_t limb_side_draw_near(limb_side *s) {
     return set;
 }
 
-/* A fan that parts the walls of a set from the others. */
 starg_status limb_side_aim_fans(limb_side *s, uint64_t set) {
     const uint64_t sides[2] = {set, limb_side_all_walls(s) & ~set};
     double way[3];
@@ -164,8 +162,7 @@ static void find_distances(const limb_side *s, const double point[3], double *ou
         out[i] *= sum > 0 ? (double)s->walls.count / sum : 1;
 }
 
-/* How far the place of a chip is from that of the cut in the other solid, as walls are concerned.
- */
+/* How far a chip's place is from that of the cut in the other solid, as walls are concerned. */
 static double misplaced(const limb_side *s, uint32_t u, uint32_t v, const double *wanted) {
     double point[3], own[LIMB_WALLS_MOST], sum = 0;
     for (int k = 0; k < 3; k++)

@@ -40,7 +40,8 @@ static int by_score(const void *left, const void *right) {
 }
 
 /* One solid is blind, and whatever leaves the other one star-shaped is alike there: the best set in
- * the blind one that also has a plane in the other, or is empty, for which there is a chip. */
+ * the blind one that also has a plane or a fan in the other, or is empty, for which there is a
+ * chip. Planes for some sets that have a fan are drawn, too. */
 static starg_status choose_for_blind(limb_side *blind, limb_side *star, uint64_t *out,
                                      bool *found) {
     for (int n = 0; n < PROPOSED && star->walls.count > 2; n++) {
@@ -85,7 +86,7 @@ static starg_status choose_for_both(limb_side sides[2], uint64_t *out, bool *fou
     return STARG_OK;
 }
 
-/* Which walls to part from the others; *found: planes or a chip do that in both solids. */
+/* Which walls to part from the others; *found: that can be done in both solids. */
 static starg_status choose_set(limb_side sides[2], uint64_t *out, bool *found) {
     *found = false;
     for (int end = 0; end < 2; end++)
@@ -162,8 +163,8 @@ static starg_status divide(limb_cuts *cuts, bvh *const surfaces[2], uint32_t whi
     *done = true;
     for (size_t next = former - 1; next < cuts->piece_count && *done; next++) {
         bool blind = true;
-        size_t least = SIZE_MAX,
-               idle = 0; /* faces of what is blind, cuts since there were so few */
+        size_t least = SIZE_MAX; /* faces of what is blind */
+        size_t idle = 0;         /* cuts since there were so few */
         while (blind && *done) {
             SCOPED_BY(free_sides) limb_side sides[2] = {{.cuts = cuts}, {.cuts = cuts}};
             bool found = false, good;

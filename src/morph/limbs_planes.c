@@ -40,7 +40,6 @@ void limb_side_free(limb_side *s) {
             s->fronts, s->notches.data, s->best.data);
 }
 
-/* Adds the triangles of a wall, outward for the piece. */
 starg_status limb_side_add_wall(limb_side *s, size_t i) {
     const limb_wall *wall = limb_side_wall(s, i);
     const number_list *loop = &wall->loops[s->end];
@@ -61,7 +60,6 @@ const set_cut *limb_side_cut_of(const limb_side *s, uint64_t set) {
     return NULL;
 }
 
-/* Keeps the cut if it is the best for its set. */
 starg_status limb_side_keep(limb_side *s, uint64_t set, double score, const double *hub) {
     starg_context *context = s->cuts->context;
     const size_t size = limb_side_builder(s)->about.count;
@@ -82,7 +80,6 @@ starg_status limb_side_keep(limb_side *s, uint64_t set, double score, const doub
     return STARG_OK;
 }
 
-/* Which walls are above? *apart: none is on both sides, or met. */
 uint64_t limb_side_set_above(const limb_side *s, bool *apart) {
     uint64_t set = 0;
     *apart = true;
