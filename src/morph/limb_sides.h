@@ -29,9 +29,10 @@ typedef struct limb_side {
     uint32_t which;
     int end;
     double bonus; /* of star-shaped sides */
+    double size;  /* the root of the area of its surface */
     bool blind;
     bool loose;                  /* cuts may leave less than two star-shaped sides */
-    double guard[3];             /* sees all of it if it is not blind */
+    double guard[3];             /* sees all of it, with room to spare, if it is not blind */
     number_list walls;           /* around the piece */
     number_list faces, vertices; /* of the surface */
     number_list beside;          /* faces on one side of a cut, with walls */

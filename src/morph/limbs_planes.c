@@ -30,6 +30,7 @@ static const double NEARLY = 0.9;  /* share from which stars are looked for */
 static const double ROOMY = 0.02;  /* of hubs, over the extent of loops */
 static const double STEEPEST = 10; /* doublings of the noise in directions of planes */
 static const double MARGIN = 1e-3; /* of points that see a side, over its size */
+static const double THIN = 1e-3;   /* radius of a kernel that rounding may end, over the size */
 
 void limb_side_free(limb_side *s) {
     for (size_t i = 0; i < s->best.count; i++)
@@ -134,14 +135,14 @@ static double share_removed(const limb_side *s) {
     return s->notched > 0 ? sum / s->notched : 0;
 }
 
-/* Points inside, behind faces at random depths; `size`: the root of the area. */
-static void draw_views(limb_side *s, double size) {
+/* Points inside, behind faces at random depths. */
+static void draw_views(limb_side *s) {
     cone_builder *b = limb_side_builder(s);
     for (int n = 0; n < LIMB_VIEWS && s->faces.count > 0; n++)
         for (int i = 0; i < TRIES; i++) {
             const size_t f = starg_rng_below(&b->rng, s->faces.count / 3);
             const uint32_t *corner = s->faces.data + 3 * f;
-            const double depth = size * exp2(-DEEPEST * starg_rng_unit(&b->rng));
+            const double depth = s->size * exp2(-DEEPEST * starg_rng_unit(&b->rng));
             double normal[3];
             bool on;
             cones_find_normal(b, 0, corner, normal);
@@ -166,7 +167,8 @@ static starg_status find_fronts(limb_side *s) {
         cones_find_normal(limb_side_builder(s), 0, s->faces.data + 3 * f, normal);
         sum += vec3_length(normal);
     }
-    draw_views(s, sqrt(sum));
+    s->size = sqrt(sum);
+    draw_views(s);
     for (size_t f = 0; f < faces; f++) {
         const uint32_t *corner = s->faces.data + 3 * f;
         cones_find_normal(limb_side_builder(s), 0, corner, normal);
@@ -435,7 +437,7 @@ starg_status limb_side_open(limb_cuts *cuts, const bvh *surface, int end, uint32
     TRY(find_fronts(s));
     const kernel_faces all = {b->places[0].data, s->beside.data, s->beside.count / 3};
     TRY(kernel_find(cuts->context, &all, &kernel));
-    s->blind = kernel.verdict != STARG_KERNEL_INTERIOR;
+    s->blind = kernel.verdict != STARG_KERNEL_INTERIOR || kernel.radius < THIN * s->size;
     vec3_copy(kernel.guard, s->guard);
     TRY(cones_list_edges(b, which, &s->edges));
     TRY(find_notches(s));
