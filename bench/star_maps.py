@@ -34,15 +34,19 @@ FIGURES = [*morph.SAMPLES, "vase", "bust", "table", "tool"]
 SOLID_SAMPLES = [*FIGURES, "polycube", "maze", "comb", "spikes", "l-room", "labyrinth", "star", "sphere"]
 
 
+def spent():
+    """Processor time of all children."""
+    return sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
+
+
 def attempt(program, files, out, *words):
     """The report or None, the reason, whether it is verified, and seconds."""
-    before = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
+    before = spent()
     try:
         report = morph.run(program, *words)
     except SystemExit as error:
-        seconds = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - before
-        return None, str(error).split(": ", 1)[1], False, seconds
-    seconds = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - before
+        return None, str(error).split(": ", 1)[1], False, spent() - before
+    seconds = spent() - before
     verified = subprocess.run([program, "verify", *files, out, "--quiet"], check=False,
                               capture_output=True).returncode == 0
     return report, "yes" if verified else "no", verified, seconds

@@ -29,7 +29,7 @@ typedef struct limb_side {
     uint32_t which;
     int end;
     double bonus; /* of star-shaped sides */
-    double size;  /* the root of the area of its surface */
+    double size;  /* the root of twice the area of its surface */
     bool blind;
     bool loose;                  /* cuts may leave less than two star-shaped sides */
     double guard[3];             /* sees all of it, with room to spare, if it is not blind */

@@ -129,7 +129,7 @@ static double share_removed(const limb_side *s) {
         const double q = s->own[s->notches.data[i].ends[1]];
         if (p == 0 && q == 0)
             sum += s->notches.data[i].weight;
-        else if (p * q <= 0)
+        else if (p == 0 || q == 0 || cones_are_opposite(p, q))
             sum -= s->notches.data[i].weight;
     }
     return s->notched > 0 ? sum / s->notched : 0;
