@@ -144,27 +144,54 @@ void starg_context_set_time_limit(starg_context *context, double seconds) {
     context->deadline.grace = fmax(0.5, 0.1 * seconds);
 }
 
-starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule) {
-    starg_time_rule former = context->deadline.rule;
-    if (rule > former)
+/* ---- items of a loop, on other threads than the one that calls the library ---- */
+
+static _Thread_local starg_item_scope item;
+
+starg_item_scope starg_item_enter(const starg_context *context, starg_time_rule rule) {
+    starg_item_scope former = item;
+    item = (starg_item_scope){context, rule};
+    return former;
+}
+
+void starg_item_leave(starg_item_scope former) {
+    item = former;
+}
+
+/* ---- time ---- */
+
+starg_time_rule starg_time_rule_of(const starg_context *context) {
+    return item.context == context ? item.rule : context->deadline.rule;
+}
+
+static void set_rule(starg_context *context, starg_time_rule rule) {
+    if (item.context == context)
+        item.rule = rule;
+    else
         context->deadline.rule = rule;
+}
+
+starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule) {
+    starg_time_rule former = starg_time_rule_of(context);
+    if (rule > former)
+        set_rule(context, rule);
     return former;
 }
 
 void starg_time_end(starg_context *context, starg_time_rule former) {
-    context->deadline.rule = former;
+    set_rule(context, former);
 }
 
 double starg_seconds_left(const starg_context *context) {
     const starg_deadline *deadline = &context->deadline;
-    if (deadline->at <= 0 || deadline->rule == STARG_TIME_IGNORED)
+    if (deadline->at <= 0 || starg_time_rule_of(context) == STARG_TIME_IGNORED)
         return INFINITY;
     return deadline->at - starg_clock();
 }
 
 bool starg_time_is_over(const starg_context *context) {
     return starg_seconds_left(context) <= 0 ||
-           (context->deadline.rule == STARG_TIME_SHORTENS &&
+           (starg_time_rule_of(context) == STARG_TIME_SHORTENS &&
             atomic_load_explicit(&context->finishes, memory_order_relaxed));
 }
 
@@ -173,7 +200,7 @@ bool starg_time_is_long_over(const starg_context *context) {
 }
 
 bool starg_time_has_failed(const starg_context *context) {
-    return context->deadline.rule == STARG_TIME_FAILS && starg_time_is_over(context);
+    return starg_time_rule_of(context) == STARG_TIME_FAILS && starg_time_is_over(context);
 }
 
 size_t starg_context_peak_bytes(const starg_context *context) {
@@ -287,7 +314,7 @@ void starg_progress_begin(starg_context *context, const char *stage) {
 
 void starg_progress_begin_part(starg_context *context, const char *stage, double share) {
     starg_progress *p = &context->progress;
-    if (p->depth++ >= STARG_STAGES)
+    if (item.context == context || p->depth++ >= STARG_STAGES)
         return;
     p->stages[p->depth - 1].name = stage;
     p->stages[p->depth - 1].fraction = 0;
@@ -298,7 +325,7 @@ void starg_progress_begin_part(starg_context *context, const char *stage, double
 
 void starg_progress_step(starg_context *context, size_t done, size_t total) {
     starg_progress *p = &context->progress;
-    if (p->report == NULL || p->depth == 0 || p->depth > STARG_STAGES)
+    if (item.context == context || p->report == NULL || p->depth == 0 || p->depth > STARG_STAGES)
         return;
     advance(p, p->depth - 1, total > 0 ? fmin((double)done / (double)total, ALMOST) : ALMOST);
     size_t shown = shown_stage(p);
@@ -308,6 +335,8 @@ void starg_progress_step(starg_context *context, size_t done, size_t total) {
 
 void starg_progress_end(starg_context *context) {
     starg_progress *p = &context->progress;
+    if (item.context == context)
+        return;
     if (p->depth <= STARG_STAGES) {
         advance(p, p->depth - 1, 1);
         if (p->report != NULL && shown_stage(p) == p->depth - 1)

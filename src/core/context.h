@@ -85,6 +85,20 @@ starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule)
     STARG_PRIVATE(starg_time_begin);
 void starg_time_end(starg_context *context, starg_time_rule former) STARG_PRIVATE(starg_time_end);
 
+/* The one that applies on this thread. */
+starg_time_rule starg_time_rule_of(const starg_context *context);
+
+/* While a thread runs items of a loop that another one has called: it has a time rule of its own,
+ * and reports no progress. */
+typedef struct starg_item_scope {
+    const starg_context *context; /* NULL: the thread runs no such items */
+    starg_time_rule rule;
+} starg_item_scope;
+
+/* Until starg_item_leave receives the value returned here. */
+starg_item_scope starg_item_enter(const starg_context *context, starg_time_rule rule);
+void starg_item_leave(starg_item_scope former);
+
 /* What the running search has so far; 0 when it ends. */
 static inline void starg_tell_best(starg_context *context, size_t count, const char *what) {
     context->best = count;
@@ -131,11 +145,11 @@ starg_status starg_fail_time(starg_context *context, const char *stage);
 void starg_log(starg_context *context, starg_log_level level, const char *format, ...)
     STARG_PRIVATE(starg_log) __attribute__((format(printf, 3, 4)));
 
-/* Progress of a stage, reported on the calling thread: begin, steps with 0 <= done <= total, end
- * (on every exit path). Stages nest. The callback receives the innermost stage: 0 at its begin, 1
- * at its end, and increasing fractions strictly between, at most about 20 a second. A part advances
- * the enclosing stage by its `share`; a stage nested in one of the same name continues it. When the
- * callback returns false, the context is cancelled and starg_check_cancel reports it. */
+/* Progress of a stage, on the thread that calls the library only: begin, steps with 0 <= done <=
+ * total, end (on every exit path). Stages nest. The callback receives the innermost stage: 0 at its
+ * begin, 1 at its end, and increasing fractions strictly between, at most about 20 a second. A part
+ * advances the enclosing stage by its `share`; a stage nested in one of the same name continues it.
+ * When the callback returns false, the context is cancelled and starg_check_cancel reports it. */
 void starg_progress_begin(starg_context *context, const char *stage)
     STARG_PRIVATE(starg_progress_begin);
 void starg_progress_begin_part(starg_context *context, const char *stage, double share)

@@ -63,8 +63,10 @@ static void work(worker_group *group, bool calling) {
             return;
         }
     }
-    for (;;) {
-        size_t item = atomic_fetch_add(&group->next, 1);
+    /* The calling thread takes the first item, which others leave to it. */
+    for (size_t item = calling ? 0 : SIZE_MAX;; item = SIZE_MAX) {
+        if (item == SIZE_MAX)
+            item = atomic_fetch_add(&group->next, 1);
         if (item >= loop->count || worker_group_must_stop(group, item))
             break;
         starg_status status = loop->item(group->context, loop->shared, scratch, item);
@@ -79,8 +81,11 @@ static void work(worker_group *group, bool calling) {
         loop->free_scratch(group->context, scratch);
 }
 
-static void help(void *group) {
+static void help(void *given) {
+    worker_group *group = given;
+    starg_item_scope former = starg_item_enter(group->context, group->rule);
     work(group, false);
+    starg_item_leave(former);
 }
 
 static starg_status explain(starg_context *context, const char *stage, starg_status status) {
@@ -117,23 +122,28 @@ static starg_status prepare(worker_group *group) {
 
 starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop) {
     starg_status status = STARG_OK;
-    worker_group group = {.context = context, .loop = loop};
     bool shared = loop->remote != NULL && context->ranks != NULL && loop->count > 1;
-    size_t helpers = count_threads(&group, shared);
+    worker_group group = {
+        .context = context, .loop = loop, .rule = starg_time_rule_of(context), .next = !shared};
+    workers_task helpers = {
+        .run = help, .argument = &group, .wanted = count_threads(&group, shared)};
     bool helped = false;
     if (!loop->silent)
         starg_progress_begin_part(context, loop->stage, loop->share);
     STARG_TRY(prepare(&group));
 
     /* If a thread cannot be started, the others do its share. */
-    if (helpers > 0 && workers_begin(context, helpers, help, &group, &helped) != STARG_OK)
-        worker_group_fail(&group, 0, STARG_ERROR_MEMORY);
+    if (helpers.wanted > 0) {
+        helped = workers_begin(context, &helpers);
+        if (!helped)
+            worker_group_fail(&group, 0, STARG_ERROR_MEMORY);
+    }
     if (shared)
         worker_group_distribute(&group);
     else
         work(&group, true);
     if (helped)
-        workers_end(context);
+        workers_end(context, &helpers);
     if (loop->advance != NULL)
         advance(&group);
 

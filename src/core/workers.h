@@ -8,16 +8,23 @@
 
 /* ---- threads of a context besides the calling one (workers.c) ---- */
 /* They sleep between loops: searches run many loops that take less time than the start of a
- * thread. */
+ * thread. Items of a loop may run loops of their own, which threads without an item join. */
 
-/* Lets up to `most` threads call run(argument), each once, until workers_end; fewer if they cannot
- * be started. *begun is false if the threads are in use already: nothing is to be ended then.
- * Errors: MEMORY, without detail. */
-starg_status workers_begin(starg_context *context, size_t most, void (*run)(void *argument),
-                           void *argument, bool *begun);
+/* Calls of run(argument) by other threads. */
+typedef struct workers_task {
+    void (*run)(void *argument);
+    void *argument;
+    size_t wanted;  /* calls that have not begun; at first the most that make sense */
+    size_t running; /* at first 0 */
+    struct workers_task *former;
+} workers_task;
+
+/* Lets other threads make the calls that are wanted, until workers_end; fewer if they have other
+ * work or cannot be started. False, with nothing to end: no memory. */
+bool workers_begin(starg_context *context, workers_task *task);
 
 /* Waits for the calls that have begun; no other begins. */
-void workers_end(starg_context *context);
+void workers_end(starg_context *context, workers_task *task);
 
 /* Ends the threads. */
 void workers_free(starg_context *context);
@@ -27,6 +34,7 @@ void workers_free(starg_context *context);
 typedef struct worker_group {
     starg_context *context;
     const starg_parallel_loop *loop;
+    starg_time_rule rule; /* of the calling thread */
     atomic_size_t next, finished;
     atomic_bool stop;
     atomic_uchar *is_finished; /* by item; NULL if unused */

@@ -15,6 +15,7 @@
 #include <stdio.h>
 
 #include "core/fields.h"
+#include "core/parallel.h"
 #include "guard/candidates.h"
 #include "guard/corners.h"
 #include "guard/prices.h"
@@ -111,9 +112,17 @@ static bool needs_proxy(const guard_problem *problem) {
     return problem->options->candidates != STARG_CANDIDATES_GIVEN && proxy_wanted(problem->solid);
 }
 
-/* Levels of detail, for the method or as proxy. If time does not suffice for them, the model alone
- * is used. */
-static starg_status make_levels(const guard_problem *problem, guard_detail *out) {
+/* ---- what is found of the solid ---- */
+
+static bool needs_levels(const guard_problem *problem) {
+    const starg_solid *solid = problem->solid;
+    /* obstacles and outsides have none, and patches are of this surface */
+    return problem->options->method == STARG_GUARD_PILP && !solid->scene &&
+           solid->patches == NULL && solid->need == NULL;
+}
+
+/* If time does not suffice for them, the model alone is used. */
+static starg_status find_levels(const guard_problem *problem, guard_detail *out) {
     const starg_guard_options *options = problem->options;
     starg_progress_begin(problem->context, "levels");
     starg_status status = starg_mesh_levels(problem->context, problem->solid->mesh,
@@ -123,27 +132,21 @@ static starg_status make_levels(const guard_problem *problem, guard_detail *out)
     return out->time_limited ? STARG_OK : status;
 }
 
-static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
-    bool proxy = needs_proxy(problem);
-    bool leveled = problem->options->method == STARG_GUARD_PILP &&
-                   problem->solid->patches == NULL && problem->solid->need == NULL;
-    if (problem->solid->scene)
-        return STARG_OK; /* obstacles and outsides have no levels of detail */
-    if (leveled || proxy)
-        TRY(make_levels(problem, out));
-    if (proxy && out->levels != NULL)
+static starg_status find_proxy(const guard_problem *problem, guard_detail *out) {
+    TRY(find_levels(problem, out));
+    if (out->levels != NULL)
         TRY(proxy_of_levels(problem->context, problem->solid, out->levels, &out->proxy));
-    if (!leveled) {
-        starg_levels_free(problem->context, out->levels); /* patches are of this surface */
+    if (!needs_levels(problem)) {
+        starg_levels_free(problem->context, out->levels);
         out->levels = NULL;
     }
     return STARG_OK;
 }
 
-static starg_status find_first(const guard_problem *problem, const guard_detail *detail,
-                               candidate_points *out) {
+static starg_status find_first(const guard_problem *problem, guard_detail *detail) {
     const starg_guard_options *options = problem->options;
     const candidate_shape shape = guard_shape(problem, detail);
+    candidate_points *out = &detail->first;
     if (problem->carried != NULL)
         return candidates_append(problem->context, problem->carried, out);
     if (options->candidates == STARG_CANDIDATES_GIVEN)
@@ -152,16 +155,64 @@ static starg_status find_first(const guard_problem *problem, const guard_detail 
                            out);
 }
 
+static starg_status find_centres(const guard_problem *problem, guard_detail *detail) {
+    const starg_guard_options *options = problem->options;
+    const candidate_shape shape = guard_shape(problem, detail);
+    starg_status status = candidates_find(problem->context, &shape, STARG_CANDIDATES_MEDIAL,
+                                          options->candidate_count, &detail->centres);
+    return status == STARG_ERROR_TIME ? STARG_OK : status;
+}
+
+static bool needs_centres(const guard_problem *problem) {
+    const starg_guard_options *options = problem->options;
+    return guard_searches(options) && options->candidates != STARG_CANDIDATES_MEDIAL &&
+           !sensor_is_directed(&options->visibility);
+}
+
+/* Of which each does not need the others. */
+typedef struct findings {
+    const guard_problem *problem;
+    guard_detail *detail;
+    size_t count;
+    starg_status (*find[3])(const guard_problem *problem, guard_detail *detail);
+} findings;
+
+static starg_status find_one(starg_context *context, void *shared, void *scratch, size_t item) {
+    const findings *all = shared;
+    (void)context;
+    (void)scratch;
+    return all->find[item](all->problem, all->detail);
+}
+
+static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
+    const bool proxy = !problem->solid->scene && needs_proxy(problem);
+    findings all = {.problem = problem, .detail = out, .count = 1, .find = {find_first}};
+    if (proxy)
+        TRY(find_proxy(problem, out));
+    if (needs_centres(problem))
+        all.find[all.count++] = find_centres;
+    if (needs_levels(problem) && !proxy)
+        all.find[all.count++] = find_levels;
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = all.count, .shared = &all, .item = find_one, .silent = true};
+    return starg_parallel_for(problem->context, &loop);
+}
+
+static void detail_free(starg_context *context, guard_detail *detail) {
+    starg_solid_free(detail->proxy);
+    starg_levels_free(context, detail->levels);
+    candidates_free(&detail->first);
+    candidates_free(&detail->centres);
+}
+
 /* The candidates before augmentation, and what they see. */
-static starg_status find_candidates(const guard_problem *problem, const guard_detail *detail,
+static starg_status find_candidates(const guard_problem *problem, guard_detail *detail,
                                     guard_pool *out) {
-    SCOPED_BY(candidates_free) candidate_points points = {0};
     TRY(pool_create(problem->context, problem->solid, problem->options, out));
-    TRY(find_first(problem, detail, &points));
     if (problem->carried == NULL && detail->proxy != NULL &&
         !sensor_is_directed(&problem->options->visibility))
-        TRY(carry_candidates(problem, detail->proxy, &points));
-    return pool_add(out, &points);
+        TRY(carry_candidates(problem, detail->proxy, &detail->first));
+    return pool_add(out, &detail->first);
 }
 
 static bool is_limited(const starg_space_options *s) {
@@ -256,8 +307,7 @@ static starg_status look_everywhere(const guard_problem *problem, guard_pool *po
     return STARG_OK;
 }
 
-static starg_status find_pool(const guard_problem *problem, const guard_detail *detail,
-                              guard_pool *out) {
+static starg_status find_pool(const guard_problem *problem, guard_detail *detail, guard_pool *out) {
     TRY(find_candidates(problem, detail, out));
     TRY(pool_augment(out, &problem->weights));
     TRY(look_everywhere(problem, out));
@@ -448,8 +498,7 @@ starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
     } else if (problem->options->prove)
         STARG_TRY(search_area(problem, &out->pool, &out->selection, &out->search));
 done:
-    starg_solid_free(detail.proxy);
-    starg_levels_free(problem->context, detail.levels);
+    detail_free(problem->context, &detail);
     return status;
 }
 
@@ -741,17 +790,20 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     used.candidate_count = used.point_count = count;
     used.points = points;
     guard_problem problem = {.context = context, .solid = solid, .options = &used};
+    guard_detail detail = {0};
     guard_outcome outcome = {0};
     /* results so far are measured in full */
     starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
     STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
-    STARG_TRY(find_candidates(&problem, &(guard_detail){0}, &outcome.pool));
+    STARG_TRY(find_first(&problem, &detail));
+    STARG_TRY(find_candidates(&problem, &detail, &outcome.pool));
     STARG_TRY(choose_all(&problem, &outcome.pool, &outcome.selection));
     STARG_TRY(report_guards(&problem, &outcome, NULL, out));
 done:
     starg_time_end(context, former);
+    detail_free(context, &detail);
     outcome_free(context, &outcome);
     column_weights_free(&problem.weights);
     return status;

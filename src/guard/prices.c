@@ -29,7 +29,9 @@ static const char STAGE[] = "search";
 enum {
     MOST_STEPS = 60,
     FILL_ITEMS = 32,    /* parts in which the matrix is filled */
-    FILL_LEAST = 200000 /* products; fewer take less long than to wake a thread */
+    FILL_LEAST = 50000, /* products; fewer take less long than to wake a thread */
+    ABREAST = 4,        /* columns of the factor */
+    WIDTH = 8           /* sums of each, for vector instructions */
 };
 
 static const double GAP = 1e-3; /* between the two objective values, where the iteration stops */
@@ -239,8 +241,22 @@ static double sum_row(const program *p, size_t i, const double *of) {
     return sum;
 }
 
-/* Covers every row twice; sets prices that keep each row's sum at most one half. */
+/* The least that all rows together hold of a column. */
+static double least_held(const program *p) {
+    double least = INFINITY;
+    for (size_t f = 0; f < p->m; f++) {
+        double held = 0;
+        for (size_t k = p->column[f]; k < p->column[f + 1]; k++)
+            held += p->value[p->entry[k]];
+        least = fmin(least, held);
+    }
+    return least;
+}
+
+/* Covers every column twice, by equal shares of all rows; sets prices that keep each row's sum at
+ * most one half. */
 static void begin(program *p) {
+    const double share = 2 / fmax(1, least_held(p));
     for (size_t f = 0; f < p->m; f++)
         p->w[f] = 0.5;
     for (size_t i = 0; i < p->n; i++)
@@ -248,7 +264,7 @@ static void begin(program *p) {
             p->w[p->index[e]] =
                 fmin(p->w[p->index[e]], 0.5 / (double)(p->start[i + 1] - p->start[i]));
     for (size_t i = 0; i < p->n; i++) {
-        p->x[i] = 2;
+        p->x[i] = share;
         p->s[i] = 1 - sum_row(p, i, p->w);
     }
     sum_rows(p, p->x, -1, p->t);
@@ -292,29 +308,49 @@ static starg_status fill_matrix(program *p) {
     return STARG_OK;
 }
 
-/* Overwrites the lower half by the Cholesky factor L. False: rounding has made the matrix
- * indefinite. */
+/* The products of a row and ABREAST others, over columns from `from` to `to`. */
 STARG_SEVERAL_VERSIONS
+static void multiply_rows(const double *restrict row, const double *const others[ABREAST],
+                          size_t from, size_t to, double out[ABREAST]) {
+    double sums[ABREAST][WIDTH] = {{0}};
+    size_t k = from;
+    for (; k + WIDTH <= to; k += WIDTH)
+        for (size_t q = 0; q < ABREAST; q++)
+            for (size_t l = 0; l < WIDTH; l++)
+                sums[q][l] += row[k + l] * others[q][k + l];
+    for (size_t q = 0; q < ABREAST; q++) {
+        out[q] = 0;
+        for (size_t l = 0; l < WIDTH; l++)
+            out[q] += sums[q][l];
+        for (size_t n = k; n < to; n++)
+            out[q] += row[n] * others[q][n];
+    }
+}
+
+/* Overwrites the lower half by the Cholesky factor L, ABREAST columns of a row at a time. False:
+ * rounding has made the matrix indefinite. */
 static bool factor(program *p) {
-    size_t m = p->m;
+    const size_t m = p->m;
     for (size_t i = 0; i < m; i++) {
         double *row = p->matrix + i * m;
-        for (size_t j = p->first[i]; j <= i; j++) {
-            const double *other = p->matrix + j * m;
-            double sums[4] = {0};
-            size_t k = p->first[i] > p->first[j] ? p->first[i] : p->first[j];
-            for (; k + 4 <= j; k += 4)
-                for (size_t l = 0; l < 4; l++)
-                    sums[l] += row[k + l] * other[k + l];
-            for (; k < j; k++)
-                sums[0] += row[k] * other[k];
-            double left = row[j] - ((sums[0] + sums[1]) + (sums[2] + sums[3]));
-            if (j < i)
-                row[j] = left / other[j];
-            else if (!(left > 0))
-                return false;
-            else
-                row[i] = sqrt(left);
+        for (size_t j = p->first[i] / ABREAST * ABREAST; j <= i; j += ABREAST) {
+            const size_t end = j + ABREAST <= i ? j + ABREAST : i + 1;
+            const double *others[ABREAST];
+            double sums[ABREAST];
+            for (size_t q = 0; q < ABREAST; q++)
+                others[q] = j + q < end ? p->matrix + (j + q) * m : row;
+            multiply_rows(row, others, p->first[i], j, sums);
+            for (size_t c = j; c < end; c++) {
+                double left = row[c] - sums[c - j];
+                for (size_t k = j; k < c; k++)
+                    left -= row[k] * others[c - j][k];
+                if (c < i)
+                    row[c] = left / others[c - j][c];
+                else if (!(left > 0))
+                    return false;
+                else
+                    row[i] = sqrt(left);
+            }
         }
     }
     return true;

@@ -192,7 +192,7 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
     guard_certificate *why = problem->certificate;
     size_t first_count = pool_count(pool);
     uint64_t improving;
-    if (!improves && !o->prove)
+    if (!guard_searches(o))
         return STARG_OK;
     IN_STAGE(context, STAGE);
     SCOPED_BY(end)

@@ -57,11 +57,18 @@ starg_status points_add(starg_context *context, const search_point *point, searc
 
 /* ---- duals: prices of witnesses and odd sets (guard/search_prices.c) ---- */
 
+/* Of 64 rows of a list, by witness: those that hold it. */
+typedef struct row_block {
+    uint64_t holders[MOST_WITNESSES];
+} row_block;
+
 /* Rows of points and of leaves that no other row contains. */
 typedef struct row_list {
+    starg_context *context;
     const witness_row **rows;
     uint32_t *names; /* by row: the point, or ROW_LEAF plus the leaf */
     size_t count;
+    STARG_ARRAY(row_block) blocks; /* of the rows, and former ones */
 } row_list;
 
 #define ROW_LEAF UINT32_C(0x80000000)
@@ -82,7 +89,7 @@ typedef struct search_duals {
 /* A list has room for two rows of each point and one of each cell. Does a row of it hold what this
  * one holds of these witnesses? */
 starg_status row_list_make(const search_duals *d, row_list *out);
-void row_list_add(row_list *list, const witness_row *row, size_t name);
+starg_status row_list_add(row_list *list, const witness_row *row, size_t name);
 bool row_list_holds(const row_list *list, const witness_row *row, const witness_row *among);
 void row_list_free(row_list *list);
 

@@ -81,10 +81,7 @@ starg_status points_add(starg_context *context, const search_point *point, searc
 starg_status points_begin(const guard_problem *problem, const guard_detail *detail,
                           const guard_pool *pool, search_points *points) {
     starg_context *context = problem->context;
-    const starg_guard_options *o = problem->options;
-    const candidate_shape shape = guard_shape(problem, detail);
-    const bool directed = sensor_is_directed(&o->visibility);
-    SCOPED_BY(candidates_free) candidate_points places = {0};
+    const bool directed = sensor_is_directed(&problem->options->visibility);
     for (size_t i = 0; i < pool_count(pool); i++) {
         search_point point = {.candidate = (uint32_t)i};
         vec3_copy(pool_point(pool, i), point.place);
@@ -94,15 +91,9 @@ starg_status points_begin(const guard_problem *problem, const guard_detail *deta
         }
         TRY(points_add(context, &point, points));
     }
-    if (o->candidates == STARG_CANDIDATES_MEDIAL || directed)
-        return STARG_OK;
-    starg_status status =
-        candidates_find(context, &shape, STARG_CANDIDATES_MEDIAL, o->candidate_count, &places);
-    if (status != STARG_OK && status != STARG_ERROR_TIME)
-        return status;
-    for (size_t i = 0; i < candidates_count(&places); i++) {
+    for (size_t i = 0; i < candidates_count(&detail->centres); i++) {
         search_point point = {.candidate = UINT32_MAX};
-        vec3_copy(places.data.data + 3 * i, point.place);
+        vec3_copy(detail->centres.data.data + 3 * i, point.place);
         TRY(points_add(context, &point, points));
     }
     return STARG_OK;

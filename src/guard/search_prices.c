@@ -41,41 +41,59 @@ static bool is_fine(const search_duals *d, const search_cell *leaf) {
 
 /* ---- lists of rows ---- */
 
-/* Is every witness of `a` in `b`, of those in `among`? */
-static bool row_is_within_among(const witness_row *a, const witness_row *b,
-                                const witness_row *among) {
-    uint64_t outside = 0;
-    for (int w = 0; w < WITNESS_WORDS; w++)
-        outside |= a->bits[w] & among->bits[w] & ~b->bits[w];
-    return outside == 0;
+/* Of the rows in a block, those that hold all witnesses of `row` in `among`. Two or three witnesses
+ * rule out nearly all rows. */
+static uint64_t holders_of(const row_block *block, const witness_row *row,
+                           const witness_row *among) {
+    uint64_t holders = UINT64_MAX;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w] & among->bits[w]) {
+            holders &= block->holders[64 * w + bit];
+            if (holders == 0)
+                return 0;
+        }
+    return holders;
 }
 
 bool row_list_holds(const row_list *list, const witness_row *row, const witness_row *among) {
-    for (size_t k = 0; k < list->count; k++)
-        if (row_is_within_among(row, list->rows[k], among))
+    for (size_t b = 0; 64 * b < list->count; b++) {
+        const size_t left = list->count - 64 * b;
+        const uint64_t all = left < 64 ? (UINT64_C(1) << left) - 1 : UINT64_MAX;
+        if ((holders_of(&list->blocks.data[b], row, among) & all) != 0)
             return true;
+    }
     return false;
 }
 
 starg_status row_list_make(const search_duals *d, row_list *out) {
     size_t most = 2 * d->points->count + d->cells->count;
-    starg_context *context = d->witnesses->scene.context;
-    NEW(context, STAGE, out->rows, most);
-    NEW(context, STAGE, out->names, most);
+    out->context = d->witnesses->scene.context;
+    NEW(out->context, STAGE, out->rows, most);
+    NEW(out->context, STAGE, out->names, most);
     return STARG_OK;
 }
 
-void row_list_add(row_list *list, const witness_row *row, size_t name) {
+starg_status row_list_add(row_list *list, const witness_row *row, size_t name) {
+    const size_t number = list->count / 64, at = list->count % 64;
+    if (number == list->blocks.count)
+        PUSH(list->context, STAGE, &list->blocks, (row_block){{0}});
+    row_block *block = &list->blocks.data[number];
+    if (at == 0)
+        memset(block, 0, sizeof *block);
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w])
+            starg_bit_set(&block->holders[64 * w + bit], at);
     list->rows[list->count] = row;
     list->names[list->count++] = (uint32_t)name;
+    return STARG_OK;
 }
 
 void row_list_free(row_list *list) {
-    RELEASE(list->rows, list->names);
+    RELEASE(list->rows, list->names, list->blocks.data);
 }
 
-static void list_fine(const search_duals *d, double least, const witness_row *among, row_list *list,
-                      uint64_t *work) {
+static starg_status list_fine(const search_duals *d, double least, const witness_row *among,
+                              row_list *list, uint64_t *work) {
     uint64_t compared = 0;
     for (size_t i = 0; i < d->cells->count && d->finest > 0; i++) {
         const search_cell *cell = &d->cells->data[i];
@@ -83,25 +101,27 @@ static void list_fine(const search_duals *d, double least, const witness_row *am
             continue;
         compared += list->count;
         if (!row_list_holds(list, &cell->open, among))
-            row_list_add(list, &cell->open, ROW_LEAF + i);
+            TRY(row_list_add(list, &cell->open, ROW_LEAF + i));
     }
     *work += compared / COMPARISONS + d->cells->count / VALUES;
+    return STARG_OK;
 }
 
 /* Adds points worth at least `least` to the list, with those that see a witness none of it sees. */
-static void list_worthy(const search_duals *d, double least, const uint8_t *listed,
-                        const witness_row *among, row_list *list) {
+static starg_status list_worthy(const search_duals *d, double least, const uint8_t *listed,
+                                const witness_row *among, row_list *list) {
     witness_row held = {{0}};
     for (size_t i = 0; i < d->points->count; i++)
         if (!listed[i] && duals_of_row(d, &d->points->data[i].seen) >= least &&
             !row_list_holds(list, &d->points->data[i].seen, among))
-            row_list_add(list, &d->points->data[i].seen, i);
+            TRY(row_list_add(list, &d->points->data[i].seen, i));
     for (size_t k = 0; k < list->count; k++)
         for (int w = 0; w < WITNESS_WORDS; w++)
             held.bits[w] |= list->rows[k]->bits[w];
     for (size_t i = 0; i < d->points->count; i++)
         if (!row_is_within(&d->points->data[i].seen, &held))
-            row_list_add(list, &d->points->data[i].seen, i);
+            TRY(row_list_add(list, &d->points->data[i].seen, i));
+    return STARG_OK;
 }
 
 /* ---- leaves ---- */
@@ -216,8 +236,8 @@ starg_status duals_find(search_duals *d, row_list *list, uint64_t *work) {
     list->count = 0;
     for (int k = 0; k < PROGRAMS; k++) {
         const witness_row wanted = priced_witnesses(d), among = among_and_odd(d, &wanted);
-        list_fine(d, k == 0 ? fmax(least, BINDING) : least, &among, list, work);
-        list_worthy(d, least, listed, &among, list);
+        TRY(list_fine(d, k == 0 ? fmax(least, BINDING) : least, &among, list, work));
+        TRY(list_worthy(d, least, listed, &among, list));
         for (size_t i = 0; i < list->count; i++)
             if (list->names[i] < ROW_LEAF)
                 listed[list->names[i]] = 1;

@@ -25,14 +25,15 @@ enum { ROWS_SHARE = 8, ROOT_ROWS = 2000, NODE_ROWS = 32 };
 static const double ROUNDING = 1e-6;
 
 /* Points worth at least `least` that see what no other of them does. */
-static void list_needed(const search_duals *d, double least, row_list *list) {
+static starg_status list_needed(const search_duals *d, double least, row_list *list) {
     const witness_row all = search_scene_witnesses(&d->witnesses->scene, 0);
     list->count = 0;
     for (size_t i = 0; i < d->points->count; i++) {
         const witness_row *seen = &d->points->data[i].seen;
         if (duals_of_row(d, seen) >= least && !row_list_holds(list, seen, &all))
-            row_list_add(list, seen, i);
+            TRY(row_list_add(list, seen, i));
     }
+    return STARG_OK;
 }
 
 /* The least value of points that may be among fewer guards: together they are worth as much as all
@@ -88,7 +89,7 @@ starg_status search_ask_points(search *s, bool *changed) {
     uint64_t before = s->effort.work;
     *changed = false;
     TRY(row_list_make(&s->duals, &list));
-    list_needed(&s->duals, least_useful(s), &list);
+    TRY(list_needed(&s->duals, least_useful(s), &list));
     TRY(solve_list(s, &list, &cover));
     s->asked.cells = s->cells.count;
     s->asked.after = s->effort.work + ASKING_SHARE * (s->effort.work - before);
@@ -136,21 +137,15 @@ starg_status search_ask_candidates(search *s) {
 
 /* Rows that no other one contains. Leaves that see no more than a point does are settled, and the
  * point represents them. */
-static void list_all(const search *s, row_list *list) {
-    size_t hint = 0;
-    list_needed(&s->duals, 0, list);
+static starg_status list_all(const search *s, row_list *list) {
+    const witness_row all = search_scene_witnesses(&s->witnesses.scene, 0);
+    TRY(list_needed(&s->duals, 0, list));
     for (size_t i = 0; i < s->cells.count; i++) {
-        const witness_row *open = &s->cells.data[i].open;
-        bool needless = s->cells.data[i].children != 0 ||
-                        (hint < list->count && row_is_within(open, list->rows[hint]));
-        for (size_t k = 0; k < list->count && !needless; k++)
-            if (row_is_within(open, list->rows[k])) {
-                needless = true;
-                hint = k;
-            }
-        if (!needless)
-            row_list_add(list, open, ROW_LEAF + i);
+        const search_cell *cell = &s->cells.data[i];
+        if (cell->children == 0 && !row_list_holds(list, &cell->open, &all))
+            TRY(row_list_add(list, &cell->open, ROW_LEAF + i));
     }
+    return STARG_OK;
 }
 
 /* Unsettled leaves that could replace a chosen row: they may see everything that only it sees. */
@@ -203,7 +198,7 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     bool proven = false;
     *again = false;
     TRY(row_list_make(&s->duals, &list));
-    list_all(s, &list);
+    TRY(list_all(s, &list));
     TRY(solve_list(s, &list, &cover));
     if (cover->count < guards)
         return follow_cover(s, &list, cover, changed, again);

@@ -42,10 +42,12 @@ typedef struct guard_problem {
     bool hurried; /* targets that no candidate sees are not looked for in the whole free space */
 } guard_problem;
 
-/* Simplified versions of the solid. */
+/* What is found of the solid before anything is seen. */
 typedef struct guard_detail {
-    starg_levels *levels; /* NULL: none wanted, or no time */
-    starg_solid *proxy;   /* source of medial axis and skeleton; NULL: the solid */
+    starg_levels *levels;     /* simplified versions; NULL: none wanted, or no time */
+    starg_solid *proxy;       /* source of medial axis and skeleton; NULL: the solid */
+    candidate_points first;   /* candidates before augmentation */
+    candidate_points centres; /* on the medial axis: further places of the search */
     bool time_limited;
 } guard_detail;
 
@@ -109,6 +111,11 @@ static inline bool guard_wants_part(const starg_guard_options *o) {
 static inline bool guard_refines(const starg_guard_options *o) {
     return o->method == STARG_GUARD_PILP && o->refine && !guard_wants_part(o) &&
            o->candidates != STARG_CANDIDATES_GIVEN;
+}
+
+/* Does it look for guards, or for a bound? */
+static inline bool guard_searches(const starg_guard_options *o) {
+    return !guard_wants_part(o) && (guard_refines(o) || o->prove);
 }
 
 /* May that search begin with few candidates, and end without bounds beyond those that it needs
