@@ -210,13 +210,16 @@ static bool visit_later(void *user, uint32_t other) {
     return other <= query->triangle || query->visit(query->user, query->triangle, other);
 }
 
+bool bvh_query_pairs_of(const bvh *tree, uint32_t triangle, bvh_visit_pair *visit, void *user) {
+    pair_query query = {visit, user, triangle};
+    bvh_box box = triangle_box(tree, triangle);
+    return bvh_query_box(tree, &box, visit_later, &query);
+}
+
 bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user) {
-    for (size_t f = 0; f < tree->triangle_count; f++) {
-        pair_query query = {visit, user, (uint32_t)f};
-        bvh_box box = triangle_box(tree, (uint32_t)f);
-        if (!bvh_query_box(tree, &box, visit_later, &query))
+    for (size_t f = 0; f < tree->triangle_count; f++)
+        if (!bvh_query_pairs_of(tree, (uint32_t)f, visit, user))
             return false;
-    }
     return true;
 }
 

@@ -55,6 +55,9 @@ bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *
 typedef bool bvh_visit_pair(void *user, uint32_t a, uint32_t b);
 bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user);
 
+/* Same, of one triangle with those of larger numbers. */
+bool bvh_query_pairs_of(const bvh *tree, uint32_t triangle, bvh_visit_pair *visit, void *user);
+
 /* Winding number of the mesh about p, and whether p lies on a triangle (the number is then
  * meaningless). Exact for closed meshes: a vertical line, symbolically perturbed off every edge. */
 int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) STARG_PRIVATE(bvh_winding);

@@ -125,6 +125,8 @@ static bool needs_levels(const guard_problem *problem) {
 static starg_status find_levels(const guard_problem *problem, guard_detail *out) {
     const starg_guard_options *options = problem->options;
     starg_progress_begin(problem->context, "levels");
+    starg_levels_free(problem->context, out->levels);
+    out->levels = NULL;
     starg_status status = starg_mesh_levels(problem->context, problem->solid->mesh,
                                             options->coarsest, options->step, NULL, &out->levels);
     starg_progress_end(problem->context);
@@ -169,19 +171,45 @@ static bool needs_centres(const guard_problem *problem) {
            !sensor_is_directed(&options->visibility);
 }
 
-/* Of which each does not need the others. */
+typedef starg_status finding(const guard_problem *problem, guard_detail *detail);
+
+/* Those that do not need each other. */
 typedef struct findings {
     const guard_problem *problem;
     guard_detail *detail;
     size_t count;
-    starg_status (*find[3])(const guard_problem *problem, guard_detail *detail);
+    finding *find[3];
+    starg_status status[3];
 } findings;
 
 static starg_status find_one(starg_context *context, void *shared, void *scratch, size_t item) {
-    const findings *all = shared;
+    findings *all = shared;
     (void)context;
     (void)scratch;
-    return all->find[item](all->problem, all->detail);
+    all->status[item] = all->find[item](all->problem, all->detail);
+    return STARG_OK;
+}
+
+static void findings_free(guard_detail *detail) {
+    candidates_free(&detail->first);
+    candidates_free(&detail->centres);
+}
+
+/* Side by side. If one fails, one after the other, for the message of the first that does. */
+static starg_status find_all(findings *all) {
+    starg_context *context = all->problem->context;
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = all->count, .shared = all, .item = find_one, .silent = true};
+    bool done = true;
+    TRY(starg_parallel_for(context, &loop));
+    for (size_t i = 0; i < all->count; i++)
+        done = done && all->status[i] == STARG_OK;
+    if (done)
+        return STARG_OK;
+    findings_free(all->detail);
+    for (size_t i = 0; i < all->count; i++)
+        TRY(all->find[i](all->problem, all->detail));
+    return STARG_OK;
 }
 
 static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
@@ -193,16 +221,13 @@ static starg_status find_detail(const guard_problem *problem, guard_detail *out)
         all.find[all.count++] = find_centres;
     if (needs_levels(problem) && !proxy)
         all.find[all.count++] = find_levels;
-    const starg_parallel_loop loop = {
-        .stage = STAGE, .count = all.count, .shared = &all, .item = find_one, .silent = true};
-    return starg_parallel_for(problem->context, &loop);
+    return find_all(&all);
 }
 
 static void detail_free(starg_context *context, guard_detail *detail) {
     starg_solid_free(detail->proxy);
     starg_levels_free(context, detail->levels);
-    candidates_free(&detail->first);
-    candidates_free(&detail->centres);
+    findings_free(detail);
 }
 
 /* The candidates before augmentation, and what they see. */

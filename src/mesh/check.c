@@ -229,11 +229,22 @@ static void note_shells(checker *c, uint32_t a, uint32_t b, triangle_contact con
         c->shells[first].crossed = c->shells[second].crossed = true;
 }
 
+static triangle_contact contact_of(const checker *c, uint32_t a, uint32_t b) {
+    const uint32_t *faces = c->mesh->faces;
+    return faces_contact(c->mesh->vertices, faces + 3 * (size_t)a, faces + 3 * (size_t)b);
+}
+
+/* Is the contact more than that of neighbours? */
+static bool is_contact(void *user, uint32_t a, uint32_t b) {
+    const checker *c = user;
+    triangle_contact contact = contact_of(c, a, b);
+    return contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS ||
+           (contact == TRIANGLES_SHARE && c->topology->component[a] != c->topology->component[b]);
+}
+
 static bool check_pair(void *user, uint32_t a, uint32_t b) {
     checker *c = user;
-    const uint32_t *faces = c->mesh->faces;
-    triangle_contact contact =
-        faces_contact(c->mesh->vertices, faces + 3 * (size_t)a, faces + 3 * (size_t)b);
+    triangle_contact contact = contact_of(c, a, b);
     note_shells(c, a, b, contact);
     if (contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS) {
         starg_finding_kind kind = contact == TRIANGLES_CROSS ? STARG_FINDING_SELF_INTERSECTION
@@ -248,7 +259,7 @@ static bool check_pair(void *user, uint32_t a, uint32_t b) {
 }
 
 static starg_status check_intersections(checker *c) {
-    starg_status status = face_pairs_visit(c->context, c->mesh, c->tree, check_pair, c);
+    starg_status status = face_pairs_visit(c->context, c->mesh, c->tree, is_contact, check_pair, c);
     return status != STARG_OK ? status : starg_check_cancel(c->context, "check");
 }
 

@@ -34,9 +34,10 @@ starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
 
 /* Calls visit(a, b) at most once for each unordered pair of faces, for all pairs that have a point
  * in common beside a common corner, and some others; false ends the visit. `tree` is that of the
- * mesh. Errors: MEMORY. */
+ * mesh. Unless `matters` is NULL, pairs for which it is false may be left out; it is called on all
+ * threads. Errors: MEMORY, CANCELLED, TIME. */
 starg_status face_pairs_visit(starg_context *context, const starg_mesh *mesh, const bvh *tree,
-                              bvh_visit_pair *visit, void *user);
+                              bvh_visit_pair *matters, bvh_visit_pair *visit, void *user);
 
 typedef struct mesh_examination {
     starg_check *check;

@@ -11,6 +11,7 @@
  *
  * Cost: O(n log n) and the pairs, where faces are not long compared with their distances. */
 
+#include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 
@@ -229,11 +230,80 @@ static void visit_later(pairing *p, size_t g) {
     }
 }
 
+/* ---- without hubs ---- */
+
+/* Faces of an item; the pairs of an item are kept until those before it are visited. */
+enum { PART = 2048 };
+
+typedef STARG_ARRAY(uint32_t) pair_list;
+
+typedef struct sifting {
+    starg_context *context;
+    const bvh *tree;
+    bvh_visit_pair *matters;
+    void *user;
+    pair_list *parts; /* by item */
+} sifting;
+
+typedef struct sieve {
+    const sifting *of;
+    pair_list *kept;
+    starg_status status;
+} sieve;
+
+static starg_status keep_pair(const sieve *v, uint32_t a, uint32_t b) {
+    PUSH(v->of->context, STAGE, v->kept, a);
+    PUSH(v->of->context, STAGE, v->kept, b);
+    return STARG_OK;
+}
+
+static bool sift_pair(void *user, uint32_t a, uint32_t b) {
+    sieve *v = user;
+    if (v->of->matters(v->of->user, a, b))
+        v->status = keep_pair(v, a, b);
+    return v->status == STARG_OK;
+}
+
+static starg_status sift_part(starg_context *context, void *shared, void *scratch, size_t item) {
+    const sifting *s = shared;
+    sieve v = {.of = s, .kept = &s->parts[item], .status = STARG_OK};
+    const size_t end = (item + 1) * PART;
+    (void)context;
+    (void)scratch;
+    for (size_t f = item * PART; f < end && f < s->tree->triangle_count; f++)
+        if (!bvh_query_pairs_of(s->tree, (uint32_t)f, sift_pair, &v))
+            break;
+    return v.status;
+}
+
+static starg_status visit_sifted(sifting *s, bvh_visit_pair *visit) {
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = (s->tree->triangle_count + PART - 1) / PART,
+                                      .shared = s,
+                                      .item = sift_part,
+                                      .silent = true};
+    starg_status status = STARG_OK;
+    bool ended = false;
+    STARG_NEW_ZERO(s->context, STAGE, s->parts, loop.count);
+    STARG_TRY(starg_parallel_for(s->context, &loop));
+    for (size_t n = 0; n < loop.count; n++)
+        for (size_t i = 0; i < s->parts[n].count && !ended; i += 2)
+            ended = !visit(s->user, s->parts[n].data[i], s->parts[n].data[i + 1]);
+done:
+    for (size_t n = 0; s->parts != NULL && n < loop.count; n++)
+        RELEASE(s->parts[n].data);
+    RELEASE(s->parts);
+    return status;
+}
+
 starg_status face_pairs_visit(starg_context *context, const starg_mesh *mesh, const bvh *tree,
-                              bvh_visit_pair *visit, void *user) {
+                              bvh_visit_pair *matters, bvh_visit_pair *visit, void *user) {
     SCOPED_BY(free_groups)
     pairing p = {.context = context, .mesh = mesh, .visit = visit, .user = user};
+    sifting all = {.context = context, .tree = tree, .matters = matters, .user = user};
     TRY(find_hubs(&p));
+    if (p.count == 1 && matters != NULL)
+        return visit_sifted(&all, visit);
     if (p.count == 1) {
         bvh_query_pairs(tree, visit, user);
         return STARG_OK;

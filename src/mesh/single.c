@@ -128,7 +128,7 @@ static starg_status compare_contacts(comparison *c) {
     SCOPED_BY(bvh_drop) bvh *tree = NULL;
     TRY(bvh_create(c->context, c->rounded->vertices, c->rounded->faces, c->rounded->face_count,
                    &tree));
-    TRY(face_pairs_visit(c->context, c->rounded, tree, compare_pair, c));
+    TRY(face_pairs_visit(c->context, c->rounded, tree, NULL, compare_pair, c));
     TRY(starg_check_cancel(c->context, c->place->stage));
     if (c->met)
         return refuse(c, STARG_ELEMENT_FACE, c->pair, 2,

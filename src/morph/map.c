@@ -8,6 +8,7 @@
  * surfaces. */
 #include "morph/map.h"
 
+#include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
 #include "morph/compose.h"
@@ -225,6 +226,40 @@ static starg_status spread_surface(starg_context *context, const starg_mesh *mes
 static void spread_free(spread *s) {
     sphere_free(s->sphere);
     starg_mesh_free(s->unit);
+    *s = (spread){0};
+}
+
+typedef struct spread_task {
+    const starg_mesh *surfaces[2];
+    spread *out[2];
+    starg_status status[2];
+} spread_task;
+
+static const char *const NAMES[2] = {"A", "B"};
+
+static starg_status spread_one(starg_context *context, void *shared, void *scratch, size_t item) {
+    spread_task *task = shared;
+    (void)scratch;
+    task->status[item] =
+        spread_surface(context, task->surfaces[item], NAMES[item], task->out[item]);
+    return STARG_OK;
+}
+
+/* Both surfaces, side by side. If one fails, one after the other, for the message of the first that
+ * does. */
+static starg_status spread_both(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                spread *from, spread *to) {
+    spread_task task = {.surfaces = {a, b}, .out = {from, to}};
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = 2, .shared = &task, .item = spread_one, .silent = true};
+    TRY(starg_parallel_for(context, &loop));
+    if (task.status[0] == STARG_OK && task.status[1] == STARG_OK)
+        return STARG_OK;
+    for (int i = 0; i < 2; i++) {
+        spread_free(task.out[i]);
+        TRY(spread_surface(context, task.surfaces[i], NAMES[i], task.out[i]));
+    }
+    return STARG_OK;
 }
 
 /* A face with the vertex as a corner. */
@@ -336,8 +371,7 @@ static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, c
     landmark_list marks;
     feature_pairs features;
     TRY(split_landmarks(context, options, &lists, &marks));
-    TRY(spread_surface(context, a, "A", &from));
-    TRY(spread_surface(context, b, "B", &to));
+    TRY(spread_both(context, a, b, &from, &to));
     TRY(locator_create(context, to.sphere, &where));
     TRY(align_spheres(from.sphere, &where, &marks, &features));
     TRY(compose(from.sphere, &where, &marks, &features));

@@ -51,7 +51,7 @@ static starg_status join_contacts(starg_context *context, const starg_solid *sol
     NEW(context, STAGE, j->welded, 3 * solid->mesh->face_count);
     for (size_t i = 0; i < 3 * solid->mesh->face_count; i++)
         j->welded[i] = first[solid->mesh->faces[i]];
-    return face_pairs_visit(context, solid->mesh, solid->tree, join_touching, j);
+    return face_pairs_visit(context, solid->mesh, solid->tree, NULL, join_touching, j);
 }
 
 static starg_status join_shells(starg_context *context, const starg_solid *solid, joining *j) {

@@ -392,7 +392,7 @@ static starg_status untangle_once(repair_state *state, size_t *work, bool *chang
     STARG_NEW_ZERO(context, REPAIR_STAGE, u.marked, vertices);
     STARG_NEW_ZERO(context, REPAIR_STAGE, u.touched, vertices);
     STARG_NEW(context, REPAIR_STAGE, u.next, vertices);
-    STARG_TRY(face_pairs_visit(context, &view, u.index.tree, note_pair, &u));
+    STARG_TRY(face_pairs_visit(context, &view, u.index.tree, NULL, note_pair, &u));
     join_patches(&u);
     STARG_TRY(mend_patches(&u));
     *changed = u.changed;

@@ -22,6 +22,9 @@
  * MOVES_WORK. */
 #include "star/certified/search.h"
 
+#include <stdatomic.h>
+
+#include "core/parallel.h"
 #include "geometry/vec3.h"
 
 enum {
@@ -32,6 +35,7 @@ enum {
     OTHERS,       /* what the others see  */
     VIEWS,
     LOOK_WORK = 250,  /* for a vertex, in what a row costs */
+    LOOKS = 64,       /* at vertices, by an item of a loop */
     MISSED_MOST = 10, /* corners, of the best places; else there is no hope */
     CLIMBS = 100,
     CLIMBS_IDLE = 40,      /* then no more */
@@ -117,6 +121,7 @@ typedef struct segment {
     const double *from;
     double along[3];
     uint32_t to; /* vertex */
+    uint64_t work;
 } segment;
 
 /* Does the segment meet a triangle? Rounded. */
@@ -137,9 +142,9 @@ static bool meets(const segment *s, const uint32_t *corners) {
 }
 
 static bool passes(void *user, size_t rank) {
-    const segment *s = user;
+    segment *s = user;
     const uint32_t *c = s->s->faces + 3 * (size_t)s->s->tree->order[rank];
-    s->s->scratch->work += 3;
+    s->work += 3;
     return c[0] == s->to || c[1] == s->to || c[2] == s->to || !meets(s, c);
 }
 
@@ -157,31 +162,80 @@ static void suppose(const searcher *s, view *out) {
         out->seen[i / 64] |= (uint64_t)is_inside(s, i / 3, out->place) << i % 64;
 }
 
+enum { UNKNOWN, FREE, MET }; /* the segment to a vertex */
+
+/* Returns the work. */
+static uint64_t look_at(const searcher *s, const double place[3], uint32_t at) {
+    segment to = {.s = s, .from = place, .to = at, .work = LOOK_WORK};
+    vec3_subtract(vertex(s, at), place, to.along);
+    s->sight[at] = bvh_query_segment(s->tree, place, vertex(s, at), passes, &to) ? FREE : MET;
+    return to.work;
+}
+
+/* Vertices to look at from a place, side by side. */
+typedef struct looks {
+    const searcher *s;
+    const double *place;
+    const uint32_t *vertices;
+    size_t count;
+    atomic_uint_fast64_t work;
+} looks;
+
+static starg_status look_at_some(starg_context *context, void *shared, void *scratch, size_t item) {
+    looks *all = shared;
+    uint64_t work = 0;
+    (void)context;
+    (void)scratch;
+    for (size_t i = item * LOOKS; i < (item + 1) * LOOKS && i < all->count; i++)
+        work += look_at(all->s, all->place, all->vertices[i]);
+    atomic_fetch_add(&all->work, work);
+    return STARG_OK;
+}
+
+static starg_status look_at_all(const searcher *s, const view *from) {
+    starg_context *context = s->scratch->context;
+    SCOPED uint32_t *list = NULL;
+    NEW(context, PARTITION_STAGE, list, s->r->vertices.count / 3);
+    looks all = {.s = s, .place = from->place, .vertices = list};
+    for (size_t i = 0; i < s->corners; i++) {
+        uint8_t *sight = &s->sight[s->faces[i]];
+        if ((from->seen[i / 64] >> i % 64 & 1) == 0 || *sight != UNKNOWN)
+            continue;
+        *sight = MET;
+        list[all.count++] = s->faces[i];
+    }
+    const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
+                                      .count = (all.count + LOOKS - 1) / LOOKS,
+                                      .shared = &all,
+                                      .item = look_at_some,
+                                      .silent = true};
+    TRY(starg_parallel_for(context, &loop));
+    s->scratch->work += atomic_load(&all.work);
+    return STARG_OK;
+}
+
 /* Of these, only the ones that are seen, all of them or, unless it is NULL, those not in `others`.
  * Ends when more than `most` are not seen. Their order is mixed, for what is hidden lies together.
  */
-static void look(const searcher *s, view *out, const uint64_t *others, size_t most) {
-    enum { UNKNOWN, FREE, MET };
+static starg_status look(const searcher *s, view *out, const uint64_t *others, size_t most) {
     size_t lost = 0, i = 0;
     memset(s->sight, UNKNOWN, s->r->vertices.count / 3);
+    if (others == NULL)
+        TRY(look_at_all(s, out));
     for (size_t n = 0; n < s->corners && lost <= most; n++, i = (i + s->stride) % s->corners) {
         uint64_t word = out->seen[i / 64] & ~(others == NULL ? 0 : others[i / 64]);
         uint32_t at = s->faces[i];
         if (!(word >> i % 64 & 1))
             continue;
-        if (s->sight[at] == UNKNOWN) {
-            segment to = {.s = s, .from = out->place, .to = at};
-            vec3_subtract(vertex(s, at), out->place, to.along);
-            s->scratch->work += LOOK_WORK;
-            s->sight[at] =
-                bvh_query_segment(s->tree, out->place, vertex(s, at), passes, &to) ? FREE : MET;
-        }
+        if (s->sight[at] == UNKNOWN)
+            s->scratch->work += look_at(s, out->place, at);
         if (s->sight[at] == FREE)
             continue;
         out->seen[i / 64] &= ~((uint64_t)1 << i % 64);
         lost++;
     }
     out->looked = others == NULL && lost <= most;
+    return STARG_OK;
 }
 
 /* Corners that some of the views see. */
@@ -300,9 +354,10 @@ static const uint64_t *others_of(const searcher *s, view *const *chosen, size_t 
 
 /* Looks from the best places only, as long as they may see `least`, until these are still the best.
  */
-static size_t choose(searcher *s, size_t pool, view **chosen, size_t least) {
+static starg_status choose(searcher *s, size_t pool, view **chosen, size_t least, size_t *out) {
     for (;;) {
         size_t most = choose_supposed(s, pool, chosen);
+        *out = most;
         view *next = NULL;
         size_t which = 0;
         for (size_t i = 0; i < s->guards && next == NULL; i++)
@@ -311,10 +366,10 @@ static size_t choose(searcher *s, size_t pool, view **chosen, size_t least) {
                 which = i;
             }
         if (next == NULL || most < least)
-            return most;
-        look(s, next, others_of(s, chosen, which), most - least);
+            return STARG_OK;
+        TRY(look(s, next, others_of(s, chosen, which), most - least));
         if (count_all(s, chosen, s->guards) >= least)
-            look(s, next, NULL, SIZE_MAX);
+            TRY(look(s, next, NULL, SIZE_MAX));
     }
 }
 
@@ -325,7 +380,8 @@ static void random_step(const searcher *s, const double from[3], double out[3]) 
 }
 
 /* A random step of one of the chosen: do all of them see at least as much as before? */
-static bool try_step(searcher *s, view **chosen, size_t which, view *spare, size_t *most) {
+static starg_status try_step(searcher *s, view **chosen, size_t which, view *spare, size_t *most,
+                             bool *kept) {
     view *former = chosen[which];
     const uint64_t *others = others_of(s, chosen, which);
     random_step(s, former->place, spare->place);
@@ -333,43 +389,46 @@ static bool try_step(searcher *s, view **chosen, size_t which, view *spare, size
     chosen[which] = spare;
     size_t seen = count_all(s, chosen, s->guards);
     if (seen >= *most) {
-        look(s, spare, others, seen - *most);
+        TRY(look(s, spare, others, seen - *most));
         seen = count_all(s, chosen, s->guards);
     }
-    if (seen >= *most) {
-        look(s, spare, NULL, SIZE_MAX);
+    *kept = seen >= *most;
+    if (*kept) {
         *most = seen;
-        return true;
+        return look(s, spare, NULL, SIZE_MAX);
     }
     chosen[which] = former;
-    return false;
+    return STARG_OK;
 }
 
 /* Random steps that lose nothing. */
-static size_t climb(searcher *s, view **chosen, size_t most) {
+static starg_status climb(searcher *s, view **chosen, size_t *most) {
     view *spare = &s->views[SPARE];
     int idle = 0;
-    for (int i = 0; i < CLIMBS && most < s->corners && idle < CLIMBS_IDLE; i++, idle++) {
-        size_t which = starg_rng_below(s->rng, s->guards), before = most;
+    for (int i = 0; i < CLIMBS && *most < s->corners && idle < CLIMBS_IDLE; i++, idle++) {
+        size_t which = starg_rng_below(s->rng, s->guards), before = *most;
         view *former = chosen[which];
-        if (try_step(s, chosen, which, spare, &most))
+        bool kept;
+        TRY(try_step(s, chosen, which, spare, most, &kept));
+        if (kept)
             spare = former;
-        if (most > before)
+        if (*most > before)
             idle = 0;
     }
-    return most;
+    return STARG_OK;
 }
 
 static starg_status find_places(searcher *s, bool *found) {
     view *chosen[GUARD_SPLIT_MOST];
-    size_t pool;
+    size_t pool, most;
     *found = false;
     TRY(fill_pool(s, &pool));
     size_t least = s->corners > MISSED_MOST ? s->corners - MISSED_MOST : 0;
-    size_t most = choose(s, pool, chosen, least);
+    TRY(choose(s, pool, chosen, least, &most));
     if (most < least)
         return STARG_OK;
-    *found = climb(s, chosen, most) == s->corners;
+    TRY(climb(s, chosen, &most));
+    *found = most == s->corners;
     for (size_t i = 0; i < s->guards; i++)
         vec3_copy(chosen[i]->place, s->places[i]);
     return STARG_OK;

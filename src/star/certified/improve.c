@@ -89,6 +89,7 @@ struct improver {
     uint64_t stalled;  /* trials since the last success */
     size_t merge_from; /* facets from which on it is time to merge */
     trial trials[BATCH];
+    size_t order[BATCH];    /* of the trials, those first that may take longest */
     region_scratch scratch; /* of the calling thread */
     /* neighbours of piece i: neighbours[first[i]] to neighbours[first[i + 1] - 1] */
     partition_numbers neighbours;
@@ -314,9 +315,10 @@ static const sort SORTS[IMPROVE_SORTS] = {
 
 static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
     improver *m = shared;
-    trial *t = &m->trials[item];
-    starg_rng rng =
-        starg_rng_make(context->seed, STREAM_IMPROVE, m->options->first + m->report->trials + item);
+    const size_t number = m->order[item];
+    trial *t = &m->trials[number];
+    starg_rng rng = starg_rng_make(context->seed, STREAM_IMPROVE,
+                                   m->options->first + m->report->trials + number);
     region_scratch *own = scratch;
     uint64_t before = own->work;
     choose_union(m, &rng, t->sort->count, t, &t->found);
@@ -438,14 +440,18 @@ static double share_of(const improver *m, size_t number) {
     return FLOOR + left * gain_of(m, number) / gain;
 }
 
+/* What its trials have cost lately. */
+static double cost_of(const improve_tally *tally) {
+    return (tally->work + USUAL_WORK) / (tally->trials + 1);
+}
+
 /* Each trial is of the sort that is due first; the next one of that is due after as much work as
  * trials of it cost, over its share. */
 static void choose_sorts(improver *m) {
     improve_tallies *tallies = m->options->tallies;
     double delay[IMPROVE_SORTS];
     for (size_t i = 0; i < IMPROVE_SORTS; i++)
-        delay[i] =
-            (tallies->of[i].work + USUAL_WORK) / (tallies->of[i].trials + 1) / share_of(m, i);
+        delay[i] = cost_of(&tallies->of[i]) / share_of(m, i);
     for (size_t n = 0; n < BATCH; n++) {
         size_t next = 0;
         for (size_t i = 1; i < IMPROVE_SORTS; i++)
@@ -453,6 +459,16 @@ static void choose_sorts(improver *m) {
                 next = i;
         tallies->of[next].due += delay[next];
         m->trials[n] = (trial){.sort = &SORTS[next]};
+    }
+}
+
+static void order_trials(improver *m) {
+    for (size_t n = 0; n < BATCH; n++) {
+        size_t at = n;
+        const double cost = cost_of(tally_of(m, &m->trials[n]));
+        for (; at > 0 && cost_of(tally_of(m, &m->trials[m->order[at - 1]])) < cost; at--)
+            m->order[at] = m->order[at - 1];
+        m->order[at] = n;
     }
 }
 
@@ -483,6 +499,7 @@ static starg_status run_batch(improver *m) {
                                       .free_scratch = region_free_scratch,
                                       .silent = true};
     choose_sorts(m);
+    order_trials(m);
     STARG_TRY(starg_parallel_for(m->p->context, &loop));
     count_batch(m);
     STARG_TRY(carry_out_batch(m));

@@ -35,6 +35,7 @@
 
 #include <stdlib.h>
 
+#include "core/parallel.h"
 #include "geometry/vec3.h"
 
 enum { PARTING_TOUCHED_MOST = 3 };
@@ -314,20 +315,60 @@ static starg_status cross(parting *p, const cone_sides *cone, uint32_t own, uint
     return STARG_OK;
 }
 
-starg_status crossings_count(const separator_task *task, size_t most, region_scratch *scratch,
-                             size_t *count) {
-    SCOPED_BY(parting_free) parting p = make_parting(task, scratch);
-    *count = 0;
-    for (size_t i = 0; i < task->own.count && *count < most; i++) {
+/* Crossings are counted wave by wave: of each, some triangles of A with all of B, side by side. */
+enum { WAVE_ITEMS = 16, ITEM_PAIRS = 4000 };
+
+typedef struct wave {
+    const separator_task *task;
+    size_t first, each; /* the first triangle of A, and how many an item looks at */
+    size_t most;
+    size_t count[WAVE_ITEMS];  /* crossings that an item has found, */
+    uint64_t work[WAVE_ITEMS]; /* and its work */
+} wave;
+
+static starg_status count_item(starg_context *context, void *shared, void *scratch, size_t item) {
+    wave *w = shared;
+    const separator_task *task = w->task;
+    region_scratch *own = scratch;
+    const uint64_t before = own->work;
+    SCOPED_BY(parting_free) parting p = make_parting(task, own);
+    const size_t first = w->first + item * w->each, end = first + w->each;
+    (void)context;
+    for (size_t i = first; i < end && i < task->own.count && w->count[item] < w->most; i++) {
         cone_sides cone;
         find_cone(&p, task->own.data[i], &cone);
-        scratch->work += PAIR_WORK * task->others.count;
-        for (size_t k = 0; k < task->others.count && *count < most; k++) {
+        own->work += PAIR_WORK * task->others.count;
+        for (size_t k = 0; k < task->others.count && w->count[item] < w->most; k++) {
             bool crossed;
             TRY(cross(&p, &cone, task->own.data[i], task->others.data[k], &crossed));
-            *count += crossed;
+            w->count[item] += crossed;
         }
     }
+    w->work[item] = own->work - before;
+    return STARG_OK;
+}
+
+starg_status crossings_count(const separator_task *task, size_t most, region_scratch *scratch,
+                             size_t *count) {
+    const size_t each = ITEM_PAIRS / (task->others.count + 1) + 1;
+    *count = 0;
+    for (size_t first = 0; first < task->own.count && *count < most; first += WAVE_ITEMS * each) {
+        wave w = {.task = task, .first = first, .each = each, .most = most - *count};
+        const size_t left = (task->own.count - first + each - 1) / each;
+        const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
+                                          .count = left < WAVE_ITEMS ? left : WAVE_ITEMS,
+                                          .shared = &w,
+                                          .item = count_item,
+                                          .make_scratch = region_make_scratch,
+                                          .free_scratch = region_free_scratch,
+                                          .silent = true};
+        TRY(starg_parallel_for(scratch->context, &loop));
+        for (size_t n = 0; n < loop.count; n++) {
+            *count += w.count[n];
+            scratch->work += w.work[n];
+        }
+    }
+    *count = *count < most ? *count : most;
     return STARG_OK;
 }
 

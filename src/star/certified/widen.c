@@ -21,6 +21,7 @@
  * union; `work` in total. */
 #include "star/certified/search.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "core/parallel.h"
@@ -144,7 +145,7 @@ enum {
     IDLE_MOST = 12, /* consecutive rounds without a change before it stops */
     DIRECTIONS = 32,
     STEPS = 24,
-    AT_ONCE_MOST = 16 /* unions, one for each thread */
+    AT_ONCE = 32 /* searches */
 };
 
 /* The margin required at first, and the growth of a ball that is required then; of what is required
@@ -153,25 +154,30 @@ static const double GOAL = 4e-3, GROWTH = 1.25, ROUNDED = 0.9;
 
 typedef STARG_ARRAY(uint32_t) numbers;
 
-/* Searches for cuts of the union of two pieces: for each margin by a plane, then from two guards
- * that see all of it. */
-typedef struct union_trial {
+/* A search in a round, for cuts of the union of a piece, by its rank, and one of its neighbours. */
+typedef struct place {
+    size_t rank, neighbour;
+    int number; /* of those of the union */
+} place;
+
+typedef struct union_search {
+    place at;
     uint32_t pieces[2];
-    double margins[2]; /* of guards, in unit coordinates */
-    uint64_t first;    /* number of the first search */
-    uint32_t searches; /* how many there are */
-    uint32_t done;     /* the last one that is done may have found a plan */
+    double margin; /* of guards, in unit coordinates */
+    bool left;     /* not begun, as one before it has found a plan */
     bool found;
     cut_plan plan;
     uint64_t work;
-} union_trial;
+} union_search;
 
 typedef struct widener {
     partition *p;
     region_scratch scratch;
     uint64_t work, tries; /* the work allowed; searches so far */
     numbers around;       /* of a piece: its neighbours */
-    union_trial trials[AT_ONCE_MOST];
+    union_search searches[AT_ONCE];
+    size_t count;              /* of these */
+    atomic_size_t first_found; /* the first so far that has found a plan */
 } widener;
 
 /* ---- unions ---- */
@@ -195,97 +201,54 @@ static double fitness(const partition *part, size_t count) {
     return -flatness_of_first(part, count);
 }
 
-/* With the margin that is aimed at, or else with more than the smaller one is now. */
-static union_trial begin_trial(const partition *p, uint32_t a, uint32_t b, uint64_t first) {
-    union_trial t = {.pieces = {a, b},
-                     .margins = {GOAL * fmax(flatness_diagonal(p, a), flatness_diagonal(p, b)),
-                                 GROWTH * fmin(p->pieces.data[a].radius, p->pieces.data[b].radius)},
-                     .first = first};
-    t.searches = t.margins[1] <= t.margins[0] ? 4 : 2;
-    return t;
+/* Up to four searches: with the margin that is aimed at, or else with more than the smaller one is
+ * now, by a plane, or else from two guards that see all. Returns how many there are. */
+static int margins_of(const partition *p, const uint32_t pieces[2], double margins[2]) {
+    const piece *a = &p->pieces.data[pieces[0]], *b = &p->pieces.data[pieces[1]];
+    margins[0] = GOAL * fmax(flatness_diagonal(p, pieces[0]), flatness_diagonal(p, pieces[1]));
+    margins[1] = GROWTH * fmin(a->radius, b->radius);
+    return margins[1] <= margins[0] ? 4 : 2;
 }
 
-/* Goes on until a search finds a plan, or there are no more. */
-static starg_status find_plan(const partition *p, region_scratch *scratch, union_trial *t) {
+static starg_status find_plan(const widener *w, size_t number, region_scratch *scratch,
+                              union_search *s) {
+    const partition *p = w->p;
     SCOPED_BY(region_free) region r = {.vertices = {0}};
     double starts[2][3];
-    t->found = false;
-    if (t->done == t->searches)
-        return STARG_OK;
+    const repartition_options planes = {
+        .margin = s->margin, .directions = DIRECTIONS, .steps = STEPS};
+    const guard_split_options guards = {
+        .margin = s->margin, .starts = (const double(*)[3])starts, .start_count = 2};
+    starg_rng rng = starg_rng_make(p->context->seed, STREAM_WIDEN, w->tries + number);
     for (int i = 0; i < 2; i++)
-        partition_to_unit(p, p->pieces.data[t->pieces[i]].guard, starts[i]);
-    TRY(region_gather(p, t->pieces, 2, scratch, &r));
-    while (!t->found && t->done < t->searches) {
-        const double margin = t->margins[t->done / 2];
-        const bool plane = t->done % 2 == 0;
-        const repartition_options planes = {
-            .margin = margin, .directions = DIRECTIONS, .steps = STEPS};
-        const guard_split_options guards = {
-            .margin = margin, .starts = (const double(*)[3])starts, .start_count = 2};
-        starg_rng rng = starg_rng_make(p->context->seed, STREAM_WIDEN, t->first + t->done++);
-        t->plan.count = 0;
-        TRY(plane ? repartition_find(&r, 2, &planes, &rng, scratch, &t->plan, &t->found)
-                  : guard_split_find(&r, 2, &guards, &rng, scratch, &t->plan, &t->found));
-    }
-    return STARG_OK;
+        partition_to_unit(p, p->pieces.data[s->pieces[i]].guard, starts[i]);
+    TRY(region_gather(p, s->pieces, 2, scratch, &r));
+    return s->at.number % 2 == 0
+               ? repartition_find(&r, 2, &planes, &rng, scratch, &s->plan, &s->found)
+               : guard_split_find(&r, 2, &guards, &rng, scratch, &s->plan, &s->found);
 }
 
-static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
+/* Those behind one with a plan are left: if that can be carried out, they are void. */
+static starg_status run_search(starg_context *context, void *shared, void *scratch, size_t item) {
     widener *w = shared;
     region_scratch *own = scratch;
-    union_trial *t = &w->trials[item];
+    union_search *s = &w->searches[item];
     uint64_t before = own->work;
+    size_t first = atomic_load(&w->first_found);
     (void)context;
-    TRY(find_plan(w->p, own, t));
-    t->work = own->work - before;
-    return STARG_OK;
-}
-
-/* Carries out what was found; if that does not do, goes on with the searches. */
-static starg_status carry_out(widener *w, union_trial *t, bool *done) {
-    w->scratch.work += t->work;
-    while (t->found && !*done) {
-        const double margin = t->margins[(t->done - 1) / 2];
-        apply_effect effect = {.done = false};
-        TRY(apply_cuts(w->p, t->pieces, 2, &t->plan, ROUNDED * margin, fitness, &w->scratch,
-                       &effect));
-        *done = effect.done;
-        if (!*done)
-            TRY(find_plan(w->p, &w->scratch, t));
+    s->left = item > first;
+    if (s->left)
+        return STARG_OK;
+    TRY(find_plan(w, item, own, s));
+    s->work = own->work - before;
+    while (s->found && item < first &&
+           !atomic_compare_exchange_weak(&w->first_found, &first, item)) {
     }
-    w->tries += t->done;
     return STARG_OK;
 }
 
 static bool is_over(const widener *w) {
     return w->scratch.work >= w->work || starg_time_is_over(w->p->context);
-}
-
-/* Searches for a piece and the next of its neighbours, side by side and carried out in order: few
- * change anything, so that most are what they would be one after the other. */
-static starg_status widen_piece(widener *w, uint32_t number, bool *done) {
-    const size_t threads = (size_t)w->p->context->threads;
-    const size_t most = threads < AT_ONCE_MOST ? threads : AT_ONCE_MOST;
-    starg_parallel_loop loop = {.stage = PARTITION_STAGE,
-                                .shared = w,
-                                .item = run_trial,
-                                .make_scratch = region_make_scratch,
-                                .free_scratch = region_free_scratch,
-                                .silent = true};
-    *done = false;
-    TRY(find_around(w, number));
-    for (size_t i = 0; i < w->around.count && !*done && !is_over(w);) {
-        uint64_t first = w->tries;
-        for (loop.count = 0; loop.count < most && i < w->around.count; i++) {
-            union_trial *next = &w->trials[loop.count++];
-            *next = begin_trial(w->p, number, w->around.data[i], first);
-            first += next->searches;
-        }
-        TRY(starg_parallel_for(w->p->context, &loop));
-        for (size_t k = 0; k < loop.count && !*done && !is_over(w); k++)
-            TRY(carry_out(w, &w->trials[k], done));
-    }
-    return STARG_OK;
 }
 
 /* ---- rounds ---- */
@@ -302,14 +265,73 @@ static void rank(const widener *w, flatness_rank *list, size_t *count) {
         qsort(list, *count, sizeof *list, flatness_compare);
 }
 
+/* Those of a union from a place on, as far as there is room. */
+static void list_of_union(widener *w, const uint32_t pieces[2], place *next) {
+    double margins[2];
+    const int searches = margins_of(w->p, pieces, margins);
+    for (; next->number < searches && w->count < AT_ONCE; next->number++)
+        w->searches[w->count++] = (union_search){
+            .at = *next, .pieces = {pieces[0], pieces[1]}, .margin = margins[next->number / 2]};
+    if (next->number == searches)
+        *next = (place){.rank = next->rank, .neighbour = next->neighbour + 1};
+}
+
+/* Those from a place on, as long as nothing changes; *next is the place behind them. */
+static starg_status list_searches(widener *w, const flatness_rank *list, size_t count,
+                                  place *next) {
+    for (w->count = 0; next->rank < count && w->count < AT_ONCE;) {
+        const uint32_t number = list[next->rank].number;
+        TRY(find_around(w, number));
+        while (next->neighbour < w->around.count && w->count < AT_ONCE) {
+            const uint32_t pieces[2] = {number, w->around.data[next->neighbour]};
+            list_of_union(w, pieces, next);
+        }
+        if (next->neighbour == w->around.count)
+            *next = (place){.rank = next->rank + 1};
+    }
+    return STARG_OK;
+}
+
+/* Runs searches side by side, and carries out in their order what they find. *next: where to go
+ * on. */
+static starg_status run_searches(widener *w, place *next, bool *any) {
+    const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
+                                      .count = w->count,
+                                      .shared = w,
+                                      .item = run_search,
+                                      .make_scratch = region_make_scratch,
+                                      .free_scratch = region_free_scratch,
+                                      .silent = true};
+    apply_effect effect = {.done = false};
+    atomic_store(&w->first_found, SIZE_MAX);
+    TRY(starg_parallel_for(w->p->context, &loop));
+    for (size_t k = 0; k < w->count && !is_over(w); k++) {
+        union_search *s = &w->searches[k];
+        *next = s->left ? s->at : *next;
+        if (s->left)
+            return STARG_OK;
+        w->tries++;
+        w->scratch.work += s->work;
+        if (s->found)
+            TRY(apply_cuts(w->p, s->pieces, 2, &s->plan, ROUNDED * s->margin, fitness, &w->scratch,
+                           &effect));
+        if (effect.done) {
+            *any = true;
+            *next = (place){.rank = s->at.rank + 1};
+            return STARG_OK;
+        }
+    }
+    return STARG_OK;
+}
+
 static starg_status run_round(widener *w, flatness_rank *list, bool *any) {
     size_t count;
+    place next = {.rank = 0};
     *any = false;
     rank(w, list, &count);
-    for (size_t i = 0; i < count && !is_over(w); i++) {
-        bool done;
-        TRY(widen_piece(w, list[i].number, &done));
-        *any = *any || done;
+    while (next.rank < count && !is_over(w)) {
+        TRY(list_searches(w, list, count, &next));
+        TRY(run_searches(w, &next, any));
     }
     return STARG_OK;
 }
