@@ -202,8 +202,11 @@ static starg_status find_all(findings *all) {
         .stage = STAGE, .count = all->count, .shared = all, .item = find_one, .silent = true};
     bool done = true;
     TRY(starg_parallel_for(context, &loop));
-    for (size_t i = 0; i < all->count; i++)
+    for (size_t i = 0; i < all->count; i++) {
+        if (all->status[i] == STARG_ERROR_MEMORY)
+            return starg_fail_memory(context, STAGE);
         done = done && all->status[i] == STARG_OK;
+    }
     if (done)
         return STARG_OK;
     findings_free(all->detail);

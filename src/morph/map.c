@@ -253,6 +253,8 @@ static starg_status spread_both(starg_context *context, const starg_mesh *a, con
     const starg_parallel_loop loop = {
         .stage = STAGE, .count = 2, .shared = &task, .item = spread_one, .silent = true};
     TRY(starg_parallel_for(context, &loop));
+    if (task.status[0] == STARG_ERROR_MEMORY || task.status[1] == STARG_ERROR_MEMORY)
+        return starg_fail_memory(context, STAGE);
     if (task.status[0] == STARG_OK && task.status[1] == STARG_OK)
         return STARG_OK;
     for (int i = 0; i < 2; i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Parallel loops: every item runs once, whatever the number of threads, one loop after another,
- * within another, and in a child process. */
+ * within another, whose threads it shares, and in a child process. */
 #include <stdatomic.h>
 #include <stdio.h>
 #include <sys/wait.h>
@@ -103,6 +103,71 @@ static bool two_work(starg_context *context) {
     return starg_parallel_for(context, &loop) == STARG_OK && ran(&t, 2, 1);
 }
 
+/* Of an outer loop with two items: the first one has a loop that ends when two threads run it, the
+ * second one has nothing to do. */
+static starg_status meet_within(starg_context *context, void *shared, void *scratch, size_t item) {
+    (void)shared, (void)scratch;
+    return item == 1 || two_work(context) ? STARG_OK : STARG_ERROR_SOLVER;
+}
+
+static void test_loop_shared(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    const starg_parallel_loop loop = {
+        .stage = "test", .count = 2, .item = meet_within, .silent = true};
+    alarm(60);
+    for (int i = 0; i < LOOPS / 10; i++)
+        test_ok(context, starg_parallel_for(context, &loop));
+    alarm(0);
+    test_context_free(context);
+}
+
+typedef struct calls {
+    thrd_t calling;
+    atomic_int elsewhere;  /* reports on other threads than the calling one */
+    atomic_int rule_fails; /* items that saw the time rule of another one */
+    tally met;
+} calls;
+
+static bool note_thread(void *user, const char *stage, double fraction) {
+    (void)stage, (void)fraction;
+    calls *c = user;
+    atomic_fetch_add(&c->elsewhere, !thrd_equal(thrd_current(), c->calling));
+    return true;
+}
+
+/* Each item has a time rule of its own while both run, and may have stages. */
+static starg_status enter_stage(starg_context *context, void *shared, void *scratch, size_t item) {
+    calls *c = shared;
+    const starg_time_rule own = item == 0 ? STARG_TIME_IGNORED : STARG_TIME_FAILS;
+    const starg_time_rule former = starg_time_begin(context, own);
+    starg_progress_begin(context, "item");
+    meet(context, &c->met, scratch, item);
+    starg_progress_step(context, 1, 2);
+    atomic_fetch_add(&c->rule_fails, starg_time_rule_of(context) != own);
+    starg_progress_end(context);
+    starg_time_end(context, former);
+    return STARG_OK;
+}
+
+static void test_items_apart(void **state) {
+    (void)state;
+    for (int i = 0; i < LOOPS / 10; i++) {
+        calls c = {.calling = thrd_current()};
+        const starg_context_options options = {
+            .threads = 2, .progress = note_thread, .progress_user = &c};
+        const starg_parallel_loop loop = {
+            .stage = "test", .count = 2, .shared = &c, .item = enter_stage};
+        starg_context *context;
+        assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+        test_ok(context, starg_parallel_for(context, &loop));
+        assert_int_equal(atomic_load(&c.elsewhere), 0);
+        assert_int_equal(atomic_load(&c.rule_fails), 0);
+        assert_int_equal(starg_time_rule_of(context), STARG_TIME_SHORTENS);
+        test_context_free(context);
+    }
+}
+
 /* A child has no thread but the one that forked; it and its parent both go on. */
 static void test_child(void **state) {
     (void)state;
@@ -125,7 +190,8 @@ static void test_child(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_many_loops), cmocka_unit_test(test_loop_within),
-        cmocka_unit_test(test_failure), cmocka_unit_test(test_child)};
+        cmocka_unit_test(test_many_loops),  cmocka_unit_test(test_loop_within),
+        cmocka_unit_test(test_loop_shared), cmocka_unit_test(test_items_apart),
+        cmocka_unit_test(test_failure),     cmocka_unit_test(test_child)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
