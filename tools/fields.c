@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "guard/stages.h"
-#include "morph/map.h"
+#include "morph/surface_map.h"
 #include "shape/measures.h"
 #include "star/decomposition.h"
 #include "starguard/starguard.h"

@@ -12,10 +12,10 @@
  * winning rotation are reported as pairs.
  *
  * Cost: 24 x SAMPLES^2 distances and 24 x SAMPLES locations. */
-#include "morph/align.h"
+#include "morph/surface_map.h"
 
 #include "geometry/vec3.h"
-#include "morph/rotation.h"
+#include "morph/morph.h"
 
 static const char STAGE[] = "align";
 enum { SAMPLES = 600, WAYS = 24 };

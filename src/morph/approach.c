@@ -16,12 +16,11 @@
  *
  * Invariant from stage 2 on: every tetrahedron is positive, exactly. Cost: that of unfold, and
  * typically O(log n) a vertex of the surface in each round. */
-#include "morph/approach.h"
+#include "morph/solid_map.h"
 
 #include "geometry/bvh.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
-#include "morph/unfold.h"
 
 static const char STAGE[] = "solid map";
 

@@ -17,12 +17,9 @@
  *
  * Invariant: all spherical triangles are positive by the exact predicate: the map is a bijection at
  * all times. Cost: all levels of a cycle together take a few sweeps of the finest. */
-#include "morph/compose.h"
+#include "morph/surface_map.h"
 
 #include <math.h>
-
-#include "morph/composition.h"
-#include "morph/landmarks.h"
 
 static const char STAGE[] = "map";
 enum {

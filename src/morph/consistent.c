@@ -17,7 +17,6 @@
 #include "mesh/solid.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
-#include "morph/rotation.h"
 #include "starguard/cover.h"
 #include "starguard/skeleton.h"
 

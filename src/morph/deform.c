@@ -20,13 +20,12 @@
  *
  * Invariant: after each step all tetrahedra are positive, exactly. Cost: per step one frame, three
  * solves and some sweeps over the tetrahedra. */
-#include "morph/deform.h"
+#include "morph/solid_map.h"
 
 #include "geometry/linear_program.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "morph/morph.h"
-#include "morph/unfold.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "deform tetrahedra";

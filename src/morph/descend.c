@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "geometry/vec3.h"
-#include "morph/composition.h"
+#include "morph/surface_map.h"
 
 static const char STAGE[] = "map";
 enum { HALVINGS = 6 };

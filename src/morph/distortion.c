@@ -7,7 +7,7 @@
  * edges over area, which is infinite where that flips: it keeps room for moves. */
 
 #include "geometry/vec3.h"
-#include "morph/composition.h"
+#include "morph/surface_map.h"
 
 static const double ROUND = 0.05; /* weight of roundness */
 

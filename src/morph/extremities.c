@@ -8,7 +8,7 @@
  * each (Dijkstra); their sum; its local maxima among neighbours, in decreasing order, that are
  * neither below the mean nor close to an extremity already found. Cost: O((BASES + extremities) n
  * log n). */
-#include "morph/extremities.h"
+#include "morph/surface_map.h"
 
 #include "geometry/vec3.h"
 #include "mesh/levels/heap.h"

@@ -19,7 +19,6 @@
 #include "mesh/levels/heap.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
-#include "morph/rotation.h"
 
 static const char STAGE[] = "morph";
 static const double GRAZING = 0.6; /* least sine of the angle at which a guard sees a face */

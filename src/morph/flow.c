@@ -15,8 +15,8 @@
  * Cost: one factorization; per step three solves and O(edges). */
 
 #include "geometry/vec3.h"
-#include "morph/composition.h"
-#include "morph/triplets.h"
+#include "morph/morph.h"
+#include "morph/surface_map.h"
 
 static const char STAGE[] = "map";
 enum { HALVINGS = 5, SWEEPS = 2, TRIPLETS = 4 };

@@ -13,7 +13,6 @@
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
-#include "morph/rotation.h"
 
 static const char STAGE[] = "consistent guards";
 static const double APART = 1e3; /* added to the length of edges between pieces without contact */

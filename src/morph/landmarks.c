@@ -10,7 +10,7 @@
  *
  * Invariant: the embedding is valid at all times, by the exact predicate. Cost: per round
  * O(landmarks^3 + landmarks n). */
-#include "morph/landmarks.h"
+#include "morph/surface_map.h"
 
 #include "geometry/vec3.h"
 

@@ -6,7 +6,7 @@
 
 #include "geometry/bvh.h"
 #include "mesh/formats/io.h"
-#include "morph/parse_numbers.h"
+#include "morph/surface_map.h"
 #include "starguard/morph.h"
 
 static const char STAGE[] = "landmarks";

@@ -12,7 +12,7 @@
  * of an edge.
  *
  * Cost: O(f) for each of the cones in a piece of f faces. */
-#include "morph/limb_sides.h"
+#include "morph/limbs.h"
 
 #include "geometry/vec3.h"
 

@@ -19,8 +19,8 @@
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/limbs.h"
-#include "morph/overlay.h"
-#include "morph/triplets.h"
+#include "morph/morph.h"
+#include "morph/surface_map.h"
 
 static const char STAGE[] = "limbs";
 enum { STARTS = 12 }; /* of paths, on a loop, from which the shortest is chosen */

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "morph/limb_sides.h"
+#include "morph/limbs.h"
 
 static const char STAGE[] = "limbs";
 enum { PROPOSED = 16 };             /* sets by which a star-shaped piece can be parted */

@@ -13,7 +13,7 @@
  *
  * Cost: O(LIMB_VIEWS f) for a piece of f faces, and for each plane; a linear program in the faces
  * where all seems to be seen. */
-#include "morph/limb_sides.h"
+#include "morph/limbs.h"
 
 #include "geometry/vec3.h"
 #include "mesh/topology.h"

@@ -5,7 +5,7 @@
  * triangulations such a walk can cycle; edges are tried from a corner chosen by a hash of the step,
  * and after as many steps as there are faces all faces are tried in turn. The cones of the faces
  * cover all directions, and all signs are exact: one is always found. */
-#include "morph/locate.h"
+#include "morph/surface_map.h"
 
 #include "core/rng.h"
 #include "geometry/predicates.h"

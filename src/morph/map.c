@@ -6,15 +6,12 @@
  * optimize the composed map (compose.c); locate the vertices of one in the faces of the other
  * (locate.c). Composing the embedding of A with the inverse of that of B gives a bijection of the
  * surfaces. */
-#include "morph/map.h"
+#include "morph/surface_map.h"
 
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
-#include "morph/compose.h"
-#include "morph/landmarks.h"
-#include "morph/overlay.h"
-#include "morph/solid_stars.h"
+#include "morph/solid_map.h"
 
 static const char STAGE[] = "map";
 enum { ATTEMPTS = 4 };    /* of centers of star-shaped solids */

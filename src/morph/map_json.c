@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "mesh/mesh.h"
-#include "morph/map.h"
+#include "morph/surface_map.h"
 
 static const char STAGE[] = "map file";
 enum { MARGIN = 2 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Distortion of a map: the singular values of the linear maps between faces and their images. */
-#include "morph/map.h"
+#include "morph/surface_map.h"
 
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"

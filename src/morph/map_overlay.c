@@ -2,8 +2,7 @@
 /* The overlay of a map: cells of the two triangulations on the sphere (overlay.c), with room
  * between their corners (overlay_room.c), cut into triangles. */
 
-#include "morph/map.h"
-#include "morph/overlay.h"
+#include "morph/surface_map.h"
 
 static const char STAGE[] = "overlay";
 

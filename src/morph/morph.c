@@ -15,7 +15,7 @@
 
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
-#include "morph/solid_path.h"
+#include "morph/solid_map.h"
 
 static const char STAGE[] = "morph";
 enum { CANDIDATES = 1000, CANDIDATES_MOST = 100000 };

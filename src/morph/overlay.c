@@ -16,7 +16,7 @@
  * says which faces come next. Points get weights in their faces by determinants (overlay_room.c
  * evens out what rounding spoils).
  * Cost: O(cells), and O(faces) for the first. */
-#include "morph/overlay.h"
+#include "morph/surface_map.h"
 
 #include <float.h>
 

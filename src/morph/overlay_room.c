@@ -15,7 +15,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "morph/overlay.h"
+#include "morph/surface_map.h"
 
 static const char STAGE[] = "overlay";
 enum { ROUNDS = 100, STEPS = 4 };

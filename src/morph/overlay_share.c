@@ -9,7 +9,7 @@
  * planes that bound its faces, of both surfaces, is greatest (a linear program in four variables),
  * if that is more than where it is. Then its neighbours follow. Cost: O(bad faces) for each round.
  */
-#include "morph/overlay.h"
+#include "morph/surface_map.h"
 
 #include "geometry/linear_program.h"
 #include "geometry/predicates.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "morph/parse_numbers.h"
+#include "morph/surface_map.h"
 
 #include <math.h>
 #include <stdlib.h>

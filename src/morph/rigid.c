@@ -17,7 +17,6 @@
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
-#include "morph/rotation.h"
 
 static const char STAGE[] = "morph";
 static const double LEAST_AREA = 1e-10; /* of a face, relative to its squared longest edge */

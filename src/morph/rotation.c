@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rotations from 3 x 3 matrices, for morphing [ACOL00]. */
-#include "morph/rotation.h"
+#include "morph/morph.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "mesh/formats/io.h"
-#include "morph/parse_numbers.h"
+#include "morph/surface_map.h"
 #include "starguard/solidmap.h"
 
 static const char STAGE[] = "points file";

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The options of maps between solids, as a table (starguard/fields.h). */
 #include "core/fields.h"
-#include "morph/solids.h"
+#include "morph/solid_map.h"
 #include "starguard/solidmap.h"
 
 enum { STEPS = 400, STEPS_MOST = 1000000 };

@@ -28,12 +28,8 @@
 #include "geometry/singular_values.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
-#include "morph/approach.h"
 #include "morph/limbs.h"
 #include "morph/morph.h"
-#include "morph/solid_stars.h"
-#include "morph/solids.h"
-#include "morph/unfold.h"
 #include "star/compatible/compatible.h"
 #include "tetra/tetmesh.h"
 

@@ -17,7 +17,7 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
-#include "morph/solids.h"
+#include "morph/solid_map.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "overlay";

@@ -11,14 +11,11 @@
  *
  * The frame at a time between two keys is the straight one. Cost: that of deform.c, and a test of
  * each tetrahedron in each step. */
-#include "morph/solid_path.h"
+#include "morph/solid_map.h"
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "morph/morph.h"
-#include "morph/solid_map.h"
-#include "morph/solid_stars.h"
-#include "morph/solids.h"
 
 static const char STAGE[] = "morph of solids";
 

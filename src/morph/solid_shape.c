@@ -9,8 +9,8 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
-#include "morph/map.h"
 #include "morph/solid_map.h"
+#include "morph/surface_map.h"
 #include "sphere/sphere.h"
 
 static const char STAGE[] = "solid map";

@@ -12,13 +12,12 @@
  * no tetrahedron is inverted at any time.
  *
  * Invariant: all signs are exact. Cost: a linear program and two passes over the faces. */
-#include "morph/solid_stars.h"
+#include "morph/solid_map.h"
 
 #include "core/rng.h"
 #include "core/streams.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "morph/solids.h"
 #include "visibility/kernel.h"
 
 static const char STAGE[] = "stars";

@@ -8,10 +8,10 @@
  *
  * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the
  * respective surface, so they fill both without overlap. Cost: that of its stages. */
-#include "morph/solids.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
 #include "morph/morph.h"
+#include "morph/solid_map.h"
 #include "star/compatible/compatible.h"
 #include "tetra/tetmesh.h"
 

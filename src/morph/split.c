@@ -11,7 +11,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "morph/deform.h"
+#include "morph/solid_map.h"
 
 static const char STAGE[] = "split edges";
 

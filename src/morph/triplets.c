@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "morph/triplets.h"
+#include "morph/morph.h"
 
 static const char STAGE[] = "factorise";
 

@@ -24,7 +24,7 @@
  *
  * Invariant of relaxation: all tetrahedra are positive by exact signs, after every step. Cost: a
  * step is a few passes over the tetrahedra. */
-#include "morph/unfold.h"
+#include "morph/solid_map.h"
 
 #include <float.h>
 

@@ -7,7 +7,7 @@
  *
  * Invariant: coordinates are at least 0 and sum to 1, so rounding cannot leave the surface. Cost:
  * O(faces crossed). */
-#include "morph/walk.h"
+#include "morph/surface_map.h"
 
 #include "geometry/vec3.h"
 

@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "guard/stages.h"
-#include "morph/map.h"
+#include "morph/surface_map.h"
 #include "records.h"
 #include "shape/measures.h"
 #include "star/decomposition.h"

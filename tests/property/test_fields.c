@@ -13,7 +13,7 @@
 #include "core/memory.h"
 #include "core/rng.h"
 #include "guard/stages.h"
-#include "morph/map.h"
+#include "morph/surface_map.h"
 #include "records.h"
 #include "shape/measures.h"
 #include "star/decomposition.h"

@@ -7,9 +7,7 @@
 
 #include "core/rng.h"
 #include "models.h"
-#include "morph/compose.h"
-#include "morph/landmarks.h"
-#include "morph/map.h"
+#include "morph/surface_map.h"
 #include "sphere/sphere.h"
 #include "starguard/morph.h"
 #include "starguard/sample.h"

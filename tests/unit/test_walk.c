@@ -5,7 +5,7 @@
 
 #include "core/rng.h"
 #include "models.h"
-#include "morph/walk.h"
+#include "morph/surface_map.h"
 
 /* The point of the cube's side that points along an axis, by face and coordinates. */
 static surface_point point_at(const starg_mesh *mesh, const double p[3]) {

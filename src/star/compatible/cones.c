@@ -23,7 +23,6 @@
 
 #include "geometry/vec3.h"
 #include "star/compatible/cone_builder.h"
-#include "star/compatible/peel.h"
 
 static const char STAGE[] = "cones";
 

@@ -20,7 +20,7 @@
  * all others.
  *
  * Cost: linear programs in the faces of the piece for PLANES_LEAST to MORE * PLANES planes. */
-#include "star/compatible/peel.h"
+#include "star/compatible/cone_builder.h"
 
 #include <stdlib.h>
 

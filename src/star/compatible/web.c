@@ -12,7 +12,7 @@
  *
  * Invariant: all triangles on the sphere are positive as seen from its middle. Cost: O(n^2) for
  * most loops of n nodes, 3 n triangles. */
-#include "star/compatible/peel.h"
+#include "star/compatible/cone_builder.h"
 
 #include "geometry/vec3.h"
 
