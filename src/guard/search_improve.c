@@ -32,8 +32,10 @@ enum {
 
 static const char STAGE[] = "search";
 
-/* Shares of the work of the best effort: of what any model gets, and of what each guard adds. */
-static const double QUICK[2] = {0.05, 0.05}, NORMAL[2] = {0.25, 0.45}, BEST[2] = {1.5, 1.5};
+/* Shares of LEAST_WORK, and for each guard of what it adds. No proof closes from a guard too many,
+ * so one that is asked for is worth the work. */
+static const double QUICK[2] = {0.05, 0.05}, NORMAL[2] = {0.25, 0.45}, PROVEN[2] = {1, 1},
+                    BEST[2] = {1.5, 1.5};
 
 /* Programs grow with the guards, and their rows with the faces. */
 static double work_of(const search *s, const double share[2]) {
@@ -46,9 +48,10 @@ uint64_t search_improve_work(const search *s) {
     uint64_t asked = o->refine_lines != STARG_DEFAULT_LINES ? o->refine_lines : o->effort;
     if (asked <= INT64_MAX)
         return (uint64_t)((double)asked / search_scene_unit(&s->witnesses.scene));
-    return (uint64_t)work_of(s, asked == STARG_EFFORT_QUICK    ? QUICK
-                                : asked == STARG_EFFORT_NORMAL ? NORMAL
-                                                               : BEST);
+    return (uint64_t)work_of(s, asked == STARG_EFFORT_QUICK                ? QUICK
+                                : asked == STARG_EFFORT_NORMAL && o->prove ? PROVEN
+                                : asked == STARG_EFFORT_NORMAL             ? NORMAL
+                                                                           : BEST);
 }
 
 /* Points worth more than 1, unless the round before found some: then it is the turn of guards. */
