@@ -53,6 +53,7 @@ COMMANDS = [
     "--no-refine",
     "guard octopus.off -o range.json --method ilp --visibility bvh --range 0.5 --clearance 0.01 "
     "--count 100 --max-nodes 50",
+    "guard gallery_0.obj -o proved.json --prove --prove-work 300000 --certificate proved.txt",
     "verify horse.off pilp.json ilp.json",
     "visible gallery_0.obj --from 0.5,0.5,0.5 -o visible.ply --engine contours",
     "decompose octopus.off -o strict.vtk --report strict.json --effort 300",
@@ -63,6 +64,9 @@ COMMANDS = [
     "describe pose.off -o pose.json --detail 300 --effort 60 --reconstruct looks.ply",
     "match horse.json pose.json",
     "map cat_0.ply octopus.off -o map.json",
+    "sample maze --vertices 60 -o maze.off",
+    "sample comb --vertices 60 -o comb.off",
+    "map --solid maze.off comb.off -o limbs.vtu",
     "morph cat_0.ply octopus.off --map map.json --frames 4 -o star --glb star.glb",
     "morph horse.off pose.off --frames 4 -o arap --method arap",
     "morph horse.off pose.off --frames 3 -o guarded --guards --candidates 100",

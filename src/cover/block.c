@@ -10,6 +10,7 @@
  *
  * Invariant of a block: every cover with fewer rows than the best one consists of the forced rows
  * and a cover of the rest. */
+#include "core/parallel.h"
 #include "cover/cover.h"
 
 /* Large programs are slow per node and even in their relaxation: runs with few nodes leave them to
@@ -69,45 +70,72 @@ static bool is_too_large(const block_solve *block, size_t allowance) {
     return entries > allowance && (entries - allowance) / NODE_ENTRIES > nodes;
 }
 
-/* Improves the multipliers by the linear relaxation where the subgradient method was not enough. */
-static starg_status bound_by_lp(block_solve *block, cover_dual *dual, bool *found) {
-    starg_context *context = block->run->context;
-    SCOPED_BY(cover_relaxation_free) cover_relaxation relaxation = {0};
-    SCOPED int64_t *reduced = NULL;
+/* The linear relaxation. *found: it was solved. */
+static starg_status relax(const block_solve *block, cover_relaxation *out, bool *found) {
     *found = false;
-    if (is_too_large(block, RELAXATION_ENTRIES))
-        return STARG_OK;
-    NEW(context, "bound", reduced, block->rest.rows);
-    TRY(cover_relax(block->run, &block->rest, &relaxation, found));
-    if (*found) {
-        const int64_t *multipliers = relaxation.multipliers;
-        int64_t value = cover_dual_value(&block->rest, multipliers, reduced);
-        cover_dual_offer(&block->rest, dual, multipliers, reduced, value);
-    }
+    return is_too_large(block, RELAXATION_ENTRIES)
+               ? STARG_OK
+               : cover_relax(block->run, &block->rest, out, found);
+}
+
+/* Improves the multipliers by the linear relaxation where the subgradient method was not enough. */
+static starg_status take_relaxation(block_solve *block, const cover_relaxation *relaxation,
+                                    cover_dual *dual) {
+    SCOPED int64_t *reduced = NULL;
+    const int64_t *multipliers = relaxation->multipliers;
+    NEW(block->run->context, "bound", reduced, block->rest.rows);
+    int64_t value = cover_dual_value(&block->rest, multipliers, reduced);
+    cover_dual_offer(&block->rest, dual, multipliers, reduced, value);
+    raise_bound(block, cover_dual_rows(dual->value));
     return STARG_OK;
 }
 
+/* A smaller cover, and beside it, if there is a thread for that, the relaxation that may be needed
+ * after it. */
+typedef struct cover_and_bound {
+    block_solve *block;
+    size_t enough;
+    cover_state *cover;
+    cover_relaxation *relaxation;
+    bool relaxed;
+} cover_and_bound;
+
+static starg_status find_either(starg_context *context, void *shared, void *scratch, size_t item) {
+    cover_and_bound *both = shared;
+    (void)context;
+    (void)scratch;
+    return item == 0 ? cover_local_search(both->block->run, both->enough, both->cover)
+                     : relax(both->block, both->relaxation, &both->relaxed);
+}
+
 static starg_status bound_rest(block_solve *block, cover_dual *dual, cover_state *cover) {
-    bool relaxed = block->run->relaxed;
-    if (relaxed) {
-        TRY(bound_by_lp(block, dual, &relaxed));
-        raise_bound(block, cover_dual_rows(dual->value));
+    cover_run *run = block->run;
+    SCOPED_BY(cover_relaxation_free) cover_relaxation relaxation = {0};
+    cover_and_bound both = {.block = block, .cover = cover, .relaxation = &relaxation};
+    if (run->relaxed) {
+        TRY(relax(block, &relaxation, &both.relaxed));
+        if (both.relaxed)
+            return take_relaxation(block, &relaxation, dual);
     }
-    if (relaxed)
-        return STARG_OK;
-    if (block->run->local) {
-        TRY(cover_local_search(block->run, 1, cover));
+    if (run->local) {
+        TRY(cover_local_search(run, 1, cover));
         return offer_cover(block, cover);
     }
-    TRY(cover_lagrange(block->run, &block->rest, dual, cover));
-    TRY(cover_local_search(block->run, cover_dual_rows(dual->value), cover));
+    TRY(cover_lagrange(run, &block->rest, dual, cover));
+    both.enough = cover_dual_rows(dual->value);
+    const starg_parallel_loop loop = {.stage = "bound",
+                                      .count = run->context->threads > 1 ? 2 : 1,
+                                      .shared = &both,
+                                      .item = find_either,
+                                      .silent = true};
+    TRY(starg_parallel_for(run->context, &loop));
     TRY(offer_cover(block, cover));
-    raise_bound(block, cover_dual_rows(dual->value));
-    if (is_closed(block) || cover_time_is_over(block->run))
+    raise_bound(block, both.enough);
+    if (is_closed(block) || cover_time_is_over(run))
         return STARG_OK;
-    TRY(bound_by_lp(block, dual, &relaxed));
-    raise_bound(block, cover_dual_rows(dual->value));
-    return STARG_OK;
+    if (loop.count == 1)
+        TRY(relax(block, &relaxation, &both.relaxed));
+    return both.relaxed ? take_relaxation(block, &relaxation, dual) : STARG_OK;
 }
 
 /* Fixes rows by reduced costs and reduces the rest; *again tells whether another round pays: at
