@@ -115,6 +115,15 @@ static void keep_parts(const search_scene *scene, const search_cell *cell, witne
         }
 }
 
+/* What holds all of the solid may see all of it, so that it need not be tested. */
+static bool holds_all(const search_scene *scene, const bvh_box *box) {
+    const bvh_box *all = &scene->solid->tree->nodes[0].box;
+    bool holds = true;
+    for (int k = 0; k < 3; k++)
+        holds = holds && box->lower[k] <= all->lower[k] && box->upper[k] >= all->upper[k];
+    return holds;
+}
+
 /* Tests cells of a generation against what their parents may see. */
 static starg_status look_from_cells(const search_scene *scene, search_cells *cells,
                                     const numbers *list, const numbers *parents,
@@ -131,7 +140,7 @@ static starg_status look_from_cells(const search_scene *scene, search_cells *cel
             for (int w = 0; w < WITNESS_WORDS; w++)
                 asked.bits[w] &= cells->data[parents->data[i]].open.bits[w];
         keep_parts(scene, cell, &asked);
-        const bool inherits = cell->trimmed || cell->parted;
+        const bool inherits = cell->trimmed || cell->parted || holds_all(scene, &cell->box);
         for (int w = 0; w < WITNESS_WORDS && inherits; w++)
             cell->open.bits[w] |= asked.bits[w];
         tests[i] = (cell_test){cell->box, inherits ? (witness_row){{0}} : asked};

@@ -363,7 +363,7 @@ starg_status crossings_count(const separator_task *task, size_t most, region_scr
                                           .free_scratch = region_free_scratch,
                                           .silent = true};
         TRY(starg_parallel_for(scratch->context, &loop));
-        for (size_t n = 0; n < loop.count; n++) {
+        for (size_t n = 0; n < loop.count && *count < most; n++) {
             *count += w.count[n];
             scratch->work += w.work[n];
         }
