@@ -90,8 +90,9 @@ starg_status ranks_serve(starg_context *context, const starg_ranks *ranks,
 /* ---- loops whose result does not depend on the number of threads (parallel.c) ---- */
 /* An item writes only to outputs addressed by its index. */
 
-/* Computes one item. `scratch` belongs to the running thread. It may allocate, but not log, report
- * progress or set error detail (the calling thread does). */
+/* Computes one item. `scratch` belongs to the running thread. It may allocate, have a time rule,
+ * and run loops, which threads that have no item help with. It may not log or set error detail, but
+ * for the first item, which the calling thread runs; progress of other threads is not reported. */
 typedef starg_status starg_parallel_item(starg_context *context, void *shared, void *scratch,
                                          size_t item);
 

@@ -776,8 +776,52 @@ static void test_cone(void **state) {
     test_context_free(context);
 }
 
+/* A list of rows of few witnesses says of each random row whether one of the list holds all of it
+ * among some witnesses, as comparing them one by one does. */
+static void test_rows_held(void **state) {
+    (void)state;
+    enum { ROWS = 150, WITNESSES = 90, LISTS = 20 };
+    starg_context *context = test_context(1);
+    starg_rng rng = starg_rng_make(6, 1, 0);
+    size_t answers[2] = {0, 0};
+    for (size_t n = 0; n < test_rounds(LISTS, 10 * LISTS); n++) {
+        static witness_row rows[ROWS];
+        const witness_row *places[ROWS];
+        uint32_t names[ROWS];
+        row_list list = {.context = context, .rows = places, .names = names};
+        const uint64_t sparse = 2 + starg_rng_below(&rng, 8);
+        memset(rows, 0, sizeof rows);
+        for (size_t i = 0; i < ROWS; i++) {
+            witness_row among = {{0}};
+            bool held = false;
+            for (size_t j = 0; j < WITNESSES; j++) {
+                if (starg_rng_below(&rng, sparse) == 0)
+                    starg_bit_set(rows[i].bits, j);
+                if (starg_rng_below(&rng, 12) == 0)
+                    starg_bit_set(among.bits, j);
+            }
+            for (size_t k = 0; k < list.count && !held; k++) {
+                held = true;
+                for (size_t j = 0; j < WITNESSES; j++)
+                    held = held &&
+                           (!starg_bit_test(rows[i].bits, j) || !starg_bit_test(among.bits, j) ||
+                            starg_bit_test(places[k]->bits, j));
+            }
+            assert_int_equal(row_list_holds(&list, &rows[i], &among), held);
+            test_ok(context, row_list_add(&list, &rows[i], i));
+            answers[held]++;
+            if (i == ROWS / 3 && n % 2 == 0)
+                list.count = 0; /* from the beginning, in blocks that were used */
+        }
+        RELEASE(list.blocks.data);
+    }
+    assert_true(answers[0] > 100 && answers[1] > 100);
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows_held),
         cmocka_unit_test(test_random_solids),
         cmocka_unit_test(test_default_bounds),
         cmocka_unit_test(test_questions),
