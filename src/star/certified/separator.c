@@ -315,8 +315,9 @@ static starg_status cross(parting *p, const cone_sides *cone, uint32_t own, uint
     return STARG_OK;
 }
 
-/* Crossings are counted wave by wave: of each, some triangles of A with all of B, side by side. */
-enum { WAVE_ITEMS = 16, ITEM_PAIRS = 4000 };
+/* Crossings are counted wave by wave: of each, some triangles of A with all of B, side by side. The
+ * first wave has one item, each next one twice as many, for often the first crossings decide. */
+enum { WAVE_ITEMS = 16, ITEM_PAIRS = 2000 };
 
 typedef struct wave {
     const separator_task *task;
@@ -351,12 +352,14 @@ static starg_status count_item(starg_context *context, void *shared, void *scrat
 starg_status crossings_count(const separator_task *task, size_t most, region_scratch *scratch,
                              size_t *count) {
     const size_t each = ITEM_PAIRS / (task->others.count + 1) + 1;
+    size_t first = 0;
     *count = 0;
-    for (size_t first = 0; first < task->own.count && *count < most; first += WAVE_ITEMS * each) {
+    for (size_t items = 1; first < task->own.count && *count < most;
+         items = items < WAVE_ITEMS ? 2 * items : WAVE_ITEMS) {
         wave w = {.task = task, .first = first, .each = each, .most = most - *count};
         const size_t left = (task->own.count - first + each - 1) / each;
         const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
-                                          .count = left < WAVE_ITEMS ? left : WAVE_ITEMS,
+                                          .count = left < items ? left : items,
                                           .shared = &w,
                                           .item = count_item,
                                           .make_scratch = region_make_scratch,
@@ -367,6 +370,7 @@ starg_status crossings_count(const separator_task *task, size_t most, region_scr
             *count += w.count[n];
             scratch->work += w.work[n];
         }
+        first += loop.count * each;
     }
     *count = *count < most ? *count : most;
     return STARG_OK;
