@@ -542,7 +542,7 @@ static void test_hubs(void **state) {
         test_ok(context, starg_mesh_create(context, vertices, FANS + 2 * (size_t)HUB_FACES, faces,
                                            HUB_FACES, &mesh));
         test_ok(context, bvh_create(context, vertices, faces, HUB_FACES, &tree));
-        test_ok(context, face_pairs_visit(context, mesh, tree, note_visit, v));
+        test_ok(context, face_pairs_visit(context, mesh, tree, NULL, note_visit, v));
         for (uint32_t a = 0; a < HUB_FACES; a++)
             for (uint32_t b = a + 1; b < HUB_FACES; b++) {
                 triangle_contact contact =
