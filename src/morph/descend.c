@@ -3,11 +3,8 @@
  *
  * A vertex moves straight along the second surface against the gradient of its triangles' energy
  * (distortion.c), by the longest of some halved steps that lowers it. Steps are measured on the
- * surface, not on the sphere, so that they have one scale. A move looks at the neighbours only, so
- * that vertices of one colour, of which no two are neighbours, move side by side. Cost of a sweep:
- * O(edges). */
+ * surface, not on the sphere, so that they have one scale. Cost of a sweep: O(edges). */
 
-#include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "morph/surface_map.h"
 
@@ -54,86 +51,14 @@ static void descend(composition *c, uint32_t v) {
     }
 }
 
-/* ---- vertices of one colour, side by side ---- */
-
-enum { COLOURS = 32, CHUNK = 64 };
-
-/* The movable vertices, colour by colour. Neighbours differ in colour, but for those of the last
- * one, which move one after the other. */
-typedef struct colouring {
-    composition *c;
-    uint32_t *vertices;
-    size_t start[COLOURS + 1];
-    size_t first, end; /* of the loop that runs */
-} colouring;
-
-static starg_status colour(composition *c, colouring *out) {
-    const sphere *s = c->from;
-    SCOPED uint8_t *of = NULL;
-    size_t counts[COLOURS] = {0};
-    NEW_ZERO(s->context, STAGE, of, s->mesh->vertex_count); /* 0: none yet */
-    NEW(s->context, STAGE, out->vertices, s->rings->left);
-    for (size_t k = 0; k < s->rings->left; k++) {
-        const uint32_t v = s->alive[k];
-        const ring *around = &s->rings->of[v];
-        uint64_t used = 0;
-        for (size_t i = 0; i < around->count; i++)
-            used |= UINT64_C(1) << of[around->data[i]];
-        uint8_t own = 1;
-        while (own < COLOURS && used >> own & 1)
-            own++;
-        of[v] = own;
-        counts[own - 1] += !c->kept[v];
-    }
-    for (size_t i = 0; i < COLOURS; i++)
-        out->start[i + 1] = out->start[i] + counts[i];
-    memset(counts, 0, sizeof counts);
-    for (size_t k = 0; k < s->rings->left; k++) {
-        const uint32_t v = s->alive[k];
-        if (!c->kept[v])
-            out->vertices[out->start[of[v] - 1] + counts[of[v] - 1]++] = v;
-    }
-    return STARG_OK;
-}
-
-static starg_status descend_some(starg_context *context, void *shared, void *scratch, size_t item) {
-    const colouring *all = shared;
-    const size_t from = all->first + item * CHUNK;
-    (void)context;
-    (void)scratch;
-    for (size_t k = from; k < from + CHUNK && k < all->end; k++)
-        descend(all->c, all->vertices[k]);
-    return STARG_OK;
-}
-
-static starg_status descend_colour(colouring *all, size_t number) {
-    starg_context *context = all->c->from->context;
-    all->first = all->start[number];
-    all->end = all->start[number + 1];
-    const starg_parallel_loop loop = {.stage = STAGE,
-                                      .count = (all->end - all->first + CHUNK - 1) / CHUNK,
-                                      .shared = all,
-                                      .item = descend_some,
-                                      .silent = true};
-    if (number + 1 < COLOURS)
-        return starg_parallel_for(context, &loop);
-    for (size_t k = all->first; k < all->end; k++)
-        descend(all->c, all->vertices[k]);
-    return STARG_OK;
-}
-
 starg_status composition_descend(composition *c, int sweeps) {
     const sphere *s = c->from;
-    starg_status status = STARG_OK;
-    colouring all = {.c = c};
     c->floor = FLOOR * starg_mesh_area(s->mesh) / (double)s->rings->left;
-    STARG_TRY(colour(c, &all));
     for (int i = 0; i < sweeps; i++) {
-        STARG_TRY(starg_check_cancel(s->context, STAGE));
-        for (size_t k = 0; k < COLOURS; k++)
-            STARG_TRY(descend_colour(&all, k));
+        TRY(starg_check_cancel(s->context, STAGE));
+        for (size_t k = 0; k < s->rings->left; k++)
+            if (!c->kept[s->alive[k]])
+                descend(c, s->alive[k]);
     }
-done:
-    RELEASE(all.vertices);
-    return status;
+    return STARG_OK;
 }

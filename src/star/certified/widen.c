@@ -173,9 +173,9 @@ typedef struct union_search {
 typedef struct widener {
     partition *p;
     region_scratch scratch;
-    uint64_t work, tries; /* the work allowed; searches so far */
-    numbers around;       /* of a piece: its neighbours */
-    union_search searches[AT_ONCE];
+    uint64_t work, tries;      /* the work allowed; searches so far */
+    numbers around;            /* of a piece: its neighbours */
+    union_search *searches;    /* AT_ONCE */
     size_t count;              /* of these */
     atomic_size_t first_found; /* the first so far that has found a plan */
 } widener;
@@ -343,6 +343,7 @@ starg_status widen(partition *p, uint64_t work) {
     bool any, changed = false;
     int idle = p->pieces.count > 1 ? 0 : IDLE_MOST;
     STARG_NEW(p->context, PARTITION_STAGE, list, p->pieces.count);
+    STARG_NEW(p->context, PARTITION_STAGE, w.searches, AT_ONCE);
     while (idle < IDLE_MOST && !is_over(&w)) {
         STARG_TRY(run_round(&w, list, &any));
         changed = changed || any;
@@ -354,7 +355,7 @@ starg_status widen(partition *p, uint64_t work) {
     }
 done:
     p->context->work += w.scratch.work / PARTITION_WORK;
-    RELEASE(list, w.around.data);
+    RELEASE(list, w.searches, w.around.data);
     region_scratch_free(&w.scratch);
     return status;
 }
