@@ -53,6 +53,10 @@ void worker_group_report(worker_group *group) {
         starg_progress_step(group->context, atomic_load(&group->finished), loop->count);
 }
 
+static size_t next_item(worker_group *group) {
+    return atomic_fetch_add(&group->next, 1);
+}
+
 static void work(worker_group *group, bool calling) {
     const starg_parallel_loop *loop = group->loop;
     void *scratch = NULL;
@@ -64,11 +68,8 @@ static void work(worker_group *group, bool calling) {
         }
     }
     /* The calling thread takes the first item, which others leave to it. */
-    for (size_t item = calling ? 0 : SIZE_MAX;; item = SIZE_MAX) {
-        if (item == SIZE_MAX)
-            item = atomic_fetch_add(&group->next, 1);
-        if (item >= loop->count || worker_group_must_stop(group, item))
-            break;
+    size_t item = calling ? 0 : next_item(group);
+    for (; item < loop->count && !worker_group_must_stop(group, item); item = next_item(group)) {
         starg_status status = loop->item(group->context, loop->shared, scratch, item);
         if (status == STARG_OK)
             worker_group_finish(group, item, 1);
@@ -163,4 +164,39 @@ starg_status starg_parallel_in_time(starg_context *context, const starg_parallel
     starg_status status = starg_parallel_for(context, loop);
     starg_time_end(context, former);
     return status;
+}
+
+/* ---- a few tasks ---- */
+
+typedef struct task_run {
+    const starg_tasks *tasks;
+    starg_status status[STARG_TASKS_MOST];
+} task_run;
+
+static starg_status run_task(starg_context *context, void *shared, void *scratch, size_t item) {
+    task_run *all = shared;
+    (void)scratch;
+    all->status[item] = all->tasks->run(context, all->tasks->shared, item);
+    return STARG_OK;
+}
+
+starg_status starg_run_tasks(starg_context *context, const starg_tasks *tasks) {
+    task_run all = {.tasks = tasks};
+    const starg_parallel_loop loop = {.stage = tasks->stage,
+                                      .count = tasks->count,
+                                      .shared = &all,
+                                      .item = run_task,
+                                      .silent = true};
+    bool done = true;
+    TRY(starg_parallel_for(context, &loop));
+    for (size_t i = 0; i < tasks->count; i++) {
+        if (all.status[i] == STARG_ERROR_MEMORY)
+            return starg_fail_memory(context, tasks->stage);
+        done = done && all.status[i] == STARG_OK;
+    }
+    for (size_t i = 0; i < tasks->count && !done; i++) {
+        tasks->undo(tasks->shared, i);
+        TRY(tasks->run(context, tasks->shared, i));
+    }
+    return STARG_OK;
 }

@@ -131,3 +131,21 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
 /* Same, but fails with STARG_ERROR_TIME at the time limit. */
 starg_status starg_parallel_in_time(starg_context *context, const starg_parallel_loop *loop)
     STARG_PRIVATE(starg_parallel_in_time);
+
+/* ---- a few different tasks (parallel.c) ---- */
+
+enum { STARG_TASKS_MOST = 4 };
+
+/* Tasks 0 to count - 1, of which none needs another. */
+typedef struct starg_tasks {
+    const char *stage;
+    size_t count;
+    void *shared;
+    starg_status (*run)(starg_context *context, void *shared, size_t task);
+    void (*undo)(void *shared, size_t task); /* frees what a task has made, if anything */
+} starg_tasks;
+
+/* Runs them side by side. If one fails, other than for memory, they are undone and run one after
+ * the other, so that status and error detail are those of the first that fails. */
+starg_status starg_run_tasks(starg_context *context, const starg_tasks *tasks)
+    STARG_PRIVATE(starg_run_tasks);

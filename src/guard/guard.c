@@ -171,66 +171,47 @@ static bool needs_centres(const guard_problem *problem) {
            !sensor_is_directed(&options->visibility);
 }
 
-typedef starg_status finding(const guard_problem *problem, guard_detail *detail);
-
 /* Those that do not need each other. */
 typedef struct findings {
     const guard_problem *problem;
     guard_detail *detail;
-    size_t count;
-    finding *find[3];
-    starg_status status[3];
+    starg_status (*find[3])(const guard_problem *problem, guard_detail *detail);
 } findings;
 
-static starg_status find_one(starg_context *context, void *shared, void *scratch, size_t item) {
+static starg_status find_one(starg_context *context, void *shared, size_t task) {
     findings *all = shared;
     (void)context;
-    (void)scratch;
-    all->status[item] = all->find[item](all->problem, all->detail);
-    return STARG_OK;
+    return all->find[task](all->problem, all->detail);
 }
 
-static void findings_free(guard_detail *detail) {
-    candidates_free(&detail->first);
-    candidates_free(&detail->centres);
-}
-
-/* Side by side. If one fails, one after the other, for the message of the first that does. */
-static starg_status find_all(findings *all) {
-    starg_context *context = all->problem->context;
-    const starg_parallel_loop loop = {
-        .stage = STAGE, .count = all->count, .shared = all, .item = find_one, .silent = true};
-    bool done = true;
-    TRY(starg_parallel_for(context, &loop));
-    for (size_t i = 0; i < all->count; i++) {
-        if (all->status[i] == STARG_ERROR_MEMORY)
-            return starg_fail_memory(context, STAGE);
-        done = done && all->status[i] == STARG_OK;
-    }
-    if (done)
-        return STARG_OK;
-    findings_free(all->detail);
-    for (size_t i = 0; i < all->count; i++)
-        TRY(all->find[i](all->problem, all->detail));
-    return STARG_OK;
+/* Levels are replaced when they are found again. */
+static void forget_one(void *shared, size_t task) {
+    findings *all = shared;
+    if (all->find[task] == find_first)
+        candidates_free(&all->detail->first);
+    else if (all->find[task] == find_centres)
+        candidates_free(&all->detail->centres);
 }
 
 static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
     const bool proxy = !problem->solid->scene && needs_proxy(problem);
-    findings all = {.problem = problem, .detail = out, .count = 1, .find = {find_first}};
+    findings all = {.problem = problem, .detail = out, .find = {find_first}};
+    starg_tasks tasks = {
+        .stage = STAGE, .count = 1, .shared = &all, .run = find_one, .undo = forget_one};
     if (proxy)
         TRY(find_proxy(problem, out));
     if (needs_centres(problem))
-        all.find[all.count++] = find_centres;
+        all.find[tasks.count++] = find_centres;
     if (needs_levels(problem) && !proxy)
-        all.find[all.count++] = find_levels;
-    return find_all(&all);
+        all.find[tasks.count++] = find_levels;
+    return starg_run_tasks(problem->context, &tasks);
 }
 
 static void detail_free(starg_context *context, guard_detail *detail) {
     starg_solid_free(detail->proxy);
     starg_levels_free(context, detail->levels);
-    findings_free(detail);
+    candidates_free(&detail->first);
+    candidates_free(&detail->centres);
 }
 
 /* The candidates before augmentation, and what they see. */

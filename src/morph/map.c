@@ -226,39 +226,28 @@ static void spread_free(spread *s) {
     *s = (spread){0};
 }
 
-typedef struct spread_task {
+typedef struct spread_pair {
     const starg_mesh *surfaces[2];
     spread *out[2];
-    starg_status status[2];
-} spread_task;
+} spread_pair;
 
-static const char *const NAMES[2] = {"A", "B"};
-
-static starg_status spread_one(starg_context *context, void *shared, void *scratch, size_t item) {
-    spread_task *task = shared;
-    (void)scratch;
-    task->status[item] =
-        spread_surface(context, task->surfaces[item], NAMES[item], task->out[item]);
-    return STARG_OK;
+static starg_status spread_one(starg_context *context, void *shared, size_t task) {
+    static const char *const NAMES[2] = {"A", "B"};
+    const spread_pair *pair = shared;
+    return spread_surface(context, pair->surfaces[task], NAMES[task], pair->out[task]);
 }
 
-/* Both surfaces, side by side. If one fails, one after the other, for the message of the first that
- * does. */
+static void forget_one(void *shared, size_t task) {
+    const spread_pair *pair = shared;
+    spread_free(pair->out[task]);
+}
+
 static starg_status spread_both(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                 spread *from, spread *to) {
-    spread_task task = {.surfaces = {a, b}, .out = {from, to}};
-    const starg_parallel_loop loop = {
-        .stage = STAGE, .count = 2, .shared = &task, .item = spread_one, .silent = true};
-    TRY(starg_parallel_for(context, &loop));
-    if (task.status[0] == STARG_ERROR_MEMORY || task.status[1] == STARG_ERROR_MEMORY)
-        return starg_fail_memory(context, STAGE);
-    if (task.status[0] == STARG_OK && task.status[1] == STARG_OK)
-        return STARG_OK;
-    for (int i = 0; i < 2; i++) {
-        spread_free(task.out[i]);
-        TRY(spread_surface(context, task.surfaces[i], NAMES[i], task.out[i]));
-    }
-    return STARG_OK;
+    spread_pair pair = {.surfaces = {a, b}, .out = {from, to}};
+    const starg_tasks tasks = {
+        .stage = STAGE, .count = 2, .shared = &pair, .run = spread_one, .undo = forget_one};
+    return starg_run_tasks(context, &tasks);
 }
 
 /* A face with the vertex as a corner. */

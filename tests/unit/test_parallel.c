@@ -168,6 +168,44 @@ static void test_items_apart(void **state) {
     }
 }
 
+/* Runs of three tasks, and how often what they made was undone. */
+typedef struct errands {
+    atomic_int made[3], undone[3];
+    starg_status status[3];
+} errands;
+
+static starg_status run_errand(starg_context *context, void *shared, size_t task) {
+    errands *e = shared;
+    atomic_fetch_add(&e->made[task], 1);
+    return e->status[task] == STARG_OK
+               ? STARG_OK
+               : starg_fail(context, e->status[task], "test", "task %zu", task);
+}
+
+static void undo_errand(void *shared, size_t task) {
+    errands *e = shared;
+    atomic_fetch_add(&e->undone[task], 1);
+}
+
+/* Status and detail are those of the first that fails. */
+static void test_tasks(void **state) {
+    (void)state;
+    starg_context *context = test_context(3);
+    for (int i = 0; i < LOOPS / 10; i++) {
+        errands e = {.status = {STARG_OK, STARG_OK, STARG_OK}};
+        const starg_tasks tasks = {
+            .stage = "test", .count = 3, .shared = &e, .run = run_errand, .undo = undo_errand};
+        test_ok(context, starg_run_tasks(context, &tasks));
+        e.status[1] = STARG_ERROR_MESH;
+        e.status[2] = STARG_ERROR_RANGE;
+        assert_int_equal(starg_run_tasks(context, &tasks), STARG_ERROR_MESH);
+        assert_string_equal(starg_context_error(context)->message, "task 1");
+        for (int k = 0; k < 3; k++)
+            assert_int_equal(e.made[k] - e.undone[k], 2);
+    }
+    test_context_free(context);
+}
+
 /* A child has no thread but the one that forked; it and its parent both go on. */
 static void test_child(void **state) {
     (void)state;
@@ -192,6 +230,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_many_loops),  cmocka_unit_test(test_loop_within),
         cmocka_unit_test(test_loop_shared), cmocka_unit_test(test_items_apart),
-        cmocka_unit_test(test_failure),     cmocka_unit_test(test_child)};
+        cmocka_unit_test(test_tasks),       cmocka_unit_test(test_failure),
+        cmocka_unit_test(test_child)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
