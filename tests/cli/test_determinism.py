@@ -16,7 +16,7 @@ import determinism  # noqa: E402
 
 # What is put in the commands without STARGUARD_LONG: the same is done with less. Of 520 vertices: spectra are taken
 # of a surface of 2,000 at least, so one of 500 is subdivided twice.
-QUICK = [(r"--vertices \d+", "--vertices 520"), (r"--refine-lines \d+", "--refine-lines 60000"),
+QUICK = [(r"--vertices \d{3,}", "--vertices 520"), (r"--refine-lines \d+", "--refine-lines 60000"),
          (r"--count \d+", "--count 60"), (r"--range 0\.5 ", "--range 0.7 ")]
 
 
