@@ -161,8 +161,10 @@ typedef struct limb_side {
     loop_places wall;
     double *heights, *own;       /* per vertex: of a plane, and of one part above it */
     double views[LIMB_VIEWS][3]; /* points inside */
+    double *normals;             /* of faces, x 3, as long as twice their areas */
     float *shares;               /* of faces in the piece's area */
     float *fronts; /* faces x LIMB_VIEWS: the share of a face, 0 where it faces away */
+    float fronts_sum[LIMB_VIEWS]; /* over all faces */
     STARG_ARRAY(notch) notches;
     double notched; /* the sum of their weights */
     uint32_t *part;

@@ -37,8 +37,8 @@ void limb_side_free(limb_side *s) {
         starg_release(s->cuts->context, s->best.data[i].heights);
     cones_free_loops(&s->rim);
     RELEASE(s->walls.data, s->faces.data, s->vertices.data, s->beside.data, s->edges.data,
-            s->wall.points.data, s->heights, s->own, s->part, s->flat, s->touched, s->shares,
-            s->fronts, s->notches.data, s->best.data);
+            s->wall.points.data, s->heights, s->own, s->part, s->flat, s->touched, s->normals,
+            s->shares, s->fronts, s->notches.data, s->best.data);
 }
 
 starg_status limb_side_add_wall(limb_side *s, size_t i) {
@@ -160,54 +160,75 @@ static void draw_views(limb_side *s) {
 /* What each face counts for each of the points. */
 static starg_status find_fronts(limb_side *s) {
     const size_t faces = s->faces.count / 3;
-    double normal[3], sum = 0;
+    double sum = 0;
+    NEW(s->cuts->context, STAGE, s->normals, 3 * faces);
     NEW(s->cuts->context, STAGE, s->shares, faces);
     NEW(s->cuts->context, STAGE, s->fronts, faces * LIMB_VIEWS);
     for (size_t f = 0; f < faces; f++) {
-        cones_find_normal(limb_side_builder(s), 0, s->faces.data + 3 * f, normal);
-        sum += vec3_length(normal);
+        cones_find_normal(limb_side_builder(s), 0, s->faces.data + 3 * f, s->normals + 3 * f);
+        sum += vec3_length(s->normals + 3 * f);
     }
     s->size = sqrt(sum);
     draw_views(s);
     for (size_t f = 0; f < faces; f++) {
+        const double *normal = s->normals + 3 * f;
         const uint32_t *corner = s->faces.data + 3 * f;
-        cones_find_normal(limb_side_builder(s), 0, corner, normal);
         s->shares[f] = (float)(vec3_length(normal) / sum);
         for (size_t n = 0; n < LIMB_VIEWS; n++) {
             double way[3];
             vec3_subtract(limb_side_at(s, corner[0]), s->views[n], way);
             s->fronts[f * LIMB_VIEWS + n] = vec3_dot(way, normal) > 0 ? s->shares[f] : 0;
+            s->fronts_sum[n] += s->fronts[f * LIMB_VIEWS + n];
         }
     }
     return STARG_OK;
 }
 
+/* How much of a face is above the cut, or below: all, half or nothing. */
+static float part_of_face(const limb_side *s, size_t f, bool below) {
+    bool on[2] = {false, false};
+    for (int k = 0; k < 3; k++) {
+        const double height = s->own[s->faces.data[3 * f + (size_t)k]];
+        on[0] = on[0] || height > 0;
+        on[1] = on[1] || height < 0;
+    }
+    return !on[below] ? 0 : on[!below] ? 0.5F : 1;
+}
+
+/* What faces towards each of the views, on both sides of the cut. Only one side is added up, that
+ * with fewer vertices: the other one is the rest. */
+static void add_up_fronts(const limb_side *s, float out[2][LIMB_VIEWS]) {
+    size_t above = 0;
+    for (size_t i = 0; i < s->vertices.count; i++)
+        above += s->own[s->vertices.data[i]] > 0;
+    const bool fewer = 2 * above > s->vertices.count;
+    for (int n = 0; n < LIMB_VIEWS; n++) {
+        out[fewer][n] = 0;
+        out[!fewer][n] = s->fronts_sum[n];
+    }
+    for (size_t f = 0; f < s->faces.count / 3; f++) {
+        const float *front = s->fronts + f * LIMB_VIEWS;
+        const float part = part_of_face(s, f, fewer), rest = part_of_face(s, f, !fewer);
+        for (int n = 0; n < LIMB_VIEWS && rest < 1; n++) {
+            out[fewer][n] += part * front[n];
+            out[!fewer][n] -= (1 - rest) * front[n];
+        }
+    }
+}
+
 /* What faces towards a point on each side of the cut, as a share of the piece: one of the views, or
  * one just beside the wall's hub. */
 static double share_seen(const limb_side *s, const double hub[3]) {
-    float seen[2][LIMB_VIEWS] = {{0}}, most[2] = {0, 0};
-    double beside[2][3];
-    for (int side = 0; side < 2; side++)
-        vec3_along(hub, (side == 0 ? BESIDE : -BESIDE) * s->wall.extent, s->wall.normal,
-                   beside[side]);
-    for (size_t f = 0; f < s->faces.count / 3; f++) {
-        const uint32_t *corner = s->faces.data + 3 * f;
-        const float *front = s->fronts + f * LIMB_VIEWS;
-        bool on[2] = {false, false};
-        for (int k = 0; k < 3; k++) {
-            on[0] = on[0] || s->own[corner[k]] > 0;
-            on[1] = on[1] || s->own[corner[k]] < 0;
-        }
-        for (int side = 0; side < 2; side++) {
-            const float share = on[1 - side] ? 0.5F : 1;
-            for (int n = 0; n < LIMB_VIEWS && on[side]; n++)
-                seen[side][n] += share * front[n];
-            if (on[side]) {
-                double normal[3], way[3];
-                cones_find_normal(limb_side_builder(s), 0, corner, normal);
-                vec3_subtract(limb_side_at(s, corner[0]), beside[side], way);
-                most[side] += vec3_dot(way, normal) > 0 ? share * s->shares[f] : 0;
-            }
+    float seen[2][LIMB_VIEWS], most[2] = {0, 0};
+    add_up_fronts(s, seen);
+    for (int side = 0; side < 2; side++) {
+        double beside[3];
+        vec3_along(hub, (side == 0 ? BESIDE : -BESIDE) * s->wall.extent, s->wall.normal, beside);
+        for (size_t f = 0; f < s->faces.count / 3; f++) {
+            double way[3];
+            vec3_subtract(limb_side_at(s, s->faces.data[3 * f]), beside, way);
+            if (vec3_dot(way, s->normals + 3 * f) > 0)
+                most[side] += part_of_face(s, f, side) * s->shares[f];
         }
     }
     for (int n = 0; n < LIMB_VIEWS; n++) {
@@ -241,8 +262,13 @@ static starg_status count_stars(limb_side *s, uint64_t set, int *star) {
 
 /* Vertices in the plane that have no neighbour above it come to be below it. */
 static void lower_others(limb_side *s) {
-    for (size_t i = 0; i < s->vertices.count; i++)
+    bool any = false;
+    for (size_t i = 0; i < s->vertices.count; i++) {
         s->touched[s->vertices.data[i]] = 0;
+        any = any || s->own[s->vertices.data[i]] == 0;
+    }
+    if (!any)
+        return;
     for (size_t i = 0; i < s->faces.count; i++) {
         const uint32_t u = s->faces.data[i], v = s->faces.data[i % 3 == 2 ? i - 2 : i + 1];
         s->touched[u] |= s->own[v] > 0;
@@ -261,7 +287,7 @@ static starg_status weigh_part(limb_side *s, uint32_t root, bool through) {
     double hub[3], room, share;
     int star = 0;
     bool good;
-    cones_keep_part(&s->faces, s->heights, s->part, root, s->own);
+    cones_keep_part(&s->vertices, s->heights, s->part, root, s->own);
     if (!through)
         cones_drop_flat(&s->faces, s->flat, s->own);
     lower_others(s);

@@ -88,8 +88,14 @@ void cones_keep_part(const number_list *faces, const double *heights, uint32_t *
 
 void cones_drop_flat(const number_list *faces, const uint8_t *flat, double *heights) {
     double least = 0;
-    for (size_t i = 0; i < faces->count; i++)
-        least = fmin(least, heights[faces->data[i]]);
+    bool any = false;
+    for (size_t i = 0; i < faces->count; i++) {
+        const double height = heights[faces->data[i]];
+        least = height < least ? height : least;
+        any = any || flat[faces->data[i]];
+    }
+    if (!any)
+        return;
     for (size_t i = 0; i < faces->count; i++)
         if (flat[faces->data[i]])
             heights[faces->data[i]] = least;
