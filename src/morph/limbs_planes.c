@@ -209,7 +209,9 @@ static void add_up_fronts(const limb_side *s, float out[2][LIMB_VIEWS]) {
     for (size_t f = 0; f < s->faces.count / 3; f++) {
         const float *front = s->fronts + f * LIMB_VIEWS;
         const float part = part_of_face(s, f, fewer), rest = part_of_face(s, f, !fewer);
-        for (int n = 0; n < LIMB_VIEWS && rest < 1; n++) {
+        if (rest == 1)
+            continue;
+        for (int n = 0; n < LIMB_VIEWS; n++) {
             out[fewer][n] += part * front[n];
             out[!fewer][n] -= (1 - rest) * front[n];
         }
