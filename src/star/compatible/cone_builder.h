@@ -192,9 +192,9 @@ void cones_draw_notch(cone_builder *b, uint32_t which, int end, const number_lis
  * vertices of such faces. */
 void cones_find_parts(const number_list *faces, const double *heights, bool through, uint32_t *part,
                       uint8_t *flat) STARG_PRIVATE(cones_find_parts);
-/* The same heights where all but one part is below. */
-void cones_keep_part(const number_list *faces, const double *heights, uint32_t *part, uint32_t root,
-                     double *out) STARG_PRIVATE(cones_keep_part);
+/* The same heights where all but one part is below. `vertices`: of the piece. */
+void cones_keep_part(const number_list *vertices, const double *heights, uint32_t *part,
+                     uint32_t root, double *out) STARG_PRIVATE(cones_keep_part);
 /* Faces that lie in the cut come to be below it, but for their vertices next to what is above. */
 void cones_drop_flat(const number_list *faces, const uint8_t *flat, double *heights)
     STARG_PRIVATE(cones_drop_flat);

@@ -77,10 +77,10 @@ void cones_find_parts(const number_list *faces, const double *heights, bool thro
     }
 }
 
-void cones_keep_part(const number_list *faces, const double *heights, uint32_t *part, uint32_t root,
-                     double *out) {
-    for (size_t i = 0; i < faces->count; i++) {
-        uint32_t v = faces->data[i];
+void cones_keep_part(const number_list *vertices, const double *heights, uint32_t *part,
+                     uint32_t root, double *out) {
+    for (size_t i = 0; i < vertices->count; i++) {
+        uint32_t v = vertices->data[i];
         bool other = heights[v] > 0 && sets_find(part, v) != root;
         out[v] = other ? -heights[v] : heights[v];
     }
