@@ -158,8 +158,8 @@ void solid_tell(starg_context *context, const char *whose, const starg_check *ch
                   check->components, turned == 1 ? "was" : "were");
     if (crossing > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "%s%zu %s of faces %s (first: %llu and %llu); every one of them still blocks the "
-                  "view",
+                  "%s%zu %s of faces %s (first: %llu and %llu); each still blocks the view, and "
+                  "'starguard repair --union' makes one solid of parts that overlap",
                   whose, crossing, crossing == 1 ? "pair" : "pairs",
                   crossing == 1 ? "intersects" : "intersect",
                   (unsigned long long)check->findings[STARG_FINDING_SELF_INTERSECTION].first[0],
