@@ -20,6 +20,7 @@ enum { FANS = 64, HALVINGS = 20 }; /* cones; of the way from the guard to the su
 static const double AROUND = 0.1;  /* of the way along edges from a wall */
 static const double NOISE = 10;    /* doublings of the noise in directions */
 static const double SEEN = 1e-6;   /* the sine of angles with faces that are seen, at least */
+static const double FLAT = 0.25;   /* height of a fan or chip, over its extent, if that will do */
 static const double LARGE = 0.1;   /* of the smaller triangle at an edge, over the largest */
 
 /* ---- cones ---- */
@@ -103,9 +104,10 @@ static starg_status try_fan(limb_side *s, uint64_t inside, const double way[3]) 
     for (size_t i = 0; i < s->walls.count; i++)
         if (inside >> i & 1)
             TRY(limb_side_add_wall(s, i));
-    for (int n = 1; n <= HALVINGS; n++) {
+    double part = 1 - fmin(0.5, FLAT * s->wall.extent / vec3_length(way)); /* of the way */
+    for (int n = 0; n<HALVINGS; n++, part = part> 0.75 ? 2 * part - 1 : 0.5 * part) {
         double hub[3];
-        vec3_along(s->guard, exp2(-n), way, hub);
+        vec3_along(s->guard, part, way, hub);
         if (is_hub(s, hub, &s->beside)) {
             if (set != inside)
                 limb_side_turn(s, s->own);
@@ -215,7 +217,14 @@ starg_status limb_side_find_chip(limb_side *s, const limb_side *other, double hu
     TRY(cones_list_faces(b, s->which, &s->faces));
     for (size_t i = 0; i < s->faces.count; i++)
         b->heights.data[s->faces.data[i]] = s->faces.data[i] == middle ? 1 : -1;
-    for (int k = 0; k < 3; k++)
-        hub[k] = 0.5 * (limb_side_at(s, middle)[k] + s->guard[k]);
+    const double *at = limb_side_at(s, middle);
+    double shortest = INFINITY, way[3];
+    for (size_t i = 0; i < s->faces.count; i++) {
+        const uint32_t v = s->faces.data[i % 3 == 2 ? i - 2 : i + 1];
+        if (s->faces.data[i] == middle)
+            shortest = fmin(shortest, vec3_distance(at, limb_side_at(s, v)));
+    }
+    vec3_subtract(s->guard, at, way);
+    vec3_along(at, fmin(0.5, FLAT * shortest / vec3_length(way)), way, hub);
     return STARG_OK;
 }

@@ -12,9 +12,10 @@
  * which both sides remain so. There always is a fan for the empty set and for single walls, so that
  * whatever parts limbs of the blind solid one by one can be followed.
  *
- * So a piece is cut until all is star-shaped, in several runs, of which that with the fewest cuts
- * is taken; they differ in what star-shaped sides count, and in whether the other solid's piece
- * must remain star-shaped. A piece that resists is joined with one beside it, and that is divided.
+ * So a piece is cut until all is star-shaped or resists, in several runs, of which that is taken
+ * which leaves the least, with the fewest cuts; they differ in what star-shaped sides count, and in
+ * whether the other solid's piece must remain star-shaped. What resists is divided anew if it has
+ * become smaller, else joined with a piece beside it, and that is divided.
  *
  * Invariant: that of limbs_cut.c, but fans are not flat. */
 #include <stdlib.h>
@@ -23,10 +24,11 @@
 #include "morph/limbs.h"
 
 static const char STAGE[] = "limbs";
-enum { PROPOSED = 16 };             /* sets by which a star-shaped piece can be parted */
-enum { RUNS = 8, CUTS_MOST = 250 }; /* for a piece; in a run */
-enum { TRIED = 96 };                /* cuts after which there is no further run */
-enum { IDLE = 8 };                  /* cuts after which a piece is no smaller: a run ends */
+enum { PROPOSED = 16 };              /* sets by which a star-shaped piece can be parted */
+enum { RUNS = 8, CUTS_MOST = 250 };  /* for a piece; in a run */
+enum { TRIED = 96 };                 /* cuts after which there is no further run */
+enum { IDLE = 8 };                   /* cuts after which a piece is no smaller: it resists */
+static const double REST_MOST = 0.9; /* of a piece's faces may resist, and are divided anew */
 /* What two star-shaped sides count, beside shares that are seen: in every other run. */
 static const double STAR[2] = {0.1, 0.5};
 
@@ -155,39 +157,47 @@ static void free_sides(limb_side (*sides)[2]) {
     limb_side_free(&(*sides)[1]);
 }
 
-/* Cuts a piece, and what becomes of it, until all is star-shaped in both solids. *cuts_left falls
- * by the cuts; *done: all is. */
+/* What has become of a piece. */
+typedef struct division {
+    size_t cuts;
+    size_t faces;     /* there were of the piece, in solids where it was blind */
+    size_t resisting; /* faces of what no further cut was found for */
+} division;
+
+/* Cuts a piece, and what becomes of it, until all is star-shaped in both solids, or resists. *good:
+ * all cuts are. */
 static starg_status divide(limb_cuts *cuts, bvh *const surfaces[2], uint32_t which, size_t run,
-                           size_t *cuts_left, bool *done) {
+                           size_t cuts_most, division *out, bool *good) {
     const size_t former = cuts->piece_count;
-    *done = true;
-    for (size_t next = former - 1; next < cuts->piece_count && *done; next++) {
-        bool blind = true;
+    *out = (division){.cuts = 0};
+    *good = true;
+    for (size_t next = former - 1; next < cuts->piece_count; next++) {
         size_t least = SIZE_MAX; /* faces of what is blind */
         size_t idle = 0;         /* cuts since there were so few */
-        while (blind && *done) {
+        for (bool found = true; found;) {
             SCOPED_BY(free_sides) limb_side sides[2] = {{.cuts = cuts}, {.cuts = cuts}};
-            bool found = false, good;
-            TRY(starg_check_cancel(cuts->context, STAGE));
-            for (int end = 0; end < 2; end++)
-                TRY(limb_side_open(cuts, surfaces[end], end, next < former ? which : (uint32_t)next,
-                                   &sides[end]));
-            blind = sides[0].blind || sides[1].blind;
             size_t faces = 0;
+            TRY(starg_check_cancel(cuts->context, STAGE));
             for (int end = 0; end < 2; end++) {
-                sides[end].bonus = STAR[run % 2];
-                sides[end].loose = sides[end].blind || run / 2 % 2 == 1;
-                faces += sides[end].blind ? sides[end].faces.count : 0;
+                limb_side *side = &sides[end];
+                TRY(limb_side_open(cuts, surfaces[end], end, next < former ? which : (uint32_t)next,
+                                   side));
+                side->bonus = STAR[run % 2];
+                side->loose = side->blind || run / 2 % 2 == 1;
+                faces += side->blind ? side->faces.count / 3 : 0;
             }
+            if (out->cuts == 0)
+                out->faces = faces;
             idle = faces < least ? 0 : idle + 1;
             least = faces < least ? faces : least;
-            *done = !blind ||
-                    (*cuts_left > 0 && idle <= IDLE && sides[0].walls.count <= LIMB_WALLS_MOST);
-            if (blind && *done) {
-                TRY(cut_piece(cuts, sides, &found, &good));
-                *done = found && good;
-                (*cuts_left)--;
-            }
+            found = faces > 0 && out->cuts < cuts_most && idle <= IDLE &&
+                    sides[0].walls.count <= LIMB_WALLS_MOST;
+            if (found)
+                TRY(cut_piece(cuts, sides, &found, good));
+            if (!*good)
+                return STARG_OK;
+            out->cuts += found;
+            out->resisting += found ? 0 : faces;
         }
     }
     return STARG_OK;
@@ -246,34 +256,36 @@ static starg_status restore(limb_cuts *cuts, const part_state *state) {
 
 /* ---- all pieces ---- */
 
-/* Divides a piece by as few cuts as are found in several runs; *done: there are such, else it is
- * left as it is. */
+/* Divides a piece so that as little as possible resists, by as few cuts, in several runs. *rest:
+ * the share of its faces that resists; if that were more than `rest_most` it is left as it is: 1.
+ */
 static starg_status divide_best(limb_cuts *cuts, bvh *const surfaces[2], uint32_t which,
-                                bool *done) {
+                                double rest_most, double *rest) {
     SCOPED_BY(free_state) part_state before = {.context = cuts->context};
-    starg_rng best[2];
-    size_t fewest = CUTS_MOST + 1;
-    size_t chosen = 0;
+    starg_rng best[2] = {0};
+    size_t fewest = CUTS_MOST + 1, chosen = 0;
+    division made;
+    bool good;
+    *rest = 1;
     TRY(save(cuts, &before));
-    for (size_t run = 0, tried = 0; run < RUNS && tried < TRIED && fewest > 1; run++) {
+    for (size_t run = 0, tried = 0; run < RUNS && tried < TRIED; run++) {
         const starg_rng begun[2] = {cuts->sides[0].rng, cuts->sides[1].rng};
-        size_t left = fewest - 1;
-        tried += left;
-        TRY(divide(cuts, surfaces, which, run, &left, done));
-        tried -= left;
-        if (*done) {
-            fewest = fewest - 1 - left;
-            memcpy(best, begun, sizeof best);
+        TRY(divide(cuts, surfaces, which, run, *rest == 0 ? fewest - 1 : CUTS_MOST, &made, &good));
+        tried += made.cuts;
+        const double left = made.faces > 0 ? (double)made.resisting / (double)made.faces : 0;
+        if (good && left <= rest_most && (left < *rest || (left == *rest && made.cuts < fewest))) {
+            *rest = left;
+            fewest = made.cuts;
             chosen = run;
-            if (fewest < 2 || tried >= TRIED || run + 1 == RUNS)
+            memcpy(best, begun, sizeof best);
+            if ((left == 0 && fewest < 2) || tried >= TRIED || run + 1 == RUNS)
                 return STARG_OK;
         }
         TRY(restore(cuts, &before));
     }
-    *done = fewest <= CUTS_MOST;
-    for (int end = 0; end < 2 && *done; end++)
+    for (int end = 0; end < 2 && *rest < 1; end++)
         cuts->sides[end].rng = best[end];
-    return *done ? divide(cuts, surfaces, which, chosen, &fewest, done) : STARG_OK;
+    return *rest < 1 ? divide(cuts, surfaces, which, chosen, CUTS_MOST, &made, &good) : STARG_OK;
 }
 
 static starg_status rename_piece(limb_cuts *cuts, uint32_t from, uint32_t to) {
@@ -317,27 +329,33 @@ static starg_status open_wall(limb_cuts *cuts, size_t which, uint32_t *joined) {
 static starg_status divide_joined(limb_cuts *cuts, bvh *const surfaces[2], uint32_t which,
                                   bool *done) {
     SCOPED_BY(free_state) part_state before = {.context = cuts->context};
+    double rest;
+    *done = false;
     TRY(save(cuts, &before));
     for (size_t i = 0; i < before.walls.count && !*done; i++) {
         uint32_t joined;
         if (before.walls.data[i].pieces[0] != which && before.walls.data[i].pieces[1] != which)
             continue;
         TRY(open_wall(cuts, i, &joined));
-        TRY(divide_best(cuts, surfaces, joined, done));
+        TRY(divide_best(cuts, surfaces, joined, 0, &rest));
+        *done = rest == 0;
         if (!*done)
             TRY(restore(cuts, &before));
     }
     return STARG_OK;
 }
 
+/* What is left of a piece comes again; so does, with its number, what a joined piece displaces. */
 starg_status limbs_part(limb_cuts *cuts, bvh *const surfaces[2]) {
     cuts->resisting = 0;
-    for (uint32_t which = 0; which < cuts->piece_count; which++) {
-        bool done;
-        TRY(divide_best(cuts, surfaces, which, &done));
-        if (!done)
+    for (uint32_t which = 0; which < cuts->piece_count;) {
+        double rest;
+        bool done = false;
+        TRY(divide_best(cuts, surfaces, which, REST_MOST, &rest));
+        if (rest == 1)
             TRY(divide_joined(cuts, surfaces, which, &done));
-        cuts->resisting += !done;
+        which += rest == 0 || (rest == 1 && !done);
+        cuts->resisting += rest == 1 && !done;
     }
     return STARG_OK;
 }

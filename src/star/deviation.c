@@ -20,7 +20,7 @@
 
 static const char STAGE[] = "pieces";
 
-enum { MOST = 10, DEEPEST = 64 };
+enum { MOST = 10, DEEPEST = 64 }; /* corners, of twice as many as a part that is cut; cuts */
 
 static const double DOUBT =
     0x1p-44; /* of the extent: what distances may be off that are computed */
@@ -86,7 +86,8 @@ static void center_of(const part *own, double center[3]) {
     }
 }
 
-/* The parts on either side of where a linear function is 0 that is given at the corners. */
+/* The parts on either side of where a linear function is 0 that is given at the corners. Rounded,
+ * a part need not be convex: each edge may add a corner. */
 static void cut(const part *own, const double *value, part halves[2]) {
     for (int side = 0; side < 2; side++)
         halves[side] = (part){.depth = own->depth + 1, .bound = own->bound};
@@ -147,11 +148,29 @@ static void halve(const part *own, double *value) {
     }
 }
 
+/* The parts on either side of a diagonal. */
+static void cut_at_corners(const part *own, part halves[2]) {
+    const int middle = own->count / 2;
+    for (int side = 0; side < 2; side++)
+        halves[side] = (part){.depth = own->depth + 1, .bound = own->bound};
+    for (int i = 0; i <= own->count; i++) {
+        const double *a = own->corner[i % own->count];
+        if (i <= middle)
+            vec3_copy(a, halves[0].corner[halves[0].count++]);
+        if (i >= middle)
+            vec3_copy(a, halves[1].corner[halves[1].count++]);
+    }
+}
+
 /* Cuts along the edge that leaves most on either side, if any does. */
 static void divide(const survey *s, const part *own, const double *const t[3], part halves[2]) {
     double value[MOST], best[MOST], most = s->least;
     bool found = false;
-    for (int k = 0; k < 3 && own->count < MOST; k++) {
+    if (own->count > MOST / 2) {
+        cut_at_corners(own, halves);
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
         double extent = beyond_edge(own, t, k, value);
         if (extent <= most)
             continue;

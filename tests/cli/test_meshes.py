@@ -70,6 +70,14 @@ class Junctions(Case):
                 self.assertLess(max(result["distance"], result["distance_back"]), 1e-8 * size)
         self.assertGreater(open_, 4)
 
+    def test_far(self):
+        """Far from the origin parts of faces, whose distances are bounded, are convex up to rounding only."""
+        for seed, far in (13, 1e6), (126, 1e8):
+            case = families.voxels(random.Random(seed), 4, True)
+            size = max(max(p[k] for p in case.vertices) - min(p[k] for p in case.vertices) for k in range(3))
+            case.vertices = [tuple(p[k] + far * size * (1, -1, 1 / 3)[k] for k in range(3)) for p in case.vertices]
+            self.assertLess(self.decompose(case, True)["distance"], 1e-15 * 16 * far * size)
+
     def test_hole(self):
         """What joining does not close is filled as before."""
         case = families.voxels(random.Random(3), 12)
