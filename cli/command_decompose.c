@@ -170,7 +170,8 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
                 d->tetra.distance, d->tetra.distance_back);
     if (d->faces_kept > 0)
         cli_say(session, "faces kept    %zu of %zu; the others %s\n", d->faces_kept, d->model_faces,
-                d->joined ? "are divided where faces touch them" : "intersect, or lie inside");
+                d->joined ? "are divided where faces touch them"
+                          : "intersect, lie inside, or were merged");
     if (d->balls != STARG_BALLS_NONE)
         cli_say(
             session,

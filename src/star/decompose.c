@@ -7,6 +7,8 @@
 #include "star/piece_faces.h"
 #include "tetra/generate.h"
 
+enum { MERGES = 3 };
+static const double MERGED[MERGES] = {1e-12, 1e-9, 1e-7}; /* distances, over the diagonal */
 static const char STAGE[] = "pieces";
 
 static const starg_field OPTIONS[] = {
@@ -243,6 +245,30 @@ static starg_status decompose_surface(starg_context *context, const starg_solid 
     return STARG_OK;
 }
 
+/* Where the details of a surface are too small for planes between them, their vertices are merged:
+ * as few as will do. *out stays NULL where none will. `model`: what is told is how far that is. */
+static starg_status decompose_merged(starg_context *context, const starg_mesh *surface,
+                                     const starg_mesh *model,
+                                     const starg_decompose_options *options,
+                                     starg_decomposition **out) {
+    for (int i = 0; i < MERGES && *out == NULL; i++) {
+        SCOPED_BY(starg_solid_drop) starg_solid *merged = NULL;
+        TRY(united_merge(context, surface, MERGED[i], &merged));
+        if (merged != NULL)
+            TRY(decompose_surface(context, merged, options, out));
+        if (*out == NULL)
+            continue;
+        (*out)->lower_bound = 0;
+        (*out)->optimal = false;
+        starg_log(context, STARG_LOG_NOTICE,
+                  "vertices nearer to each other than %g of the diagonal were merged: no planes "
+                  "fit between them",
+                  MERGED[i]);
+        return united_report(context, model, merged, *out);
+    }
+    return STARG_OK;
+}
+
 /* A surface that intersects itself is cut where it does; *out stays NULL where that cannot be. The
  * bound is that of the union. */
 static starg_status decompose_union(starg_context *context, const starg_solid *solid,
@@ -254,7 +280,7 @@ static starg_status decompose_union(starg_context *context, const starg_solid *s
         return STARG_OK;
     TRY(decompose_surface(context, united, options, out));
     if (*out == NULL)
-        return STARG_OK;
+        return decompose_merged(context, united->mesh, solid->mesh, options, out);
     (*out)->lower_bound = 0;
     (*out)->optimal = false;
     return united_report(context, solid->mesh, united, *out);
@@ -303,6 +329,8 @@ static starg_status decompose_model(const request *r, const starg_decompose_opti
         TRY(decompose_surface(context, solid, options, out));
     if (strict && *out == NULL)
         TRY(decompose_union(context, solid, options, out));
+    if (strict && *out == NULL)
+        TRY(decompose_merged(context, solid->mesh, solid->mesh, options, out));
     if (r->surface != NULL && options->mode == STARG_DECOMPOSE_STRICT)
         TRY(decompose_joined(context, r->surface, options, out));
     if (*out == NULL)

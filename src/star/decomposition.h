@@ -72,6 +72,11 @@ starg_status united_make(starg_context *context, const starg_solid *solid, starg
 starg_status united_join(starg_context *context, const starg_mesh *surface, starg_solid **out,
                          bool *exact);
 
+/* The solid bounded by a surface whose vertices nearer than `distance`, over the diagonal, are one.
+ * *out is NULL if there are none, or it bounds none then. Errors: MEMORY, CANCELLED, TIME. */
+starg_status united_merge(starg_context *context, const starg_mesh *surface, double distance,
+                          starg_solid **out);
+
 /* Tells in `out`, pieces of the union, which faces of the model are kept, and how far the rest is
  * from the boundary. Errors: MEMORY, CANCELLED. */
 starg_status united_report(starg_context *context, const starg_mesh *model,

@@ -126,6 +126,22 @@ starg_status united_join(starg_context *context, const starg_mesh *surface, star
     return STARG_OK;
 }
 
+/* ---- details too small for pieces ---- */
+
+starg_status united_merge(starg_context *context, const starg_mesh *surface, double distance,
+                          starg_solid **out) {
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    starg_repair_options options;
+    starg_repair_report report;
+    *out = NULL;
+    starg_repair_options_default(&options);
+    options.merge_distance = distance;
+    starg_status status = starg_mesh_repair(context, surface, &options, &mesh, &report);
+    if (status != STARG_OK)
+        return is_refusal(status) ? STARG_OK : status;
+    return report.vertices_merged > 0 ? solid_make(context, mesh, out) : STARG_OK;
+}
+
 /* ---- the union ---- */
 
 static starg_status make(starg_context *context, const starg_solid *solid, starg_solid **out) {

@@ -10,6 +10,7 @@ import sys
 import zipfile
 
 from support import BUILD, LONG, Case, main
+from test_coordinates import boxes, off
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bench"))
 import families  # noqa: E402
@@ -93,6 +94,26 @@ class Junctions(Case):
         self.assertEqual(command, "starguard repair MODEL -o SOLID.off")
         self.run_text(*command.split()[1:])
         self.run_text("guard", "SOLID.off", "-o", "g.json")
+
+
+class Details(Case):
+    """Details between which no plane fits: corners are merged, so that pieces keep to the model."""
+
+    def test_nearly_flush(self):
+        """Boxes whose sides are apart by e, and that overlap by as much: their union, and a step within one."""
+        for e in (1e-15, 1e-12, 1e-9, 1e-6) if LONG else (1e-9,):
+            given = (((0, 0, 0), (2, 2, 2), False), ((1 - e, 1 - e, 1), (2 + e, 2 + e, 2), False),
+                     ((-e, 1 - e, e), (1 + e, 3 + e, 1 - e), False))
+            self.write("in.off", off(*boxes(*given)))
+            self.run_text("repair", "in.off", "--union", "-o", "u.off")
+            for file in "in.off", "u.off":
+                with self.subTest(e=e, file=file):
+                    report = self.run_json("decompose", file, "-o", "p.vtk", "--report", "p.json", "--effort", "quick")
+                    self.assertFalse([line for line in report["log"] if "stuffing" in line["message"]])
+                    self.assertAlmostEqual(sum(p["volume"] for p in report["pieces"]), 17, delta=20 * e + 1e-9)
+                    self.assertLess(len(report["pieces"]), 6)
+                    self.assertLess(report.get("distance", 0), 1e-7)
+                    self.run_text("verify", file, "p.vtk", "p.json")
 
 
 class Scenes(Case):
