@@ -35,6 +35,12 @@ def points(binary):
     return f"POINTS {len(POINTS)} double\n".encode() + numbers([float(c) for c in flat], "d", binary)
 
 
+def field(binary):
+    """What belongs to the file as a whole, as ParaView writes it."""
+    return (b"FIELD FieldData 2\nTIME 1 1 double\n" + numbers([0.5], "d", binary) + b"METADATA\nINFORMATION 0\n\n"
+            + b"CYCLE 2 3 int\n" + numbers(range(6), "i", binary))
+
+
 def cells(keyword, lists, binary, offsets):
     if not offsets:
         flat = [n for cell in lists for n in (len(cell), *cell)]
@@ -47,7 +53,7 @@ def cells(keyword, lists, binary, offsets):
 
 
 def polydata(binary, offsets, strips):
-    out = head("POLYDATA", binary, "5.1" if offsets else "3.0") + points(binary)
+    out = head("POLYDATA", binary, "5.1" if offsets else "3.0") + (field(binary) if strips else b"") + points(binary)
     if offsets:
         out += b"METADATA\nINFORMATION 0\n\n"
     out += cells("LINES", [(0, 1)], binary, offsets)
@@ -60,7 +66,7 @@ def polydata(binary, offsets, strips):
 
 def grid(binary, offsets):
     lists = [(0,)] + QUADS
-    out = head("UNSTRUCTURED_GRID", binary, "5.1" if offsets else "3.0") + points(binary)
+    out = head("UNSTRUCTURED_GRID", binary, "5.1" if offsets else "3.0") + field(binary) + points(binary)
     return out + cells("CELLS", lists, binary, offsets) + f"CELL_TYPES {len(lists)}\n".encode() + numbers(
         [1] + [9] * len(QUADS), "i", binary)
 

@@ -98,7 +98,9 @@ static starg_status read_type(vtk_file *vtk, number_type *type) {
                  {"vtktypeint32", NUMBER_INT32}, {"vtktypeint64", NUMBER_INT64},
                  {"vtkIdType", NUMBER_INT64},    {"long", NUMBER_INT64},
                  {"unsigned_char", NUMBER_INT8}, {"char", NUMBER_INT8},
-                 {"vtktypeint8", NUMBER_INT8},   {"vtktypeuint8", NUMBER_INT8}};
+                 {"vtktypeint8", NUMBER_INT8},   {"vtktypeuint8", NUMBER_INT8},
+                 {"short", NUMBER_INT16},        {"unsigned_short", NUMBER_UINT16},
+                 {"unsigned_long", NUMBER_INT64}};
     starg_word word;
     TRY(starg_scan_expect(&vtk->numbers.scan, "a type of numbers", &word));
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
@@ -115,9 +117,39 @@ static bool is_real(number_type type) {
     return type == NUMBER_FLOAT32 || type == NUMBER_FLOAT64;
 }
 
+/* FIELD name n, then n arrays, each with its name, components, tuples, type and numbers: they
+ * belong to the file, as times do. */
+static starg_status skip_fields(vtk_file *vtk) {
+    starg_scan *scan = &vtk->numbers.scan, ahead = *scan;
+    starg_word word;
+    int64_t arrays, components, tuples;
+    if (!starg_scan_word(&ahead, &word) || !vtk_is(word, "FIELD"))
+        return STARG_OK;
+    TRY(vtk_expect(vtk, "FIELD"));
+    TRY(starg_scan_expect(scan, "the name of a field", &word));
+    TRY(vtk_count(vtk, "the number of arrays", &arrays));
+    for (int64_t i = 0; i < arrays; i++) {
+        number_type type;
+        vtk_skip_metadata(vtk);
+        TRY(starg_scan_expect(scan, "the name of an array", &word));
+        TRY(vtk_count(vtk, "the number of components", &components));
+        TRY(vtk_count(vtk, "the number of tuples", &tuples));
+        TRY(read_type(vtk, &type));
+        vtk_begin_data(vtk);
+        for (int64_t t = 0; t < tuples; t++)
+            for (int64_t k = 0; k < components; k++) {
+                double ignored;
+                TRY(numbers_real(&vtk->numbers, type, "a number of a field", &ignored));
+                TRY(vtk_tick(vtk));
+            }
+    }
+    return STARG_OK;
+}
+
 starg_status vtk_read_points(vtk_file *vtk) {
     number_type type;
     int64_t count;
+    TRY(skip_fields(vtk));
     TRY(vtk_expect(vtk, "POINTS"));
     TRY(vtk_count(vtk, "the number of points", &count));
     TRY(read_type(vtk, &type));
