@@ -5,6 +5,8 @@
 #include "commands.h"
 #include "starguard/picture.h"
 
+CLI_DROP(starg_check, starg_check)
+
 typedef struct values {
     const char *marks;
 } values;
@@ -215,17 +217,14 @@ static starg_status prepare(cli_session *session, void *data) {
 
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
-    starg_check *check = NULL;
-    CLI_TRY(starg_mesh_check(session->context, session->mesh, &check));
+    SCOPED_BY(starg_check_drop) starg_check *check = NULL;
+    TRY(starg_mesh_check(session->context, session->mesh, &check));
     report_check(session, check);
     print_check(session, check);
     if (v->marks != NULL)
-        CLI_TRY(write_marks(session, session->mesh, check, v->marks));
+        TRY(write_marks(session, session->mesh, check, v->marks));
     judge(session, check);
-done:
-    starg_check_free(session->context, check);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_check = {

@@ -7,6 +7,8 @@
 #include "database.h"
 #include "starguard/picture.h"
 
+CLI_DROP(starg_classes, starg_classes)
+
 typedef struct values {
     const char *output, *picture, *classes;
     int distance;
@@ -70,22 +72,19 @@ static starg_status draw_matrix(cli_session *session, const char *name, const cl
 
 static starg_status run_matrix(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
-    cli_table t = {0};
-    CLI_TRY(cli_table_make(session, session->operands[0], v->distance, &t));
+    SCOPED_BY(cli_table_free) cli_table t = {0};
+    TRY(cli_table_make(session, session->operands[0], v->distance, &t));
     if (v->picture != NULL)
-        CLI_TRY(draw_matrix(session, v->picture, &t));
+        TRY(draw_matrix(session, v->picture, &t));
     if (v->output != NULL)
-        CLI_TRY(write_matrix(session, v->output, &t));
+        TRY(write_matrix(session, v->output, &t));
     cli_say(session, "%s, %s distances\n", cli_count_of(t.models->count, "model", "models").text,
             cli_distance_words[v->distance]);
     if (session->report != NULL) {
         report_head(session, v, "starguard-db-matrix");
         cli_put(session, session->report, "models", json_integer((json_int_t)t.models->count));
     }
-done:
-    cli_table_free(session, &t);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_db_matrix = {
@@ -254,26 +253,19 @@ static starg_status deliver(cli_session *session, const values *v, evaluation *e
 
 static starg_status run_evaluate(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
-    cli_table t = {0};
-    starg_classes *classes = NULL;
-    starg_retrieval overall, *by_class = NULL;
-    CLI_TRY(cli_table_make(session, session->operands[0], v->distance, &t));
-    CLI_TRY(make_classes(session, v, &t, &classes));
+    SCOPED_BY(cli_table_free) cli_table t = {0};
+    SCOPED_BY(starg_classes_drop) starg_classes *classes = NULL;
+    SCOPED starg_retrieval *by_class = NULL;
+    starg_retrieval overall;
+    TRY(cli_table_make(session, session->operands[0], v->distance, &t));
+    TRY(make_classes(session, v, &t, &classes));
     by_class = calloc(classes->count + 1, sizeof *by_class);
-    if (by_class == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
-    CLI_TRY(starg_retrieval_measure(session->context, t.distances, classes->class_of,
-                                    t.models->count, classes->count, by_class, &overall));
+    if (by_class == NULL)
+        return cli_fail_memory(session);
+    TRY(starg_retrieval_measure(session->context, t.distances, classes->class_of, t.models->count,
+                                classes->count, by_class, &overall));
     evaluation e = {.classes = classes, .by_class = by_class, .overall = &overall};
-    CLI_TRY(deliver(session, v, &e));
-done:
-    free(by_class);
-    starg_classes_free(session->context, classes);
-    cli_table_free(session, &t);
-    return status;
+    return deliver(session, v, &e);
 }
 
 const cli_command cli_command_db_evaluate = {

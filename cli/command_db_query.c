@@ -6,6 +6,9 @@
 #include "commands.h"
 #include "database.h"
 
+CLI_DROP(starg_database_models, starg_database_models)
+CLI_DROP(starg_signature, starg_signature)
+
 typedef struct values {
     uint64_t count;
     int distance;
@@ -91,37 +94,28 @@ static void report(cli_session *session, const values *v, const starg_mesh *mesh
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_context *context = session->context;
-    starg_status status = STARG_OK;
-    starg_database *database = NULL;
-    starg_mesh *mesh = NULL;
-    starg_signature *signature = NULL;
-    starg_database_models *found = NULL;
-    found_model *list = NULL;
-    CLI_TRY(cli_weights_check(session, &v->weights));
-    CLI_TRY(cli_database_open(session, &database));
-    CLI_TRY(starg_mesh_read(context, session->operands[1], &mesh));
-    CLI_TRY(starg_signature_create(context, mesh, (starg_signature_kind)v->distance, &signature));
-    CLI_TRY(starg_database_query(database, signature, v->count, &found));
+    SCOPED_BY(cli_database_drop) starg_database *database = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED_BY(starg_signature_drop) starg_signature *signature = NULL;
+    SCOPED_BY(starg_database_models_drop) starg_database_models *found = NULL;
+    SCOPED found_model *list = NULL;
+    TRY(cli_weights_check(session, &v->weights));
+    TRY(cli_database_open(session, &database));
+    TRY(starg_mesh_read(context, session->operands[1], &mesh));
+    TRY(starg_signature_create(context, mesh, (starg_signature_kind)v->distance, &signature));
+    TRY(starg_database_query(database, signature, v->count, &found));
     list = calloc(found->count + 1, sizeof *list);
-    if (list == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    if (list == NULL)
+        return cli_fail_memory(session);
     for (size_t i = 0; i < found->count; i++) {
         list[i].model = &found->items[i];
-        CLI_TRY(align(session, mesh, v, &list[i]));
+        TRY(align(session, mesh, v, &list[i]));
     }
     sort(list, found->count);
     tell(session, v, list, found->count);
     if (session->report != NULL)
         report(session, v, mesh, list, found->count);
-done:
-    free(list);
-    starg_database_models_free(context, found);
-    starg_signature_free(context, signature);
-    starg_mesh_free(mesh);
-    starg_database_close(database);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_db_query = {

@@ -3,6 +3,9 @@
 #include "commands.h"
 #include "database.h"
 
+CLI_DROP(starg_database_models, starg_database_models)
+CLI_DROP(starg_database_report, starg_database_report)
+
 static void report_file(cli_session *session, const char *format) {
     cli_report_head(session, format, NULL, NULL);
     if (session->report != NULL)
@@ -80,19 +83,15 @@ static void report_added(cli_session *session, const starg_database_report *r) {
 
 static starg_status add(cli_session *session, void *data) {
     (void)data;
-    starg_status status = STARG_OK;
-    starg_database *database = NULL;
-    starg_database_report *report = NULL;
-    CLI_TRY(cli_database_open(session, &database));
-    CLI_TRY(starg_database_add(database, (const char *const *)session->operands + 1,
-                               session->operand_count - 1, &report));
+    SCOPED_BY(cli_database_drop) starg_database *database = NULL;
+    SCOPED_BY(starg_database_report_drop) starg_database_report *report = NULL;
+    TRY(cli_database_open(session, &database));
+    TRY(starg_database_add(database, (const char *const *)session->operands + 1,
+                           session->operand_count - 1, &report));
     tell_added(session, report);
     if (session->report != NULL)
         report_added(session, report);
-done:
-    starg_database_report_free(session->context, report);
-    starg_database_close(database);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_db_add = {
@@ -158,11 +157,10 @@ static void report_list(cli_session *session, const starg_database_models *model
 
 static starg_status list(cli_session *session, void *data) {
     (void)data;
-    starg_status status = STARG_OK;
-    starg_database *database = NULL;
-    starg_database_models *models = NULL;
-    CLI_TRY(cli_database_open(session, &database));
-    CLI_TRY(starg_database_list(database, &models));
+    SCOPED_BY(cli_database_drop) starg_database *database = NULL;
+    SCOPED_BY(starg_database_models_drop) starg_database_models *models = NULL;
+    TRY(cli_database_open(session, &database));
+    TRY(starg_database_list(database, &models));
     for (size_t i = 0; i < models->count; i++) {
         const starg_database_model *model = &models->items[i];
         cli_say(session, "%6lld  %-24s %8zu vertices %8zu faces  %s\n", (long long)model->id,
@@ -171,10 +169,7 @@ static starg_status list(cli_session *session, void *data) {
     cli_say(session, "%s\n", cli_count_of(models->count, "model", "models").text);
     if (session->report != NULL)
         report_list(session, models);
-done:
-    starg_database_models_free(session->context, models);
-    starg_database_close(database);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_db_list = {

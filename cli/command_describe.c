@@ -8,6 +8,9 @@
 #include "commands.h"
 #include "starguard/picture.h"
 
+CLI_DROP(starg_descriptor, starg_descriptor)
+CLI_DROP(starg_descriptor_points, double)
+
 typedef struct values {
     const char *output, *reconstruct, *picture, *histograms;
     starg_descriptor_options wanted;
@@ -65,18 +68,12 @@ static starg_status report(cli_session *session, const starg_descriptor *d,
 
 static starg_status write_points(cli_session *session, const starg_descriptor *d,
                                  const char *name) {
-    starg_status status = STARG_OK;
     starg_context *context = session->context;
-    double *points = NULL;
-    starg_mesh *cloud = NULL;
-    CLI_TRY(starg_descriptor_points(context, d, &points));
-    CLI_TRY(
-        starg_mesh_create(context, points, d->guard_count * d->direction_count, NULL, 0, &cloud));
-    CLI_TRY(cli_mesh_write(session, cloud, STARG_MESH_PLY_BINARY, name));
-done:
-    starg_mesh_free(cloud);
-    starg_descriptor_points_free(context, points);
-    return status;
+    SCOPED_BY(starg_descriptor_points_drop) double *points = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *cloud = NULL;
+    TRY(starg_descriptor_points(context, d, &points));
+    TRY(starg_mesh_create(context, points, d->guard_count * d->direction_count, NULL, 0, &cloud));
+    return cli_mesh_write(session, cloud, STARG_MESH_PLY_BINARY, name);
 }
 
 static starg_status draw(cli_session *session, const starg_descriptor *d, const char *name) {
@@ -173,18 +170,15 @@ static starg_status write_files(cli_session *session, const starg_descriptor *d,
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_context *context = session->context;
-    starg_status status = STARG_OK;
-    starg_descriptor *descriptor = NULL;
+    SCOPED_BY(starg_descriptor_drop) starg_descriptor *descriptor = NULL;
     starg_reconstruction reconstruction;
-    CLI_TRY(starg_descriptor_create(context, session->mesh, &v->wanted, &descriptor));
-    CLI_TRY(starg_descriptor_reconstruct(context, descriptor, session->mesh, &reconstruction));
-    CLI_TRY(write_files(session, descriptor, v));
+    TRY(starg_descriptor_create(context, session->mesh, &v->wanted, &descriptor));
+    TRY(starg_descriptor_reconstruct(context, descriptor, session->mesh, &reconstruction));
+    TRY(write_files(session, descriptor, v));
     tell(session, descriptor, &reconstruction);
     if (session->report != NULL)
-        CLI_TRY(report(session, descriptor, &reconstruction, v));
-done:
-    starg_descriptor_free(context, descriptor);
-    return status;
+        TRY(report(session, descriptor, &reconstruction, v));
+    return STARG_OK;
 }
 
 const cli_command cli_command_describe = {

@@ -12,6 +12,10 @@
 #include "starguard/picture.h"
 #include "starguard/skeleton.h"
 
+CLI_DROP(starg_guards, starg_guards)
+CLI_DROP(starg_patches, uint32_t)
+CLI_DROP(starg_text, char)
+
 static const struct {
     const char *word;
     starg_candidates source;
@@ -305,19 +309,14 @@ static void drawing_free(drawing *d) {
 /* Targets that nothing sees are dark red. */
 static starg_status draw(cli_session *session, const starg_solid *solid, const starg_guards *g,
                          drawing *d) {
-    starg_status status = STARG_OK;
     size_t count = 0;
-    uint32_t *missing = NULL;
+    SCOPED_BY(starg_patches_drop) uint32_t *missing = NULL;
     *d = (drawing){0};
-    CLI_TRY(starg_guards_patches(session->context, solid, g, &d->mesh, &d->seen, &missing, &count));
+    TRY(starg_guards_patches(session->context, solid, g, &d->mesh, &d->seen, &missing, &count));
     d->colors = cli_colors_create(d->mesh);
     for (size_t i = 0; d->colors != NULL && i < count; i++)
         memcpy(d->colors + 3 * (size_t)missing[i], UNCOVERED, sizeof UNCOVERED);
-    if (d->colors == NULL)
-        status = cli_fail_memory(session);
-done:
-    starg_patches_free(session->context, missing);
-    return status;
+    return d->colors != NULL ? STARG_OK : cli_fail_memory(session);
 }
 
 static starg_status write_marks(cli_session *session, const starg_solid *solid,
@@ -495,28 +494,24 @@ static starg_status prepare(cli_session *session, void *data) {
 
 static starg_status run(cli_session *session, void *data) {
     values *v = data;
-    starg_status status = STARG_OK;
-    starg_guards *guards = NULL;
-    char *why = NULL;
+    SCOPED_BY(starg_guards_drop) starg_guards *guards = NULL;
+    SCOPED_BY(starg_text_drop) char *why = NULL;
     size_t size = 0;
-    CLI_TRY(cli_scene_make(session, &v->scene));
-    CLI_TRY(write_leak(session, v->leak));
+    TRY(cli_scene_make(session, &v->scene));
+    TRY(write_leak(session, v->leak));
     if (v->certificate != NULL)
-        CLI_TRY(starg_guard_certified(session->context, session->solid, &v->wanted, &guards, &why,
-                                      &size));
+        TRY(starg_guard_certified(session->context, session->solid, &v->wanted, &guards, &why,
+                                  &size));
     else
-        CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
-    CLI_TRY(starg_guards_name_obstacles(session->context, guards, v->scene.obstacles.values));
+        TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
+    TRY(starg_guards_name_obstacles(session->context, guards, v->scene.obstacles.values));
     if (v->scene.zone_files != NULL)
-        CLI_TRY(starg_guards_name_zones(session->context, guards, v->scene.zone_files));
-    CLI_TRY(write_files(session, v, session->solid, guards, why, size));
+        TRY(starg_guards_name_zones(session->context, guards, v->scene.zone_files));
+    TRY(write_files(session, v, session->solid, guards, why, size));
     say_guards(session, guards);
     if (session->report != NULL)
-        CLI_TRY(report_guards(session, guards, v->output));
-done:
-    starg_text_free(session->context, why);
-    starg_guards_free(session->context, guards);
-    return status;
+        TRY(report_guards(session, guards, v->output));
+    return STARG_OK;
 }
 
 /* ---- the command of a result ---- */

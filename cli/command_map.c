@@ -8,6 +8,11 @@
 #include "starguard/picture.h"
 #include "starguard/solidmap.h"
 
+CLI_DROP(starg_landmarks, uint32_t)
+CLI_DROP(starg_map, starg_map)
+CLI_DROP(starg_samples, starg_samples)
+CLI_DROP(starg_solid_map, starg_solid_map)
+
 /* The options that concern solids. */
 typedef struct cli_solid_map {
     bool solid, overlay;
@@ -88,21 +93,17 @@ static starg_status cli_solid_map_prepare(cli_session *session, const cli_solid_
 
 static starg_status map_solids(cli_session *session, const cli_solid_map *v,
                                const starg_mesh *target, starg_map **out) {
-    starg_status status = STARG_OK;
     starg_map_options wanted;
-    uint32_t *pairs = NULL;
+    SCOPED_BY(starg_landmarks_drop) uint32_t *pairs = NULL;
     starg_map_options_default(&wanted);
     wanted.solid = v->connectivity == 0;
     if (v->map != NULL)
         return starg_map_read(session->context, v->map, session->mesh, target, out);
     if (v->landmarks != NULL)
-        CLI_TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, target, &pairs,
-                                     &wanted.landmark_count));
+        TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, target, &pairs,
+                                 &wanted.landmark_count));
     wanted.landmarks = pairs;
-    CLI_TRY(starg_map_create(session->context, session->mesh, target, &wanted, out));
-done:
-    starg_landmarks_free(session->context, pairs);
-    return status;
+    return starg_map_create(session->context, session->mesh, target, &wanted, out);
 }
 
 /* B, where a map ends only near it. */
@@ -130,23 +131,18 @@ static starg_status map_to_images(cli_session *session, const cli_solid_map *v,
 
 static starg_status map_to_target(cli_session *session, const cli_solid_map *v, ending *end,
                                   starg_solid_map **out) {
-    starg_status status = STARG_OK;
-    starg_mesh *target = NULL;
-    starg_map *map = NULL;
-    CLI_TRY(starg_mesh_read(session->context, session->operands[1], &target));
-    CLI_TRY(map_solids(session, v, target, &map));
+    SCOPED_BY(starg_mesh_drop) starg_mesh *target = NULL;
+    SCOPED_BY(starg_map_drop) starg_map *map = NULL;
+    TRY(starg_mesh_read(session->context, session->operands[1], &target));
+    TRY(map_solids(session, v, target, &map));
     if (v->connectivity == 0) {
         if (map->overlay.face_count == 0)
-            CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
-        CLI_TRY(
-            starg_solid_map_overlay(session->context, session->mesh, target, map, v->wanted, out));
+            TRY(starg_map_overlay(session->context, session->mesh, target, map));
+        TRY(starg_solid_map_overlay(session->context, session->mesh, target, map, v->wanted, out));
     } else {
-        CLI_TRY(map_to_images(session, v, target, map, end, out));
+        TRY(map_to_images(session, v, target, map, end, out));
     }
-done:
-    starg_map_free(session->context, map);
-    starg_mesh_free(target);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- the map ---- */
@@ -177,25 +173,20 @@ static starg_status make_map(cli_session *session, const cli_solid_map *v, endin
 
 static starg_status carry(cli_session *session, const cli_solid_map *v, const starg_solid_map *map,
                           size_t *count) {
-    starg_status status = STARG_OK;
-    starg_samples *samples = NULL, *carried = NULL;
+    SCOPED_BY(starg_samples_drop) starg_samples *samples = NULL;
+    SCOPED_BY(starg_samples_drop) starg_samples *carried = NULL;
     const char *file = v->points != NULL ? v->points : v->field;
-    CLI_TRY(starg_samples_read(session->context, file, &samples));
-    if ((samples->width > 0) != (v->field != NULL)) {
-        status = cli_fail(session, STARG_ERROR_FORMAT,
-                          v->field != NULL ? "'%.200s' has points without values; that is --points"
-                                           : "'%.200s' has values as well; that is --apply",
-                          file);
-        goto done;
-    }
-    CLI_TRY(starg_solid_map_carry(session->context, map, samples, v->back, &carried));
-    CLI_TRY(starg_samples_write(session->context, carried,
-                                cli_outputs_place(&session->outputs, v->carried)));
+    TRY(starg_samples_read(session->context, file, &samples));
+    if ((samples->width > 0) != (v->field != NULL))
+        return cli_fail(session, STARG_ERROR_FORMAT,
+                        v->field != NULL ? "'%.200s' has points without values; that is --points"
+                                         : "'%.200s' has values as well; that is --apply",
+                        file);
+    TRY(starg_solid_map_carry(session->context, map, samples, v->back, &carried));
+    TRY(starg_samples_write(session->context, carried,
+                            cli_outputs_place(&session->outputs, v->carried)));
     *count = carried->count;
-done:
-    starg_samples_free(session->context, samples);
-    starg_samples_free(session->context, carried);
-    return status;
+    return STARG_OK;
 }
 
 /* ---- reports ---- */
@@ -253,22 +244,19 @@ static void report(cli_session *session, const starg_solid_map *map, const cli_s
 
 /* The first operand has been read into the session. */
 static starg_status cli_solid_map_run(cli_session *session, const cli_solid_map *v) {
-    starg_status status = STARG_OK;
-    starg_solid_map *map = NULL;
+    SCOPED_BY(starg_solid_map_drop) starg_solid_map *map = NULL;
     ending end = {0};
     size_t carried = 0;
-    CLI_TRY(make_map(session, v, &end, &map));
+    TRY(make_map(session, v, &end, &map));
     if (v->output != NULL)
-        CLI_TRY(starg_solid_map_write(session->context, map,
-                                      cli_outputs_place(&session->outputs, v->output)));
+        TRY(starg_solid_map_write(session->context, map,
+                                  cli_outputs_place(&session->outputs, v->output)));
     if (v->carried != NULL)
-        CLI_TRY(carry(session, v, map, &carried));
+        TRY(carry(session, v, map, &carried));
     say(session, map, v, &end, carried);
     if (session->report != NULL)
         report(session, map, v, carried);
-done:
-    starg_solid_map_free(session->context, map);
-    return status;
+    return STARG_OK;
 }
 
 typedef struct values {
@@ -466,32 +454,26 @@ static starg_status report_map(cli_session *session, const starg_map *map, const
 }
 
 static starg_status map_surfaces(cli_session *session, const values *v) {
-    starg_status status = STARG_OK;
-    starg_mesh *target = NULL;
-    starg_map *map = NULL;
-    uint32_t *pairs = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *target = NULL;
+    SCOPED_BY(starg_map_drop) starg_map *map = NULL;
+    SCOPED_BY(starg_landmarks_drop) uint32_t *pairs = NULL;
     starg_map_options wanted;
     starg_map_options_default(&wanted);
-    CLI_TRY(starg_mesh_read(session->context, session->operands[1], &target));
+    TRY(starg_mesh_read(session->context, session->operands[1], &target));
     if (v->landmarks != NULL)
-        CLI_TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, target, &pairs,
-                                     &wanted.landmark_count));
+        TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, target, &pairs,
+                                 &wanted.landmark_count));
     wanted.landmarks = pairs;
-    CLI_TRY(starg_map_create(session->context, session->mesh, target, &wanted, &map));
+    TRY(starg_map_create(session->context, session->mesh, target, &wanted, &map));
     if (v->overlay)
-        CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
-    CLI_TRY(
-        starg_map_write(session->context, map, cli_outputs_place(&session->outputs, v->output)));
+        TRY(starg_map_overlay(session->context, session->mesh, target, map));
+    TRY(starg_map_write(session->context, map, cli_outputs_place(&session->outputs, v->output)));
     say_map(session, map);
     if (session->report != NULL)
-        CLI_TRY(report_map(session, map, v));
+        TRY(report_map(session, map, v));
     if (v->picture != NULL)
-        CLI_TRY(write_picture(session, v, target, map));
-done:
-    starg_map_free(session->context, map);
-    starg_landmarks_free(session->context, pairs);
-    starg_mesh_free(target);
-    return status;
+        TRY(write_picture(session, v, target, map));
+    return STARG_OK;
 }
 
 static starg_status run(cli_session *session, void *data) {

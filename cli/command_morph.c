@@ -10,6 +10,10 @@
 #include "starguard/picture.h"
 #include "starguard/solidmap.h"
 
+CLI_DROP(starg_guards, starg_guards)
+CLI_DROP(starg_landmarks, uint32_t)
+CLI_DROP(starg_solid_map, starg_solid_map)
+
 static void starg_morph_drop(starg_morph **morph) {
     starg_morph_free(*morph);
 }
@@ -202,21 +206,17 @@ static void subject_free(cli_session *session, subject *s) {
 }
 
 static starg_status make_map(cli_session *session, const values *v, subject *s) {
-    starg_status status = STARG_OK;
     starg_map_options wanted;
-    uint32_t *pairs = NULL;
+    SCOPED_BY(starg_landmarks_drop) uint32_t *pairs = NULL;
     starg_map_options_default(&wanted);
     wanted.solid = v->wanted.method == STARG_MORPH_SOLID && v->connectivity == 0;
     if (v->map != NULL)
         return starg_map_read(session->context, v->map, session->mesh, s->target, &s->map);
     if (v->landmarks != NULL)
-        CLI_TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, s->target,
-                                     &pairs, &wanted.landmark_count));
+        TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, s->target, &pairs,
+                                 &wanted.landmark_count));
     wanted.landmarks = pairs;
-    CLI_TRY(starg_map_create(session->context, session->mesh, s->target, &wanted, &s->map));
-done:
-    starg_landmarks_free(session->context, pairs);
-    return status;
+    return starg_map_create(session->context, session->mesh, s->target, &wanted, &s->map);
 }
 
 /* A map that keeps vertices may still connect surfaces with some different faces. */
@@ -406,22 +406,14 @@ typedef struct extras {
 
 static starg_status write_end(cli_session *session, const values *v, const subject *s,
                               const starg_morph *morph, int end) {
-    starg_status status = STARG_OK;
-    starg_guards *guards = NULL;
-    char *name = in_folder(v, end == 0 ? "guards_a.json" : "guards_b.json");
-    char *model = model_of(session, v, s, end);
-    if (name == NULL || model == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
-    CLI_TRY(starg_morph_guards_result(morph, end, &guards));
-    CLI_TRY(starg_guards_write(session->context, guards, model,
-                               cli_outputs_place(&session->outputs, name)));
-done:
-    starg_guards_free(session->context, guards);
-    free(name);
-    free(model);
-    return status;
+    SCOPED_BY(starg_guards_drop) starg_guards *guards = NULL;
+    SCOPED char *name = in_folder(v, end == 0 ? "guards_a.json" : "guards_b.json");
+    SCOPED char *model = model_of(session, v, s, end);
+    if (name == NULL || model == NULL)
+        return cli_fail_memory(session);
+    TRY(starg_morph_guards_result(morph, end, &guards));
+    return starg_guards_write(session->context, guards, model,
+                              cli_outputs_place(&session->outputs, name));
 }
 
 static starg_status write_guards(cli_session *session, const values *v, const subject *s,
@@ -481,16 +473,12 @@ static json_t *pieces_json(const starg_decomposition *const pieces[2]) {
 
 static starg_status write_certificate(cli_session *session, const values *v, const subject *s,
                                       const starg_morph *morph) {
-    starg_solid_map *map = NULL;
-    starg_status status = STARG_OK;
-    CLI_TRY(starg_morph_solid_map(morph, &map));
+    SCOPED_BY(starg_solid_map_drop) starg_solid_map *map = NULL;
+    TRY(starg_morph_solid_map(morph, &map));
     if (v->connectivity > 0)
-        CLI_TRY(starg_solid_map_compare(session->context, s->target, map));
-    CLI_TRY(starg_solid_map_write(session->context, map,
-                                  cli_outputs_place(&session->outputs, v->certificate)));
-done:
-    starg_solid_map_free(session->context, map);
-    return status;
+        TRY(starg_solid_map_compare(session->context, s->target, map));
+    return starg_solid_map_write(session->context, map,
+                                 cli_outputs_place(&session->outputs, v->certificate));
 }
 
 /* ---- picture ---- */

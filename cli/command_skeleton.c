@@ -7,6 +7,8 @@
 #include "starguard/picture.h"
 #include "starguard/skeleton.h"
 
+CLI_DROP(starg_skeleton, starg_skeleton)
+
 typedef struct values {
     const char *output, *picture;
     starg_skeleton_options wanted;
@@ -90,19 +92,16 @@ static void report_skeleton(cli_session *session, const starg_skeleton *s, const
 
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
-    starg_status status = STARG_OK;
-    starg_skeleton *skeleton = NULL;
-    CLI_TRY(starg_skeleton_create(session->context, session->solid, &v->wanted, &skeleton));
+    SCOPED_BY(starg_skeleton_drop) starg_skeleton *skeleton = NULL;
+    TRY(starg_skeleton_create(session->context, session->solid, &v->wanted, &skeleton));
     if (v->picture != NULL)
-        CLI_TRY(write_picture(session, session->solid, skeleton, v->picture));
-    CLI_TRY(starg_skeleton_write(session->context, skeleton,
-                                 cli_outputs_place(&session->outputs, v->output), v->format));
+        TRY(write_picture(session, session->solid, skeleton, v->picture));
+    TRY(starg_skeleton_write(session->context, skeleton,
+                             cli_outputs_place(&session->outputs, v->output), v->format));
     say_skeleton(session, skeleton);
     if (session->report != NULL)
         report_skeleton(session, skeleton, v->output);
-done:
-    starg_skeleton_free(session->context, skeleton);
-    return status;
+    return STARG_OK;
 }
 
 const cli_command cli_command_skeleton = {

@@ -394,7 +394,7 @@ done:
     cli_scene_free_obstacles(obstacles, guards->obstacle_count);
     cli_scene_free_obstacles(zones, guards->zone_count);
     starg_poses_free(session->context, &keep);
-    starg_face_groups_free(session->context, &groups);
+    cli_groups_free(&groups);
     return status;
 }
 

@@ -60,8 +60,7 @@ static void tell(cli_session *session, const values *v, const starg_page *page) 
 }
 
 static starg_status write_sheet(cli_session *session, const values *v, const cli_show *show) {
-    starg_status status = STARG_OK;
-    starg_face_groups groups = {0};
+    SCOPED_BY(cli_groups_free) starg_face_groups groups = {0};
     bool any = false;
     const starg_page *page = &show->page;
     if (show->guards == NULL || page->report != NULL || page->pieces != NULL || page->map != NULL ||
@@ -69,18 +68,15 @@ static starg_status write_sheet(cli_session *session, const values *v, const cli
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--report makes a sheet about cameras: give one GUARDS.json and nothing "
                         "else, or leave out --report");
-    CLI_TRY(cli_groups_read(session, show->model_file, show->guards->face_count, &groups, &any));
+    TRY(cli_groups_read(session, show->model_file, show->guards->face_count, &groups, &any));
     const starg_sheet sheet = {.title = page->title,
                                .command = page->command,
                                .scene = show->solid,
                                .guards = show->guards,
                                .obstacles = page->obstacles,
                                .groups = any ? &groups : NULL};
-    CLI_TRY(starg_sheet_write(session->context, &sheet,
-                              cli_outputs_place(&session->outputs, v->output)));
-done:
-    starg_face_groups_free(session->context, &groups);
-    return status;
+    return starg_sheet_write(session->context, &sheet,
+                             cli_outputs_place(&session->outputs, v->output));
 }
 
 static starg_status run(cli_session *session, void *data) {

@@ -12,6 +12,10 @@
 #include "starguard/picture.h"
 #include "starguard/visibility.h"
 
+CLI_DROP(starg_guards, starg_guards)
+CLI_DROP(starg_patches, uint32_t)
+CLI_DROP(starg_unseen, uint8_t)
+
 typedef struct values {
     starg_places from, boxes;
     const char *poses_file;
@@ -334,40 +338,30 @@ static starg_status write_parts(cli_session *session, const values *v, const sta
 
 /* What given cameras see: no search. */
 static starg_status run_audit(cli_session *session, values *v) {
-    starg_status status = STARG_OK;
-    starg_guards *guards = NULL;
-    starg_bits *faces = NULL, *parts = NULL;
-    starg_mesh *mesh = NULL;
-    double *fractions = NULL;
-    uint32_t *of = NULL;
+    SCOPED_BY(starg_guards_drop) starg_guards *guards = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *faces = NULL;
+    SCOPED_BY(starg_bits_drop) starg_bits *parts = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *mesh = NULL;
+    SCOPED double *fractions = NULL;
+    SCOPED_BY(starg_patches_drop) uint32_t *of = NULL;
     size_t count = 0;
     starg_poses points = {.points = v->from.values, .count = v->from.count};
-    CLI_TRY(starg_guards_audit(session->context, session->solid,
-                               v->poses_file != NULL ? &v->poses : &points, &v->view, &guards));
-    CLI_TRY(starg_guards_see(session->context, session->solid, guards, &faces));
-    CLI_TRY(
-        starg_guards_patches(session->context, session->solid, guards, &mesh, &parts, NULL, NULL));
+    TRY(starg_guards_audit(session->context, session->solid,
+                           v->poses_file != NULL ? &v->poses : &points, &v->view, &guards));
+    TRY(starg_guards_see(session->context, session->solid, guards, &faces));
+    TRY(starg_guards_patches(session->context, session->solid, guards, &mesh, &parts, NULL, NULL));
     fractions = cli_area_fractions(mesh, starg_mesh_face_count(mesh));
-    if (fractions == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
-    CLI_TRY(cli_tables_write(session, &v->tables, guards));
+    if (fractions == NULL)
+        return cli_fail_memory(session);
+    TRY(cli_tables_write(session, &v->tables, guards));
     if (v->output != NULL)
-        CLI_TRY(write_parts(session, v, mesh, parts));
-    CLI_TRY(tell_all(session, guards, faces, parts, fractions, v));
+        TRY(write_parts(session, v, mesh, parts));
+    TRY(tell_all(session, guards, faces, parts, fractions, v));
     if (v->share) {
-        CLI_TRY(starg_guards_patch_faces(session->context, session->solid, guards, &of, &count));
-        CLI_TRY(tell_shares(session, faces, mesh, parts, of, guards->positions));
+        TRY(starg_guards_patch_faces(session->context, session->solid, guards, &of, &count));
+        TRY(tell_shares(session, faces, mesh, parts, of, guards->positions));
     }
-done:
-    starg_patches_free(session->context, of);
-    free(fractions);
-    starg_mesh_free(mesh);
-    starg_bits_free(faces);
-    starg_bits_free(parts);
-    starg_guards_free(session->context, guards);
-    return status;
+    return STARG_OK;
 }
 
 static bool audits(const values *v) {
@@ -429,18 +423,15 @@ static starg_status write_states(cli_session *session, const values *v, const st
 }
 
 static starg_status run_unseen(cli_session *session, values *v, const double *fractions) {
-    starg_status status = STARG_OK;
-    uint8_t *state = NULL;
-    CLI_TRY(starg_unseen(session->context, session->solid, &v->view, 0, v->work, &state));
+    SCOPED_BY(starg_unseen_drop) uint8_t *state = NULL;
+    TRY(starg_unseen(session->context, session->solid, &v->view, 0, v->work, &state));
     tell_states(session, session->solid, state, fractions);
     if (session->report != NULL)
         cli_put(session, session->report, "options",
                 cli_json_record(session, starg_visibility_options_fields(), &v->view));
     if (v->output != NULL)
-        CLI_TRY(write_states(session, v, session->solid, state));
-done:
-    starg_unseen_free(session->context, state);
-    return status;
+        TRY(write_states(session, v, session->solid, state));
+    return STARG_OK;
 }
 
 /* ---- the command ---- */

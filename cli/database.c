@@ -69,8 +69,8 @@ starg_status cli_table_make(cli_session *session, const char *file, int kind, cl
     return make_distances(session, t);
 }
 
-void cli_table_free(cli_session *session, cli_table *t) {
+void cli_table_free(cli_table *t) {
     free(t->distances);
-    starg_database_models_free(session->context, t->models);
+    starg_database_models_free(NULL, t->models);
     starg_database_close(t->database);
 }

@@ -86,7 +86,7 @@ typedef struct cli_table {
 /* `kind` is an index of cli_distance_words; `t` must be zero, and must be freed on failure as well.
  * An empty database is an error. */
 starg_status cli_table_make(cli_session *session, const char *file, int kind, cli_table *t);
-void cli_table_free(cli_session *session, cli_table *t);
+void cli_table_free(cli_table *t);
 
 /* {"id", "name", "path", "vertices", "faces"} */
 json_t *cli_json_model(const starg_database_model *model);

@@ -20,7 +20,7 @@ starg_status cli_input_read(cli_session *session) {
     char format[64];
     if (command->input == CLI_INPUT_NONE)
         return STARG_OK;
-    CLI_TRY(starg_mesh_read(session->context, session->operands[0], &session->mesh));
+    TRY(starg_mesh_read(session->context, session->operands[0], &session->mesh));
     snprintf(format, sizeof format, "starguard-%s", command->name);
     cli_report_head(session, format, session->operands[0], session->mesh);
     if (command->input == CLI_INPUT_SOLID) {
@@ -28,7 +28,6 @@ starg_status cli_input_read(cli_session *session) {
         starg_mesh_free(session->mesh);
         session->mesh = NULL;
     }
-done:
     return status;
 }
 

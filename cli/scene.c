@@ -487,68 +487,55 @@ static bool parse_need(const char *text, starg_face_need *need) {
 
 static starg_status add_need(cli_session *session, const char *word, size_t faces,
                              starg_face_need *needs) {
-    starg_status status = STARG_OK;
-    double *values = NULL;
+    SCOPED double *values = NULL;
     starg_face_need need;
-    char *copy = strdup(word), *equals = copy != NULL ? strrchr(copy, '=') : NULL;
+    SCOPED char *copy = strdup(word);
+    char *equals = copy != NULL ? strrchr(copy, '=') : NULL;
     if (copy == NULL)
         return cli_fail_memory(session);
-    if (equals == NULL || equals == copy || !parse_need(equals + 1, &need)) {
-        status =
-            cli_fail(session, STARG_ERROR_ARGUMENT,
-                     "--require takes FACES=K or FACES=K,DENSITY, such as doors=2 or "
-                     "doors=2,identify, with K from 1 to 1,000 and a density above 0 or one of "
-                     "monitor, detect, observe, recognise and identify, not '%.100s'",
-                     word);
-        goto done;
-    }
+    if (equals == NULL || equals == copy || !parse_need(equals + 1, &need))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--require takes FACES=K or FACES=K,DENSITY, such as doors=2 or "
+                        "doors=2,identify, with K from 1 to 1,000 and a density above 0 or one of "
+                        "monitor, detect, observe, recognise and identify, not '%.100s'",
+                        word);
     *equals = '\0';
     const char *list[] = {copy};
     const starg_texts words = {.values = list, .count = 1};
-    CLI_TRY(read_union(session, &words, faces, &values));
+    TRY(read_union(session, &words, faces, &values));
     for (size_t f = 0, any = 0; f < faces || any == 0; f++) {
-        if (f == faces) {
-            status = cli_fail(session, STARG_ERROR_ARGUMENT,
-                              "--require %.100s: these are no faces of the model", word);
-            goto done;
-        }
+        if (f == faces)
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "--require %.100s: these are no faces of the model", word);
         if (values[f] == 0)
             continue;
         any = 1;
         needs[f] = need;
         needs[f].face = (uint32_t)f;
     }
-done:
-    free(values);
-    free(copy);
-    return status;
+    return STARG_OK;
 }
 
 /* Later ones beat earlier ones. */
 static starg_status require(cli_session *session, const cli_scene *s, size_t faces,
                             const double *weights) {
-    starg_status status = STARG_OK;
     size_t count = 0, ignored = 0;
-    starg_face_need *needs = calloc(faces + 1, sizeof *needs);
+    SCOPED starg_face_need *needs = calloc(faces + 1, sizeof *needs);
     if (needs == NULL)
         return cli_fail_memory(session);
     for (size_t i = 0; i < s->require.count; i++)
-        CLI_TRY(add_need(session, s->require.values[i], faces, needs));
+        TRY(add_need(session, s->require.values[i], faces, needs));
     for (size_t f = 0; f < faces; f++)
         if (needs[f].times > 0) {
             ignored += weights != NULL && weights[f] == 0;
             needs[count++] = needs[f];
         }
     if (ignored > 0)
-        status = cli_fail(session, STARG_ERROR_ARGUMENT,
-                          "--require names %s that --see, --ignore or --weights leave out; a face "
-                          "that need not be seen has no needs",
-                          cli_count_of(ignored, "face", "faces").text);
-    else
-        status = starg_space_require(session->solid, needs, count);
-done:
-    free(needs);
-    return status;
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--require names %s that --see, --ignore or --weights leave out; a face "
+                        "that need not be seen has no needs",
+                        cli_count_of(ignored, "face", "faces").text);
+    return starg_space_require(session->solid, needs, count);
 }
 
 starg_status cli_scene_make(cli_session *session, cli_scene *s) {

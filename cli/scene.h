@@ -159,9 +159,12 @@ static inline bool cli_tables_wanted(const cli_tables *tables) {
 starg_status cli_tables_announce(cli_session *session, const cli_tables *tables);
 
 /* The groups of faces of a model by its file; none of standard input, or of another number of
- * faces. Free with starg_face_groups_free. */
+ * faces. Free with cli_groups_free. */
 starg_status cli_groups_read(cli_session *session, const char *model, size_t faces,
                              starg_face_groups *groups, bool *any);
+static inline void cli_groups_free(starg_face_groups *groups) {
+    starg_face_groups_free(NULL, groups);
+}
 
 /* Writes them, of the session's solid; groups of faces are those of the first operand. */
 starg_status cli_tables_write(cli_session *session, const cli_tables *tables,

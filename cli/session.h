@@ -174,6 +174,13 @@ typedef struct cli_session {
 #define SCOPED       SCOPED_BY(cli_free_scoped)
 #define SCOPED_BY(F) __attribute__((cleanup(F)))
 void cli_free_scoped(void *pointer);
+
+/* Defines NAME_drop for SCOPED_BY, where NAME_free takes a context that it does not need. */
+#define CLI_DROP(NAME, TYPE)                                                                       \
+    static inline void NAME##_drop(TYPE **object) {                                                \
+        NAME##_free(NULL, *object);                                                                \
+    }
+
 static inline void starg_mesh_drop(starg_mesh **mesh) {
     starg_mesh_free(*mesh);
 }

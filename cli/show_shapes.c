@@ -201,5 +201,5 @@ void cli_show_free_shapes(cli_session *session, cli_show *show) {
     free(show->shapes);
     free(show->pictures);
     free(show->distances);
-    cli_table_free(session, &show->table);
+    cli_table_free(&show->table);
 }

@@ -19,21 +19,18 @@ starg_status cli_groups_read(cli_session *session, const char *model, size_t fac
 
 starg_status cli_tables_write(cli_session *session, const cli_tables *tables,
                               const starg_guards *guards) {
-    starg_status status = STARG_OK;
-    starg_face_groups groups = {0};
+    SCOPED_BY(cli_groups_free) starg_face_groups groups = {0};
     bool any = false;
     if (!cli_tables_wanted(tables))
         return STARG_OK;
-    CLI_TRY(cli_groups_read(session, session->operands[0], starg_space_model_faces(session->solid),
-                            &groups, &any));
+    TRY(cli_groups_read(session, session->operands[0], starg_space_model_faces(session->solid),
+                        &groups, &any));
     const starg_face_groups *used = any ? &groups : NULL;
     if (tables->table != NULL)
-        CLI_TRY(starg_guards_write_table(session->context, session->solid, guards, used,
-                                         cli_outputs_place(&session->outputs, tables->table)));
+        TRY(starg_guards_write_table(session->context, session->solid, guards, used,
+                                     cli_outputs_place(&session->outputs, tables->table)));
     if (tables->summary != NULL)
-        CLI_TRY(starg_guards_write_summary(session->context, session->solid, guards, used,
-                                           cli_outputs_place(&session->outputs, tables->summary)));
-done:
-    starg_face_groups_free(session->context, &groups);
-    return status;
+        TRY(starg_guards_write_summary(session->context, session->solid, guards, used,
+                                       cli_outputs_place(&session->outputs, tables->summary)));
+    return STARG_OK;
 }

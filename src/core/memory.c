@@ -86,5 +86,6 @@ void starg_release_scoped(void *pointer) {
 }
 
 void starg_text_free(starg_context *context, char *text) {
-    starg_release(context, text);
+    (void)context;
+    RELEASE(text);
 }

@@ -68,6 +68,12 @@ static inline void starg_time_leave(starg_time_scope *scope) {
         NAME##_free(*object);                                                                      \
     }
 
+/* The same for results, whose public TYPE_free has a context that it does not need. */
+#define STARG_DROP_RESULT(TYPE)                                                                    \
+    static inline void TYPE##_drop(TYPE **object) {                                                \
+        TYPE##_free(NULL, *object);                                                                \
+    }
+
 /* Evaluates EXPR; returns its status on failure. */
 #define TRY(EXPR)                                                                                  \
     do {                                                                                           \

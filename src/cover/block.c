@@ -73,6 +73,7 @@ static bool is_too_large(const block_solve *block, size_t allowance) {
 /* The linear relaxation. *found: it was solved. */
 static starg_status relax(const block_solve *block, cover_relaxation *out, bool *found) {
     *found = false;
+    cover_relaxation_free(out); /* of a try that found nothing */
     return is_too_large(block, RELAXATION_ENTRIES)
                ? STARG_OK
                : cover_relax(block->run, &block->rest, out, found);
@@ -219,19 +220,15 @@ static starg_status run_rounds(block_solve *block) {
 
 /* Takes the block in `block->rest`; returns its cover in `block->best`. */
 static starg_status solve_block(block_solve *block) {
-    starg_status status = STARG_OK;
     starg_context *context = block->run->context;
     for (size_t i = 0; i < block->rest.rows; i++)
-        STARG_PUSH(context, "cover", &block->best, block->rest.row_names[i]);
-    STARG_TRY(run_rounds(block));
+        PUSH(context, "cover", &block->best, block->rest.row_names[i]);
+    TRY(run_rounds(block));
     if (is_closed(block) || is_brief(block) || is_too_large(block, 0) ||
         cover_time_is_over(block->run))
-        goto done;
-    starg_progress_begin(context, "ilp");
-    status = branch_and_bound(block);
-    starg_progress_end(context);
-done:
-    return status;
+        return STARG_OK;
+    IN_STAGE(context, "ilp");
+    return branch_and_bound(block);
 }
 
 static starg_status append(starg_context *context, const cover_names *from, cover_names *to) {
@@ -286,19 +283,14 @@ starg_status cover_solve_full(cover_run *run, cover_instance *instance, cover_an
 
 starg_status cover_solve_greedy(cover_run *run, const cover_instance *instance,
                                 cover_answer *answer) {
-    starg_status status = STARG_OK;
-    cover_state cover = {0};
-    cover_instance rest = {.context = run->context};
-    cover_answer bounded = {0};
-    STARG_TRY(cover_state_create(instance, &cover));
-    STARG_TRY(cover_greedy(run, &cover, instance->total, instance->rows));
-    STARG_TRY(cover_state_names(&cover, &answer->rows));
-    STARG_TRY(cover_instance_select(instance, NULL, NULL, &rest));
-    STARG_TRY(cover_solve_full(run, &rest, &bounded));
+    SCOPED_BY(cover_state_free) cover_state cover = {0};
+    SCOPED_BY(cover_instance_free) cover_instance rest = {.context = run->context};
+    SCOPED cover_answer bounded = {0};
+    TRY(cover_state_create(instance, &cover));
+    TRY(cover_greedy(run, &cover, instance->total, instance->rows));
+    TRY(cover_state_names(&cover, &answer->rows));
+    TRY(cover_instance_select(instance, NULL, NULL, &rest));
+    TRY(cover_solve_full(run, &rest, &bounded));
     answer->lower_bound = bounded.lower_bound;
-done:
-    cover_state_free(&cover);
-    cover_instance_free(&rest);
-    STARG_ARRAY_FREE(run->context, &bounded.rows);
-    return status;
+    return STARG_OK;
 }

@@ -4,6 +4,8 @@
 
 #include "cover/cover.h"
 
+STARG_DROP(starg_cover, starg_cover)
+
 static const uint64_t WEIGHT_LIMIT = (uint64_t)1 << 62;
 
 enum { MOST_REDUNDANCY = 1000 };
@@ -86,15 +88,14 @@ static starg_status solve_goal(cover_run *run, cover_instance *instance, uint64_
 /* The most weight with `limit` rows, and the fewest rows for the goal unless it takes more. */
 static starg_status solve_limit(cover_run *run, cover_instance *instance, size_t limit,
                                 uint64_t goal, bool exact, cover_answer *answer, uint64_t *most) {
-    starg_status status = STARG_OK;
-    cover_answer limited = {0};
-    STARG_TRY(cover_reduce_partial(run, instance));
-    STARG_TRY(cover_solve_limited(run, instance, limit, goal, exact, &limited, most));
+    SCOPED cover_answer limited = {0};
+    TRY(cover_reduce_partial(run, instance));
+    TRY(cover_solve_limited(run, instance, limit, goal, exact, &limited, most));
     if (*most >= goal) {
-        STARG_TRY(solve_goal(run, instance, goal, exact, answer));
+        TRY(solve_goal(run, instance, goal, exact, answer));
         if (answer->rows.count <= limit) {
             *most = instance->total;
-            goto done;
+            return STARG_OK;
         }
         if (answer->lower_bound > limit)
             *most = goal - 1;
@@ -105,9 +106,7 @@ static starg_status solve_limit(cover_run *run, cover_instance *instance, size_t
     run->prices = NULL;
     *answer = limited;
     limited = (cover_answer){0};
-done:
-    STARG_ARRAY_FREE(run->context, &limited.rows);
-    return status;
+    return STARG_OK;
 }
 
 /* Sorts the chosen rows by what each adds; drops rows that add nothing. */
@@ -136,12 +135,11 @@ static starg_status order_rows(cover_run *run, const cover_instance *instance,
 static starg_status finish(cover_run *run, const cover_instance *instance,
                            const cover_answer *answer, uint64_t goal, uint64_t most, uint64_t given,
                            starg_cover **out) {
-    starg_status status = STARG_OK;
-    owned_cover *owned = NULL;
-    STARG_NEW_ZERO(run->context, "cover", owned, 1);
+    owned_cover *owned;
+    NEW_ZERO(run->context, "cover", owned, 1);
     owned->context = run->context;
-    starg_cover *cover = &owned->cover;
-    STARG_TRY(order_rows(run, instance, &answer->rows, cover));
+    SCOPED_BY(starg_cover_drop) starg_cover *cover = &owned->cover;
+    TRY(order_rows(run, instance, &answer->rows, cover));
     cover->target_reached = cover->weight >= goal;
     cover->weight += given;
     cover->weight_bound = most + given;
@@ -152,10 +150,8 @@ static starg_status finish(cover_run *run, const cover_instance *instance,
     cover->prices = run->prices;
     run->prices = NULL;
     *out = cover;
-done:
-    if (status != STARG_OK && owned != NULL)
-        starg_cover_free(&owned->cover);
-    return status;
+    cover = NULL;
+    return STARG_OK;
 }
 
 starg_status starg_cover_solve(starg_context *context, const starg_cover_problem *problem,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Set cover on bit rows: the working form, what shrinks it, covers, and bounds (cover.c is the
- * flow). Calls of the solver library: solver.h. */
+ * flow). Calls of the solver library: solver.h. What a function makes in a struct of the caller
+ * is the caller's to free, on failure, too. */
 #pragma once
 
 #include "core/bits.h"

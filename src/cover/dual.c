@@ -105,17 +105,13 @@ static starg_status ascend(const cover_instance *instance, int64_t *multipliers)
 }
 
 starg_status cover_dual_create(const cover_instance *instance, cover_dual *out) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
     *out = (cover_dual){0};
-    STARG_NEW(context, "bound", out->multipliers, instance->columns);
-    STARG_NEW(context, "bound", out->reduced, instance->rows);
-    STARG_TRY(ascend(instance, out->multipliers));
+    NEW(context, "bound", out->multipliers, instance->columns);
+    NEW(context, "bound", out->reduced, instance->rows);
+    TRY(ascend(instance, out->multipliers));
     out->value = cover_dual_value(instance, out->multipliers, out->reduced);
-done:
-    if (status != STARG_OK)
-        cover_dual_free(out);
-    return status;
+    return STARG_OK;
 }
 
 void cover_dual_free(cover_dual *dual) {

@@ -231,25 +231,20 @@ static void run_cbc(void *argument) {
 }
 
 static starg_status solve_part(part_search *search) {
-    starg_status status = STARG_OK;
     cover_run *run = search->run;
-    cover_instance part = {.context = run->context};
-    model_data data = {0};
-    bool fits, held = false;
+    SCOPED_BY(cover_instance_free) cover_instance part = {.context = run->context};
+    SCOPED_BY(model_data_free) model_data data = {0};
+    SCOPED_BY(cover_solver_unlock) bool held = false;
+    bool fits;
     search->answered = false;
-    STARG_TRY(cover_instance_select(search->instance, NULL, search->columns, &part));
-    STARG_TRY(make_model(&part, &data, &fits));
+    TRY(cover_instance_select(search->instance, NULL, search->columns, &part));
+    TRY(make_model(&part, &data, &fits));
     if (!fits)
-        goto done;
-    STARG_TRY(cover_solver_lock(run, &held));
+        return STARG_OK;
+    TRY(cover_solver_lock(run, &held));
     if (held && !cover_call_safely(run_cbc, &(cbc_call){search, &data}))
         cover_solver_give_up();
-    STARG_TRY(starg_check_cancel(run->context, "ilp"));
-done:
-    cover_solver_unlock(held);
-    model_data_free(&data);
-    cover_instance_free(&part);
-    return status;
+    return starg_check_cancel(run->context, "ilp");
 }
 
 /* Adds the columns that the trial leaves open; false if there are none. */

@@ -56,27 +56,23 @@ void cover_instance_free(cover_instance *instance) {
 /* Sets the sizes and allocates; the contents are undefined. */
 static starg_status shape(starg_context *context, size_t rows, size_t columns,
                           cover_instance *out) {
-    starg_status status = STARG_OK;
     *out = (cover_instance){.context = context,
                             .rows = rows,
                             .columns = columns,
                             .row_words = starg_bit_words(columns),
                             .used_words = starg_bit_words(starg_bit_words(columns)),
                             .column_words = starg_bit_words(rows)};
-    STARG_NEW(context, "cover", out->weights, columns);
-    STARG_NEW(context, "cover", out->demands, columns);
-    STARG_NEW(context, "cover", out->row_names, rows);
-    STARG_NEW(context, "cover", out->column_names, columns);
+    NEW(context, "cover", out->weights, columns);
+    NEW(context, "cover", out->demands, columns);
+    NEW(context, "cover", out->row_names, rows);
+    NEW(context, "cover", out->column_names, columns);
     out->row_bits = starg_allocate(context, rows, out->row_words * sizeof *out->row_bits);
     out->row_used = starg_allocate_zero(context, rows, out->used_words * sizeof *out->row_used);
     out->column_bits =
         starg_allocate(context, columns, out->column_words * sizeof *out->column_bits);
-    if (out->row_bits == NULL || out->row_used == NULL || out->column_bits == NULL)
-        status = starg_fail_memory(context, "cover");
-done:
-    if (status != STARG_OK)
-        cover_instance_free(out);
-    return status;
+    return out->row_bits != NULL && out->row_used != NULL && out->column_bits != NULL
+               ? STARG_OK
+               : starg_fail_memory(context, "cover");
 }
 
 /* Indices of the set bits of a mask of `count` bits (NULL: all). */
@@ -145,16 +141,12 @@ starg_status cover_instance_keep_rows(cover_instance *instance, const uint64_t *
 
 starg_status cover_instance_select(const cover_instance *from, const uint64_t *rows,
                                    const uint64_t *columns, cover_instance *out) {
-    starg_status status = STARG_OK;
     *out = (cover_instance){.context = from->context};
-    STARG_TRY(select_columns(from, columns, out));
+    TRY(select_columns(from, columns, out));
     if (rows != NULL)
-        STARG_TRY(cover_instance_keep_rows(out, rows));
+        TRY(cover_instance_keep_rows(out, rows));
     mark_used(out);
-done:
-    if (status != STARG_OK)
-        cover_instance_free(out);
-    return status;
+    return STARG_OK;
 }
 
 /* The number of columns up to the last one that some row holds. In scenes the faces of the model,

@@ -222,10 +222,11 @@ static void serve_columns(cover_instance *instance, const uint64_t *taken, uint6
 
 static starg_status replace_by_part(cover_instance *instance, const uint64_t *rows,
                                     const uint64_t *columns) {
-    cover_instance part;
+    SCOPED_BY(cover_instance_free) cover_instance part = {0};
     TRY(cover_instance_select(instance, rows, columns, &part));
     cover_instance_free(instance);
     *instance = part;
+    part = (cover_instance){0};
     return STARG_OK;
 }
 

@@ -183,25 +183,17 @@ static starg_status run_clp_safely(cover_run *run, relaxing *relax, bool *found)
 
 starg_status cover_relax(cover_run *run, const cover_instance *instance, cover_relaxation *out,
                          bool *found) {
-    starg_status status = STARG_OK;
     starg_context *context = run->context;
-    bool held = false;
-    relaxing relax = {0};
+    SCOPED_BY(cover_solver_unlock) bool held = false;
+    SCOPED_BY(relaxing_free) relaxing relax = {0};
     *found = false;
     *out = (cover_relaxation){0};
-    STARG_NEW_ZERO(context, "bound", out->solution, instance->rows);
-    STARG_NEW_ZERO(context, "bound", out->surplus, instance->columns);
-    STARG_NEW_ZERO(context, "bound", out->multipliers, instance->columns);
-    STARG_TRY(relaxing_make(instance, out, &relax));
-    STARG_TRY(cover_solver_lock(run, &held));
-    if (held && instance->columns != 0)
-        STARG_TRY(run_clp_safely(run, &relax, found));
-done:
-    relaxing_free(&relax);
-    cover_solver_unlock(held);
-    if (status != STARG_OK)
-        cover_relaxation_free(out);
-    return status;
+    NEW_ZERO(context, "bound", out->solution, instance->rows);
+    NEW_ZERO(context, "bound", out->surplus, instance->columns);
+    NEW_ZERO(context, "bound", out->multipliers, instance->columns);
+    TRY(relaxing_make(instance, out, &relax));
+    TRY(cover_solver_lock(run, &held));
+    return held && instance->columns != 0 ? run_clp_safely(run, &relax, found) : STARG_OK;
 }
 
 void cover_relaxation_free(cover_relaxation *relaxation) {

@@ -112,31 +112,27 @@ static bool can_beat(const search *seek, cover_wide scaled) {
 
 /* Explores the node at `seek->at` with the given candidates; at most K levels deep. */
 static starg_status explore(search *seek, const cover_score *candidates, size_t count) {
-    starg_status status = STARG_OK;
-    branching branch = {.count = count};
     size_t left = seek->bound->rows - seek->at->count;
-    STARG_TRY(starg_check_cancel(seek->run->context, "ilp"));
+    SCOPED cover_score *sorted = NULL;
+    TRY(starg_check_cancel(seek->run->context, "ilp"));
     if (is_over(seek))
-        goto done;
+        return STARG_OK;
     note_incumbent(seek);
     if (left == 0)
-        goto done;
-    STARG_NEW(seek->run->context, "ilp", branch.candidates, count);
+        return STARG_OK;
+    NEW(seek->run->context, "ilp", sorted, count);
     for (size_t t = 0; t < count; t++)
-        branch.candidates[t] = candidates[t];
+        sorted[t] = candidates[t];
+    branching branch = {.candidates = sorted, .count = count};
     score(seek, &branch, left);
     for (size_t t = 0; t < count && !seek->stopped && seek->incumbent < seek->goal; t++) {
         if (!can_beat(seek, bound_from(&branch, t, left)))
             break;
-        cover_state_add(seek->at, branch.candidates[t].row);
-        status = explore(seek, branch.candidates + t + 1, count - t - 1);
+        cover_state_add(seek->at, sorted[t].row);
+        TRY(explore(seek, sorted + t + 1, count - t - 1));
         cover_state_remove(seek->at, seek->at->count - 1);
-        if (status != STARG_OK)
-            goto done;
     }
-done:
-    starg_release(seek->run->context, branch.candidates);
-    return status;
+    return STARG_OK;
 }
 
 starg_status cover_search(cover_run *run, const cover_instance *instance,

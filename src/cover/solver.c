@@ -39,8 +39,8 @@ void cover_solver_give_up(void) {
     solver_broken = true;
 }
 
-void cover_solver_unlock(bool held) {
-    if (held)
+void cover_solver_unlock(const bool *held) {
+    if (*held)
         mtx_unlock(&solver_lock);
 }
 

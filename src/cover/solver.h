@@ -10,7 +10,7 @@
  * to check cancellation and the time limit. *held is false if the time limit came first, no lock is
  * available, or the library was given up. Errors: CANCELLED. */
 starg_status cover_solver_lock(cover_run *run, bool *held);
-void cover_solver_unlock(bool held);
+void cover_solver_unlock(const bool *held);
 
 /* The library failed during a call and must not be called again in this process; the lock is
  * held. */

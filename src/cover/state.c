@@ -7,20 +7,16 @@
 #include "cover/cover.h"
 
 starg_status cover_state_create(const cover_instance *instance, cover_state *out) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
     *out = (cover_state){.instance = instance};
-    STARG_NEW(context, "cover", out->held, instance->columns);
-    STARG_NEW(context, "cover", out->open, instance->row_words);
-    STARG_NEW(context, "cover", out->last, instance->row_words);
-    STARG_NEW(context, "cover", out->exact, instance->row_words);
-    STARG_NEW(context, "cover", out->taken, instance->column_words);
-    STARG_NEW(context, "cover", out->rows, instance->rows);
+    NEW(context, "cover", out->held, instance->columns);
+    NEW(context, "cover", out->open, instance->row_words);
+    NEW(context, "cover", out->last, instance->row_words);
+    NEW(context, "cover", out->exact, instance->row_words);
+    NEW(context, "cover", out->taken, instance->column_words);
+    NEW(context, "cover", out->rows, instance->rows);
     cover_state_clear(out);
-done:
-    if (status != STARG_OK)
-        cover_state_free(out);
-    return status;
+    return STARG_OK;
 }
 
 void cover_state_free(cover_state *state) {

@@ -92,20 +92,16 @@ void cover_weight_bound_restart(const cover_instance *instance, cover_weight_bou
 
 starg_status cover_weight_bound_create(const cover_instance *instance, size_t rows, uint64_t goal,
                                        cover_weight_bound *out) {
-    starg_status status = STARG_OK;
     starg_context *context = instance->context;
     *out = (cover_weight_bound){.goal = goal};
-    STARG_NEW(context, "bound", out->multipliers, instance->columns);
-    STARG_NEW(context, "bound", out->trial, instance->columns);
-    STARG_NEW(context, "bound", out->word_sums, instance->row_words);
-    STARG_NEW(context, "bound", out->scores, instance->rows);
+    NEW(context, "bound", out->multipliers, instance->columns);
+    NEW(context, "bound", out->trial, instance->columns);
+    NEW(context, "bound", out->word_sums, instance->row_words);
+    NEW(context, "bound", out->scores, instance->rows);
     while (out->shift < MOST_SHIFT && instance->total >> (61 - out->shift) == 0)
         out->shift++;
     cover_weight_bound_restart(instance, out, rows);
-done:
-    if (status != STARG_OK)
-        cover_weight_bound_free(out);
-    return status;
+    return STARG_OK;
 }
 
 void cover_weight_bound_free(cover_weight_bound *bound) {

@@ -363,23 +363,16 @@ static starg_status run_clp_safely(cover_run *run, relaxing *relax) {
 
 starg_status cover_weight_bound_relax(cover_run *run, const cover_instance *instance, bool by_goal,
                                       uint64_t enough, cover_weight_bound *bound) {
-    starg_status status = STARG_OK;
-    bool held = false;
-    relaxing relax = {0};
-    starg_progress_begin(run->context, "bound");
-    STARG_TRY(relaxing_make(instance, bound, &relax));
+    IN_STAGE(run->context, "bound");
+    SCOPED_BY(cover_solver_unlock) bool held = false;
+    SCOPED_BY(relaxing_free) relaxing relax = {0};
+    TRY(relaxing_make(instance, bound, &relax));
     relax.by_goal = by_goal;
     relax.enough = enough;
     relax.tolerance = run->relaxed && !by_goal ? ROUGH_TOLERANCE : TOLERANCE;
-    STARG_TRY(find_sides(run, &relax));
+    TRY(find_sides(run, &relax));
     if (is_enough(&relax))
-        goto done;
-    STARG_TRY(cover_solver_lock(run, &held));
-    if (held && instance->columns != 0)
-        STARG_TRY(run_clp_safely(run, &relax));
-done:
-    relaxing_free(&relax);
-    cover_solver_unlock(held);
-    starg_progress_end(run->context);
-    return status;
+        return STARG_OK;
+    TRY(cover_solver_lock(run, &held));
+    return held && instance->columns != 0 ? run_clp_safely(run, &relax) : STARG_OK;
 }

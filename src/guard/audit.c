@@ -39,13 +39,12 @@ static starg_status check_poses(starg_context *context, const starg_poses *poses
 starg_status starg_guards_audit(starg_context *context, const starg_solid *scene,
                                 const starg_poses *poses, const starg_visibility_options *view,
                                 starg_guards **out) {
-    starg_status status = STARG_OK;
     starg_guard_options used;
-    patched_solid patched = {0};
-    guard_outcome outcome = {0};
-    point_coverage coverage = {0};
+    SCOPED_BY(patched_solid_free) patched_solid patched = {0};
+    SCOPED_BY(outcome_free) guard_outcome outcome = {0};
+    SCOPED_BY(point_coverage_free) point_coverage coverage = {0};
     bool points = view->target == STARG_TARGET_POINTS;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    TIME_RULE(context, STARG_TIME_FAILS);
     *out = NULL;
     starg_guard_options_default(&used);
     used.method = STARG_GUARD_ILP;
@@ -56,26 +55,20 @@ starg_status starg_guards_audit(starg_context *context, const starg_solid *scene
         used.visibility.target = STARG_TARGET_FACES;
         used.visibility.patch = STARG_PATCH_OFF;
     }
+    SCOPED_BY(problem_free)
     guard_problem problem = {.context = context,
                              .solid = scene,
                              .options = &used,
                              .audited = used.visibility.target == STARG_TARGET_FACES};
-    STARG_TRY(check_poses(context, poses, view));
-    STARG_TRY(patched_solid_make(context, scene, &used.visibility, &patched));
+    TRY(check_poses(context, poses, view));
+    TRY(patched_solid_make(context, scene, &used.visibility, &patched));
     problem.solid = &patched.solid;
-    STARG_TRY(
-        column_weights_create(context, &patched.solid, used.visibility.target, &problem.weights));
-    STARG_TRY(take_poses(&problem, poses, &outcome));
+    TRY(column_weights_create(context, &patched.solid, used.visibility.target, &problem.weights));
+    TRY(take_poses(&problem, poses, &outcome));
     if (points)
-        STARG_TRY(find_coverage(&problem, &outcome, &coverage));
-    STARG_TRY(report_guards(&problem, &outcome, points ? &coverage : NULL, out));
+        TRY(find_coverage(&problem, &outcome, &coverage));
+    TRY(report_guards(&problem, &outcome, points ? &coverage : NULL, out));
     (*out)->optimal = false; /* nothing was chosen */
     (*out)->options.visibility.target = view->target;
-done:
-    starg_time_end(context, former);
-    outcome_free(context, &outcome);
-    point_coverage_free(&coverage);
-    column_weights_free(&problem.weights);
-    patched_solid_free(&patched);
-    return status;
+    return STARG_OK;
 }

@@ -176,7 +176,7 @@ static void free_job(augmentation_job *job) {
 /* Prepares for up to `most` faces at a time. */
 static starg_status make_job(starg_context *context, const augmentation *all, size_t most,
                              augmentation_job *job) {
-    *job = (augmentation_job){.all = all};
+    job->all = all;
     TRY(scene_create(context, all->solid, &job->scene));
     TRY(scene_add_sights(job->scene));
     NEW(context, STAGE, job->patches, most);
@@ -192,45 +192,39 @@ static starg_status try_patches(starg_context *context, augmentation_job *job, s
 
 starg_status augment_candidates(starg_context *context, const augmentation *all,
                                 const uint8_t *unseen, candidate_points *points, bool *pending) {
-    starg_status status = STARG_OK;
-    augmentation_job job;
+    SCOPED_BY(free_job) augmentation_job job = {0};
     bool looks = sensor_is_directed(all->visibility);
-    STARG_TRY(make_job(context, all, BATCH, &job));
+    TRY(make_job(context, all, BATCH, &job));
     size_t count = pick_patches(all, unseen, solid_patch_count(all->solid), job.patches);
-    STARG_TRY(try_patches(context, &job, count));
+    TRY(try_patches(context, &job, count));
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < job.found[i].count; k++)
-            STARG_TRY(candidates_push(context, points, job.found[i].p[k],
-                                      looks ? job.found[i].direction[k] : NULL));
+            TRY(candidates_push(context, points, job.found[i].p[k],
+                                looks ? job.found[i].direction[k] : NULL));
     *pending = count > 0;
-done:
-    free_job(&job);
-    return status;
+    return STARG_OK;
 }
 
 starg_status augment_test(starg_context *context, const augmentation *all, const uint8_t *unseen,
                           augmentation_finds *out) {
-    starg_status status = STARG_OK;
-    augmentation_job job;
+    SCOPED_BY(free_job) augmentation_job job = {0};
     size_t patches = solid_patch_count(all->solid), count = 0;
     bool looks = sensor_is_directed(all->visibility);
     *out = (augmentation_finds){0};
-    STARG_TRY(make_job(context, all, patches, &job));
+    TRY(make_job(context, all, patches, &job));
     for (size_t j = 0; j < patches; j++)
         if (unseen[j])
             job.patches[count++] = (uint32_t)j;
-    STARG_TRY(try_patches(context, &job, count));
+    TRY(try_patches(context, &job, count));
     for (size_t i = 0; i < count; i++) {
         int last = job.found[i].count - 1; /* the deepest */
         if (last < 0)
             continue;
-        STARG_PUSH(context, STAGE, &out->patches, job.patches[i]);
-        STARG_TRY(candidates_push(context, &out->poses, job.found[i].p[last],
-                                  looks ? job.found[i].direction[last] : NULL));
+        PUSH(context, STAGE, &out->patches, job.patches[i]);
+        TRY(candidates_push(context, &out->poses, job.found[i].p[last],
+                            looks ? job.found[i].direction[last] : NULL));
     }
-done:
-    free_job(&job);
-    return status;
+    return STARG_OK;
 }
 
 void augment_finds_free(augmentation_finds *finds) {

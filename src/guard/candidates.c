@@ -64,7 +64,7 @@ static starg_status medial_candidates(starg_context *context, const candidate_sh
 
 static starg_status skeletal_candidates(starg_context *context, const candidate_shape *shape,
                                         size_t wanted, candidate_points *points) {
-    starg_skeleton *skeleton = NULL;
+    SCOPED_BY(starg_skeleton_drop) starg_skeleton *skeleton = NULL;
     starg_skeleton_options options;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
@@ -76,13 +76,11 @@ static starg_status skeletal_candidates(starg_context *context, const candidate_
                   starg_context_error(context)->message);
         return medial_candidates(context, shape, wanted, points);
     }
-    STARG_TRY(status);
+    TRY(status);
     for (size_t i = 0; i < skeleton->node_count; i++)
         if (candidates_allowed(shape->solid, skeleton->positions + 3 * i, shape->clearance))
-            STARG_TRY(candidates_push(context, points, skeleton->positions + 3 * i, NULL));
-done:
-    starg_skeleton_free(context, skeleton);
-    return status;
+            TRY(candidates_push(context, points, skeleton->positions + 3 * i, NULL));
+    return STARG_OK;
 }
 
 /* The approximate number of lattice points in the box. */

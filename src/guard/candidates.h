@@ -12,6 +12,9 @@
 #include "starguard/visibility.h"
 #include "visibility/sensor.h"
 
+STARG_DROP_RESULT(starg_guards)
+STARG_DROP_RESULT(starg_levels)
+
 /* ---- weights of a pool's columns (weights.c) ---- */
 
 typedef struct column_weights {

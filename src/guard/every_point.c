@@ -107,12 +107,11 @@ static uint64_t effort_of(const point_search *s, bool thorough) {
 /* Guards that see the points so far, with tighter limits by a share. */
 static starg_status find_round(point_search *s, bool thorough, bool prove, double tighter,
                                point_round *out) {
-    starg_status status = STARG_OK;
     starg_context *context = s->problem->context;
     const starg_solid *solid = s->problem->solid;
     starg_guard_options options = *s->problem->options;
-    guard_problem problem = *s->problem;
-    guard_certificate why = {0};
+    SCOPED_BY(problem_free) guard_problem problem = *s->problem;
+    SCOPED_BY(certificate_free) guard_certificate why = {0};
     problem.weights = (column_weights){0};
     problem.certificate = prove && problem.certificate != NULL ? &why : NULL;
     problem.hurried = !thorough;
@@ -122,15 +121,15 @@ static starg_status find_round(point_search *s, bool thorough, bool prove, doubl
     tighten(&options.visibility, tighter);
     problem.options = &options;
     problem.carried = candidates_count(&s->carried) > 0 ? &s->carried : NULL;
-    point_round_free(context, out);
+    point_round_free(out);
     out->patched.solid = *solid;
-    STARG_TRY(patches_of_points(context, solid->mesh, &s->points,
-                                solid_is_two_sided(solid) ? solid->other_side : NULL,
-                                &out->patched.patches));
+    TRY(patches_of_points(context, solid->mesh, &s->points,
+                          solid_is_two_sided(solid) ? solid->other_side : NULL,
+                          &out->patched.patches));
     out->patched.solid.patches = out->patched.patches;
     problem.solid = &out->patched.solid;
-    STARG_TRY(column_weights_create(context, problem.solid, STARG_TARGET_FACES, &problem.weights));
-    STARG_TRY(find_guards(&problem, &out->outcome));
+    TRY(column_weights_create(context, problem.solid, STARG_TARGET_FACES, &problem.weights));
+    TRY(find_guards(&problem, &out->outcome));
     uint64_t spent = out->outcome.search.prove_work;
     s->work_left -= spent < s->work_left ? spent : s->work_left;
     if (tighter > 0) /* bounds are of the tighter limits */
@@ -138,12 +137,9 @@ static starg_status find_round(point_search *s, bool thorough, bool prove, doubl
     else
         keep_bound(s, out->outcome.search.bound, &why);
     candidates_free(&s->carried);
-    STARG_TRY(candidates_append(context, &out->outcome.pool.points, &s->carried));
+    TRY(candidates_append(context, &out->outcome.pool.points, &s->carried));
     out->outcome.pool.options = s->problem->options;
-done:
-    certificate_free(&why);
-    column_weights_free(&problem.weights);
-    return status;
+    return STARG_OK;
 }
 
 starg_status find_coverage(const guard_problem *problem, const guard_outcome *outcome,
@@ -184,8 +180,8 @@ static size_t coverable_of(const point_round *round) {
     return starg_bit_count(pool->coverable, starg_bit_words(pool->columns));
 }
 
-void point_round_free(starg_context *context, point_round *round) {
-    outcome_free(context, &round->outcome);
+void point_round_free(point_round *round) {
+    outcome_free(&round->outcome);
     point_coverage_free(&round->coverage);
     patched_solid_free(&round->patched);
     *round = (point_round){0};

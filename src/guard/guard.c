@@ -54,28 +54,25 @@ static void set_defaults(starg_guard_options *o, size_t vertices) {
 }
 
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
-    starg_status status = STARG_OK;
-    STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
+    TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
-        STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
+        TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
     if (o->visibility.tilt[0] != STARG_TILT_ANY && !sensor_is_directed(&o->visibility))
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "a tilt is of guards that look in one direction; give a field of view "
-                            "(fov) or a cone");
-    else if (o->baseline > 0 && (o->redundancy < 2 || guard_wants_part(o)))
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "a baseline is one of two guards or more, and of all that can be seen; "
-                            "ask for a redundancy of 2, and for no part");
-    else if (o->visibility.target == STARG_TARGET_POINTS &&
-             (o->redundancy > 1 || guard_wants_part(o)))
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "points are seen once, and all of them: leave out the redundancy, the "
-                            "coverage and the limit of guards, or ask for faces");
-    else if (o->baseline > 0 && o->visibility.target == STARG_TARGET_VERTICES)
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "a baseline is as seen from a face; the targets are vertices");
-done:
-    return status;
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a tilt is of guards that look in one direction; give a field of view "
+                          "(fov) or a cone");
+    if (o->baseline > 0 && (o->redundancy < 2 || guard_wants_part(o)))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a baseline is one of two guards or more, and of all that can be seen; "
+                          "ask for a redundancy of 2, and for no part");
+    if (o->visibility.target == STARG_TARGET_POINTS && (o->redundancy > 1 || guard_wants_part(o)))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "points are seen once, and all of them: leave out the redundancy, the "
+                          "coverage and the limit of guards, or ask for faces");
+    if (o->baseline > 0 && o->visibility.target == STARG_TARGET_VERTICES)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a baseline is as seen from a face; the targets are vertices");
+    return STARG_OK;
 }
 
 /* Leaves out given points where no guard may stand, with a notice. */
@@ -207,9 +204,9 @@ static starg_status find_detail(const guard_problem *problem, guard_detail *out)
     return starg_run_tasks(problem->context, &tasks);
 }
 
-static void detail_free(starg_context *context, guard_detail *detail) {
+static void detail_free(guard_detail *detail) {
     starg_solid_free(detail->proxy);
-    starg_levels_free(context, detail->levels);
+    starg_levels_free(NULL, detail->levels);
     candidates_free(&detail->first);
     candidates_free(&detail->centres);
 }
@@ -482,43 +479,40 @@ static starg_status see_again(const guard_problem *problem, guard_outcome *out) 
 }
 
 starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
-    starg_status status = STARG_OK;
-    guard_detail detail = {0};
+    SCOPED_BY(detail_free) guard_detail detail = {0};
     bool found = false;
     if (may_be_star(problem))
-        STARG_TRY(find_star_guard(problem, out, &found));
+        TRY(find_star_guard(problem, out, &found));
     if (found)
         return STARG_OK;
-    STARG_TRY(find_detail(problem, &detail));
-    STARG_TRY(find_pool(problem, &detail, &out->pool));
+    TRY(find_detail(problem, &detail));
+    TRY(find_pool(problem, &detail, &out->pool));
     if (problem->kept != NULL &&
         starg_bit_count(out->pool.coverable, starg_bit_words(out->pool.columns)) == 0)
-        goto done; /* what those that stay do not see, nobody sees */
+        return STARG_OK; /* what those that stay do not see, nobody sees */
     if (problem->options->method == STARG_GUARD_PILP && !chooses_exactly(problem->options))
-        STARG_TRY(choose_by_levels(problem, &detail, out));
+        TRY(choose_by_levels(problem, &detail, out));
     else
-        STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
-                                 &out->selection));
+        TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
+                           &out->selection));
     if (!guard_wants_part(problem->options)) {
-        STARG_TRY(begin_bound(problem, out));
-        STARG_TRY(search_guards(problem, &detail, guard_refines(problem->options), &out->pool,
-                                &out->selection, &out->search));
-        STARG_TRY(see_again(problem, out));
+        TRY(begin_bound(problem, out));
+        TRY(search_guards(problem, &detail, guard_refines(problem->options), &out->pool,
+                          &out->selection, &out->search));
+        TRY(see_again(problem, out));
     } else if (problem->options->prove)
-        STARG_TRY(search_area(problem, &out->pool, &out->selection, &out->search));
-done:
-    detail_free(problem->context, &detail);
-    return status;
+        TRY(search_area(problem, &out->pool, &out->selection, &out->search));
+    return STARG_OK;
 }
 
-static void records_free(starg_context *context, guard_records *records) {
+static void records_free(guard_records *records) {
     for (size_t i = 0; i < records->count; i++)
-        starg_release(context, records->data[i].positions);
-    STARG_ARRAY_FREE(context, records);
+        RELEASE(records->data[i].positions);
+    RELEASE(records->data);
 }
 
-void outcome_free(starg_context *context, guard_outcome *outcome) {
-    records_free(context, &outcome->records);
+void outcome_free(guard_outcome *outcome) {
+    records_free(&outcome->records);
     selection_free(&outcome->selection);
     RELEASE(outcome->worth.seen, outcome->worth.bound, outcome->tour.points, outcome->tour.stops,
             outcome->tour.blocked, outcome->search.steps);
@@ -562,102 +556,98 @@ static void warn_of_shells(const guard_problem *problem, const starg_guards *gua
 /* Beside guards that stay: of a solid whose needs are what these leave. The pool outlives it, so
  * its solid becomes that of the problem, and what the guards that stay see is coverable. */
 static starg_status find_others(guard_problem *problem, kept_guards *kept, guard_outcome *out) {
-    starg_status status = STARG_OK;
     starg_context *context = problem->context;
     starg_solid open = *problem->solid;
     starg_guard_options used = *problem->options;
-    guard_problem rest = *problem;
+    SCOPED_BY(problem_free) guard_problem rest = *problem;
     rest.weights = (column_weights){0};
-    STARG_TRY(keep_find(problem, kept));
-    STARG_TRY(keep_check(problem, kept));
+    TRY(keep_find(problem, kept));
+    TRY(keep_check(problem, kept));
     problem->kept = rest.kept = kept;
     open.need = kept->need;
     rest.solid = &open;
     rest.options = &used;
     used.redundancy = kept->times > 0 ? kept->times : 1;
     used.refine = used.refine && kept->even;
-    STARG_TRY(column_weights_create(context, &open, used.visibility.target, &rest.weights));
+    TRY(column_weights_create(context, &open, used.visibility.target, &rest.weights));
     rest.weights.kept = kept->weight;
     if (kept->open > 0) {
-        STARG_TRY(find_guards(&rest, out));
-        STARG_TRY(curve_find(&rest, out));
+        TRY(find_guards(&rest, out));
+        TRY(curve_find(&rest, out));
     } else
-        STARG_TRY(pool_create(context, &open, &used, &out->pool));
+        TRY(pool_create(context, &open, &used, &out->pool));
     out->pool.solid = problem->solid;
     out->pool.options = problem->options;
     for (size_t i = 0; kept->rows != NULL && i < kept->rows->rows; i++)
         for (size_t w = 0; w < starg_bit_words(out->pool.columns); w++)
             out->pool.coverable[w] |= starg_bits_row(kept->rows, i)[w];
-done:
-    column_weights_free(&rest.weights);
-    return status;
+    return STARG_OK;
+}
+
+static void free_rounds(point_round (*rounds)[2]) {
+    point_round_free(*rounds);
+    point_round_free(*rounds + 1);
 }
 
 static starg_status guard_solid(starg_context *context, const starg_solid *solid,
                                 const starg_guard_options *options, guard_certificate *why,
                                 starg_guards **out) {
-    starg_status status = STARG_OK;
     starg_guard_options defaults;
     starg_guard_options_default(&defaults);
     starg_guard_options used = options ? *options : defaults;
+    SCOPED_BY(problem_free)
     guard_problem problem = {
         .context = context, .solid = solid, .options = &used, .certificate = why};
-    guard_outcome of_faces = {0}, *outcome = &of_faces;
-    point_round rounds[2] = {0}, *of_points = NULL;
-    kept_guards kept = {0};
-    patched_solid patched = {0};
+    SCOPED_BY(patched_solid_free) patched_solid patched = {0};
+    SCOPED_BY(free_rounds) point_round rounds[2] = {0};
+    SCOPED_BY(keep_free) kept_guards kept = {0};
+    SCOPED_BY(outcome_free) guard_outcome of_faces = {0};
+    guard_outcome *outcome = &of_faces;
+    point_round *of_points = NULL;
     bool points = used.visibility.target == STARG_TARGET_POINTS;
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
-    STARG_TRY(check_options(context, &used));
+    TRY(check_options(context, &used));
     if (points) { /* as targets of the search they are the patches of a solid */
         used.visibility.target = STARG_TARGET_FACES;
-        if (is_in_another_unit(&problem)) {
-            status = fail_unit(&problem, "nobody sees every point of a face");
-            goto done;
-        }
+        if (is_in_another_unit(&problem))
+            return fail_unit(&problem, "nobody sees every point of a face");
     }
-    STARG_TRY(patched_solid_make(context, solid, &used.visibility, &patched));
+    TRY(patched_solid_make(context, solid, &used.visibility, &patched));
     if (points)
         used.visibility.patch = STARG_PATCH_OFF;
     else
         problem.solid = solid = &patched.solid;
-    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
-    if (points && (used.keep_count > 0 || solid->times != NULL)) {
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "points are seen once, by guards that are all to be found; leave out "
-                            "guards that stay (keep) and needs of faces (require), or ask for "
-                            "faces, in fine patches");
-        goto done;
-    }
-    if (points && solid->clear != NULL) {
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "every point is proven to be seen in front of what blocks; leave out "
-                            "the clear faces, or ask for faces");
-        goto done;
-    }
+    TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
+    if (points && (used.keep_count > 0 || solid->times != NULL))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "points are seen once, by guards that are all to be found; leave out "
+                          "guards that stay (keep) and needs of faces (require), or ask for "
+                          "faces, in fine patches");
+    if (points && solid->clear != NULL)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "every point is proven to be seen in front of what blocks; leave out "
+                          "the clear faces, or ask for faces");
     if (keep_applies(&problem))
-        STARG_TRY(find_others(&problem, &kept, &of_faces));
+        TRY(find_others(&problem, &kept, &of_faces));
     else
-        STARG_TRY(points ? find_guards_of_points(&problem, patched.patches, rounds, &of_points)
-                         : find_guards(&problem, &of_faces));
+        TRY(points ? find_guards_of_points(&problem, patched.patches, rounds, &of_points)
+                   : find_guards(&problem, &of_faces));
     if (points) {
         outcome = &of_points->outcome;
-        if (outcome->selection.chosen.count > 0 && !of_points->any) {
-            status = fail_unseen(&problem, &outcome->pool); /* nothing but points on edges */
-            goto done;
-        }
+        if (outcome->selection.chosen.count > 0 && !of_points->any)
+            return fail_unseen(&problem, &outcome->pool); /* nothing but points on edges */
     }
     if (problem.kept == NULL && !points)
-        STARG_TRY(curve_find(&problem, outcome));
-    STARG_TRY(baseline_guards(&problem, &outcome->pool, &outcome->selection));
-    STARG_TRY(certify_one(&problem, outcome));
-    STARG_TRY(tour_find(&problem, outcome));
+        TRY(curve_find(&problem, outcome));
+    TRY(baseline_guards(&problem, &outcome->pool, &outcome->selection));
+    TRY(certify_one(&problem, outcome));
+    TRY(tour_find(&problem, outcome));
     if (points && used.order) { /* others are the first to see a part */
         point_coverage_free(&of_points->coverage);
-        STARG_TRY(find_coverage(&problem, outcome, &of_points->coverage));
+        TRY(find_coverage(&problem, outcome, &of_points->coverage));
     }
-    STARG_TRY(report_guards(&problem, outcome, points ? &of_points->coverage : NULL, out));
+    TRY(report_guards(&problem, outcome, points ? &of_points->coverage : NULL, out));
     if (points)
         (*out)->options.visibility.target = STARG_TARGET_POINTS;
     if (options != NULL) { /* as asked for: files name them only then */
@@ -666,14 +656,7 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
         (*out)->options.refine = options->refine;
     }
     warn_of_shells(&problem, *out);
-done:
-    outcome_free(context, &of_faces);
-    keep_free(&kept);
-    point_round_free(context, &rounds[0]);
-    point_round_free(context, &rounds[1]);
-    patched_solid_free(&patched);
-    column_weights_free(&problem.weights);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_guard(starg_context *context, const starg_solid *solid,
@@ -738,10 +721,9 @@ static starg_status take_corner_guards(const guard_problem *problem, const guard
 
 starg_status corner_guards_find(starg_context *context, const starg_solid *solid, uint64_t work,
                                 bool certified, corner_guards *out) {
-    starg_status status = STARG_OK;
     starg_guard_options used;
-    guard_certificate why = {0};
-    guard_outcome outcome = {0};
+    SCOPED_BY(certificate_free) guard_certificate why = {0};
+    SCOPED_BY(outcome_free) guard_outcome outcome = {0};
     *out = (corner_guards){0};
     starg_guard_options_default(&used);
     used.visibility.target = STARG_TARGET_CORNERS;
@@ -749,21 +731,15 @@ starg_status corner_guards_find(starg_context *context, const starg_solid *solid
     used.prove = true;
     used.prove_work = work;
     set_defaults(&used, solid->mesh->vertex_count);
+    SCOPED_BY(problem_free)
     guard_problem problem = {.context = context,
                              .solid = solid,
                              .options = &used,
                              .certificate = certified ? &why : NULL};
-    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
-    STARG_TRY(find_guards(&problem, &outcome));
-    STARG_TRY(certify_one(&problem, &outcome));
-    STARG_TRY(take_corner_guards(&problem, &outcome, out));
-done:
-    outcome_free(context, &outcome);
-    column_weights_free(&problem.weights);
-    certificate_free(&why);
-    if (status != STARG_OK)
-        corner_guards_free(out);
-    return status;
+    TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
+    TRY(find_guards(&problem, &outcome));
+    TRY(certify_one(&problem, &outcome));
+    return take_corner_guards(&problem, &outcome, out);
 }
 
 void corner_guards_free(corner_guards *guards) {
@@ -774,65 +750,57 @@ void corner_guards_free(corner_guards *guards) {
 
 static starg_status choose_all(const guard_problem *problem, const guard_pool *pool,
                                guard_selection *out) {
-    starg_status status = STARG_OK;
     size_t given = problem->options->point_count;
     for (uint32_t i = 0; i < pool_count(pool); i++) {
-        STARG_PUSH(problem->context, STAGE, &out->chosen, i);
-        STARG_PUSH(problem->context, STAGE, &out->levels, 0);
+        PUSH(problem->context, STAGE, &out->chosen, i);
+        PUSH(problem->context, STAGE, &out->levels, 0);
     }
     if (given == 0 || out->chosen.count != given)
-        status = starg_fail(problem->context, STARG_ERROR_ARGUMENT, STAGE,
-                            "%zu of %zu given guards are strictly inside the solid; give at least "
-                            "one guard, all of them inside",
-                            out->chosen.count, given);
-done:
-    return status;
+        return starg_fail(problem->context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu of %zu given guards are strictly inside the solid; give at least "
+                          "one guard, all of them inside",
+                          out->chosen.count, given);
+    return STARG_OK;
 }
 
 starg_status starg_guards_given(starg_context *context, const starg_solid *solid,
                                 const double *points, size_t count, starg_guards **out) {
-    starg_status status = STARG_OK;
     starg_guard_options used;
     starg_guard_options_default(&used);
     used.method = STARG_GUARD_ILP;
     used.candidates = STARG_CANDIDATES_GIVEN;
     used.candidate_count = used.point_count = count;
     used.points = points;
+    SCOPED_BY(problem_free)
     guard_problem problem = {.context = context, .solid = solid, .options = &used};
-    guard_detail detail = {0};
-    guard_outcome outcome = {0};
+    SCOPED_BY(detail_free) guard_detail detail = {0};
+    SCOPED_BY(outcome_free) guard_outcome outcome = {0};
     /* results so far are measured in full */
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
+    TIME_RULE(context, STARG_TIME_IGNORED);
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
-    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
-    STARG_TRY(find_first(&problem, &detail));
-    STARG_TRY(find_candidates(&problem, &detail, &outcome.pool));
-    STARG_TRY(choose_all(&problem, &outcome.pool, &outcome.selection));
-    STARG_TRY(report_guards(&problem, &outcome, NULL, out));
-done:
-    starg_time_end(context, former);
-    detail_free(context, &detail);
-    outcome_free(context, &outcome);
-    column_weights_free(&problem.weights);
-    return status;
+    TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
+    TRY(find_first(&problem, &detail));
+    TRY(find_candidates(&problem, &detail, &outcome.pool));
+    TRY(choose_all(&problem, &outcome.pool, &outcome.selection));
+    return report_guards(&problem, &outcome, NULL, out);
 }
 
 void starg_guards_free(starg_context *context, starg_guards *guards) {
+    (void)context;
     if (guards == NULL)
         return;
     guard_records records = {.data = guards->level_list, .count = guards->level_count};
-    records_free(context, &records);
+    records_free(&records);
     for (size_t i = 0; guards->obstacles != NULL && i < guards->obstacle_count; i++)
-        starg_release(context, guards->obstacles[i].file);
-    starg_release(context, guards->obstacles);
+        RELEASE(guards->obstacles[i].file);
     for (size_t i = 0; guards->zones != NULL && i < guards->zone_count; i++)
-        starg_release(context, guards->zones[i].file);
-    RELEASE(guards->zones, guards->needs, guards->space.over, guards->space.mount,
-            guards->space.clear, guards->targets, guards->importance, guards->file,
-            guards->positions, guards->directions, guards->ups, guards->seen_faces, guards->kept,
-            guards->levels, guards->curve_faces, guards->curve_area, guards->worth_seen,
-            guards->worth_bound);
+        RELEASE(guards->zones[i].file);
+    RELEASE(guards->obstacles, guards->zones, guards->needs, guards->space.over,
+            guards->space.mount, guards->space.clear, guards->targets, guards->importance,
+            guards->file, guards->positions, guards->directions, guards->ups, guards->seen_faces,
+            guards->kept, guards->levels, guards->curve_faces, guards->curve_area,
+            guards->worth_seen, guards->worth_bound);
     starg_bits_free(guards->rows);
     RELEASE(guards->uncovered, guards->partial, guards->partial_share, guards->uncovered_vertices,
             guards->redundant_faces, guards->tour.points, guards->tour.stops, guards->tour.blocked,

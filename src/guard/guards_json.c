@@ -91,23 +91,19 @@ static starg_status check_levels(starg_context *context, const char *name, const
 
 starg_status starg_guards_read_memory(starg_context *context, const void *bytes, size_t size,
                                       const char *name, starg_guards **out) {
-    starg_status status = STARG_OK;
-    starg_guards *guards = NULL;
-    json_t *root = NULL;
+    SCOPED_BY(starg_guards_drop) starg_guards *guards = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
     *out = NULL;
-    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
-    STARG_NEW_ZERO(context, STAGE, guards, 1);
-    STARG_TRY(record_read(context, name, root, &guards_file_fields, guards));
-    STARG_TRY(check_levels(context, name, guards));
-    STARG_TRY(check_targets(context, name, guards));
-    STARG_TRY(check_needs(context, name, guards));
-    STARG_TRY(check_tour(context, name, guards));
+    TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
+    NEW_ZERO(context, STAGE, guards, 1);
+    TRY(record_read(context, name, root, &guards_file_fields, guards));
+    TRY(check_levels(context, name, guards));
+    TRY(check_targets(context, name, guards));
+    TRY(check_needs(context, name, guards));
+    TRY(check_tour(context, name, guards));
     *out = guards;
-done:
-    json_decref(root);
-    if (status != STARG_OK)
-        starg_guards_free(context, guards);
-    return status;
+    guards = NULL;
+    return STARG_OK;
 }
 
 starg_status starg_guards_read(starg_context *context, const char *path, starg_guards **out) {

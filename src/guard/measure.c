@@ -463,18 +463,17 @@ static starg_status measure_points(const guard_problem *problem, const point_cov
 
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
                            const point_coverage *coverage, starg_guards **out) {
-    starg_status status = STARG_OK;
-    starg_guards *result = NULL;
+    SCOPED_BY(starg_guards_drop) starg_guards *result = NULL;
     /* results so far are measured in full */
-    starg_time_rule former = starg_time_begin(problem->context, STARG_TIME_IGNORED);
-    STARG_NEW_ZERO(problem->context, STAGE, result, 1);
+    TIME_RULE(problem->context, STARG_TIME_IGNORED);
+    NEW_ZERO(problem->context, STAGE, result, 1);
     copy_facts(problem, outcome, result);
-    STARG_TRY(copy_scene(problem, result));
-    STARG_TRY(copy_choice(problem, &outcome->pool, &outcome->selection, result));
-    STARG_TRY(measure_guards(problem, &outcome->pool, result));
+    TRY(copy_scene(problem, result));
+    TRY(copy_choice(problem, &outcome->pool, &outcome->selection, result));
+    TRY(measure_guards(problem, &outcome->pool, result));
     if (coverage != NULL)
-        STARG_TRY(measure_points(problem, coverage, result));
-    STARG_TRY(copy_steps(problem->context, &outcome->search, result));
+        TRY(measure_points(problem, coverage, result));
+    TRY(copy_steps(problem->context, &outcome->search, result));
     result->level_list = outcome->records.data;
     result->level_count = outcome->records.count;
     outcome->records.data = NULL;
@@ -490,9 +489,6 @@ starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
     }
     outcome->records.count = outcome->records.capacity = 0;
     *out = result;
-done:
-    starg_time_end(problem->context, former);
-    if (status != STARG_OK)
-        starg_guards_free(problem->context, result);
-    return status;
+    result = NULL;
+    return STARG_OK;
 }

@@ -14,26 +14,18 @@
 static const char STAGE[] = "points file";
 
 static starg_status take_positions(const starg_source *source, candidate_points *points) {
-    starg_status status = STARG_OK;
-    starg_guards *guards = NULL;
-    json_t *root = NULL;
-    STARG_TRY(
-        starg_json_parse(source->context, STAGE, source->name, source->bytes, source->size, &root));
-    if (poses_are_json(root)) {
-        status = poses_read_json(source, root, points);
-        goto done;
-    }
-    status = starg_guards_read_memory(source->context, source->bytes, source->size, source->name,
-                                      &guards);
-    for (size_t i = 0; status == STARG_OK && i < guards->count; i++)
-        status =
-            candidates_push_pose(source->context, points, guards->positions + 3 * i,
+    SCOPED_BY(starg_guards_drop) starg_guards *guards = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
+    TRY(starg_json_parse(source->context, STAGE, source->name, source->bytes, source->size, &root));
+    if (poses_are_json(root))
+        return poses_read_json(source, root, points);
+    TRY(starg_guards_read_memory(source->context, source->bytes, source->size, source->name,
+                                 &guards));
+    for (size_t i = 0; i < guards->count; i++)
+        TRY(candidates_push_pose(source->context, points, guards->positions + 3 * i,
                                  guards->directions != NULL ? guards->directions + 3 * i : NULL,
-                                 guards->ups != NULL ? guards->ups + 3 * i : NULL);
-done:
-    json_decref(root);
-    starg_guards_free(source->context, guards);
-    return status;
+                                 guards->ups != NULL ? guards->ups + 3 * i : NULL));
+    return STARG_OK;
 }
 
 static starg_status take_nodes(const starg_source *source, candidate_points *points) {
@@ -159,41 +151,33 @@ void starg_poses_free(starg_context *context, starg_poses *poses) {
 
 starg_status starg_poses_read_memory(starg_context *context, const void *bytes, size_t size,
                                      const char *name, starg_poses *out) {
-    starg_status status = STARG_OK;
     starg_source source = {context, name, bytes, size};
-    candidate_points found = {0};
+    SCOPED_BY(candidates_free) candidate_points found = {0};
     *out = (starg_poses){0};
     if (poses_are_glb(&source))
-        STARG_TRY(poses_read_glb(&source, &found));
+        TRY(poses_read_glb(&source, &found));
     else if (poses_are_table(&source))
-        STARG_TRY(poses_read_table(&source, &found));
+        TRY(poses_read_table(&source, &found));
     else if (is_json(&source))
-        STARG_TRY(take_positions(&source, &found));
+        TRY(take_positions(&source, &found));
     else if (is_skeleton(&source))
-        STARG_TRY(take_nodes(&source, &found));
+        TRY(take_nodes(&source, &found));
     else
-        STARG_TRY(scan_text(&source, &found));
-    if (found.data.count == 0) {
-        status = starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                            "'%s' has no points; write three numbers per line", name);
-        goto done;
-    }
-    if (found.directions.count > 0 && found.directions.count != found.data.count) {
-        status =
-            starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                       "'%s' has %zu poses, of which %zu have a direction; give one to all, or "
-                       "to none",
-                       name, found.data.count / 3, found.directions.count / 3);
-        goto done;
-    }
+        TRY(scan_text(&source, &found));
+    if (found.data.count == 0)
+        return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
+                          "'%s' has no points; write three numbers per line", name);
+    if (found.directions.count > 0 && found.directions.count != found.data.count)
+        return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
+                          "'%s' has %zu poses, of which %zu have a direction; give one to all, or "
+                          "to none",
+                          name, found.data.count / 3, found.directions.count / 3);
     *out = (starg_poses){.points = found.data.data,
                          .directions = found.directions.data,
                          .ups = found.ups.data,
                          .count = found.data.count / 3};
     found = (candidate_points){0};
-done:
-    candidates_free(&found);
-    return status;
+    return STARG_OK;
 }
 
 starg_status starg_poses_read(starg_context *context, const char *path, starg_poses *out) {

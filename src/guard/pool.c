@@ -63,27 +63,24 @@ static starg_status keep_finished(guard_pool *pool, const candidate_points *poin
     return STARG_OK;
 }
 
-/* Appends the rows of `added`, which is always consumed. */
-static starg_status append_rows(guard_pool *pool, starg_bits *added) {
-    starg_status status = STARG_OK;
-    starg_bits *all = NULL;
+/* Appends rows, or takes them if they are the first. */
+static starg_status append_rows(guard_pool *pool, starg_bits **from) {
+    starg_bits *added = *from, *all;
     for (size_t i = 0; i < added->rows; i++)
         for (size_t w = 0; w < added->words; w++)
             pool->coverable[w] |= starg_bits_row(added, i)[w];
     if (pool->rows == NULL) {
         pool->rows = added;
+        *from = NULL;
         return STARG_OK;
     }
-    STARG_TRY(
-        starg_bits_create(pool->context, pool->rows->rows + added->rows, added->columns, &all));
+    TRY(starg_bits_create(pool->context, pool->rows->rows + added->rows, added->columns, &all));
     memcpy(all->data, pool->rows->data, pool->rows->rows * all->words * sizeof *all->data);
     memcpy(starg_bits_row_mutable(all, pool->rows->rows), added->data,
            added->rows * all->words * sizeof *all->data);
     starg_bits_free(pool->rows);
     pool->rows = all;
-done:
-    starg_bits_free(added);
-    return status;
+    return STARG_OK;
 }
 
 /* Adds the rows of points whose poses are complete. */
@@ -98,9 +95,7 @@ static starg_status add_rows(guard_pool *pool, const candidate_points *points, b
     TRY(visibility_rows(pool->context, pool->solid, points->data.data, count, &view, finished,
                         &added));
     TRY(keep_finished(pool, points, empty, finished, added));
-    starg_bits *rows = added;
-    added = NULL;
-    return append_rows(pool, rows);
+    return append_rows(pool, &added);
 }
 
 starg_status pool_add(guard_pool *pool, const candidate_points *points) {
@@ -126,30 +121,24 @@ void pool_truncate(guard_pool *pool, size_t count) {
 }
 
 starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out) {
-    starg_status status = STARG_OK;
     starg_context *context = finest->context;
-    uint8_t *finished = NULL;
+    SCOPED uint8_t *finished = NULL;
     size_t count = finest->first_count;
-    STARG_TRY(pool_create(context, level, finest->options, out));
-    STARG_NEW_ZERO(context, STAGE, finished, count);
+    TRY(pool_create(context, level, finest->options, out));
+    NEW_ZERO(context, STAGE, finished, count);
     for (size_t i = 0; i < count; i++)
-        STARG_TRY(candidates_push_pose(context, &out->points, pool_point(finest, i),
-                                       pool_direction(finest, i), pool_up(finest, i)));
+        TRY(candidates_push_pose(context, &out->points, pool_point(finest, i),
+                                 pool_direction(finest, i), pool_up(finest, i)));
     starg_visibility_options view = out->options->visibility;
     view.directions = out->points.directions.data;
     view.ups = out->points.ups.data;
-    STARG_TRY(
-        visibility_rows(context, level, out->points.data.data, count, &view, finished, &out->rows));
+    TRY(visibility_rows(context, level, out->points.data.data, count, &view, finished, &out->rows));
     for (size_t i = 0; i < count; i++) {
         out->time_limited = out->time_limited || !finished[i];
         for (size_t w = 0; w < out->rows->words; w++)
             out->coverable[w] |= starg_bits_row(out->rows, i)[w];
     }
-done:
-    starg_release(context, finished);
-    if (status != STARG_OK)
-        pool_free(out);
-    return status;
+    return STARG_OK;
 }
 
 /* Is a vertex or a corner of the face a column that nothing covers? */

@@ -331,16 +331,12 @@ static starg_status read_cameras(const starg_source *source, const json_t *nodes
 }
 
 starg_status poses_read_glb(const starg_source *source, candidate_points *points) {
-    starg_status status = STARG_OK;
-    json_t *root = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
     size_t size = word_at(source, 12);
     if (word_at(source, 4) != 2 || memcmp(source->bytes + 16, "JSON", 4) != 0 ||
         size > source->size - GLB_HEAD)
         return starg_source_fail(source, starg_at_file(), "this is no binary glTF 2.0");
-    STARG_TRY(starg_json_parse(source->context, STAGE, source->name, source->bytes + GLB_HEAD, size,
-                               &root));
-    STARG_TRY(read_cameras(source, json_object_get(root, "nodes"), points));
-done:
-    json_decref(root);
-    return status;
+    TRY(starg_json_parse(source->context, STAGE, source->name, source->bytes + GLB_HEAD, size,
+                         &root));
+    return read_cameras(source, json_object_get(root, "nodes"), points);
 }

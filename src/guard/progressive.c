@@ -158,29 +158,24 @@ done:
 static starg_status guard_coarse_level(const guard_problem *problem, const guard_pool *finest,
                                        const starg_mesh *mesh, guard_records *records,
                                        guard_selection *chosen) {
-    starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
-    guard_pool pool = {0};
-    guard_selection next = {0};
-    status = solid_of_level(problem->context, problem->solid, mesh, &solid);
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED_BY(pool_free) guard_pool pool = {0};
+    SCOPED_BY(selection_free) guard_selection next = {0};
+    starg_status status = solid_of_level(problem->context, problem->solid, mesh, &solid);
     chosen->time_limited = chosen->time_limited || status == STARG_ERROR_TIME;
     if (status == STARG_ERROR_TIME)
         return STARG_OK;
-    STARG_TRY(status);
-    STARG_TRY(pool_on_level(finest, solid, &pool));
+    TRY(status);
+    TRY(pool_on_level(finest, solid, &pool));
     chosen->time_limited = chosen->time_limited || pool.time_limited;
     if (pool.time_limited)
-        goto done;
-    STARG_TRY(guard_level(problem, &pool, (int)records->count, chosen, &next));
-    STARG_TRY(record_level(&pool, &next, records));
+        return STARG_OK;
+    TRY(guard_level(problem, &pool, (int)records->count, chosen, &next));
+    TRY(record_level(&pool, &next, records));
     selection_free(chosen);
     *chosen = next;
     next = (guard_selection){0};
-done:
-    selection_free(&next);
-    pool_free(&pool);
-    starg_solid_free(solid);
-    return status;
+    return STARG_OK;
 }
 
 starg_status bound_guards(const guard_problem *problem, const guard_pool *pool,

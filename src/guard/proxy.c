@@ -27,12 +27,8 @@ starg_status proxy_of_levels(starg_context *context, const starg_solid *solid,
 }
 
 starg_status proxy_make(starg_context *context, const starg_solid *solid, starg_solid **out) {
-    starg_status status = STARG_OK;
-    starg_levels *levels = NULL;
+    SCOPED_BY(starg_levels_drop) starg_levels *levels = NULL;
     size_t step = starg_guard_default_step(solid->mesh->vertex_count, COARSEST);
-    STARG_TRY(starg_mesh_levels(context, solid->mesh, COARSEST, step, NULL, &levels));
-    STARG_TRY(proxy_of_levels(context, solid, levels, out));
-done:
-    starg_levels_free(context, levels);
-    return status;
+    TRY(starg_mesh_levels(context, solid->mesh, COARSEST, step, NULL, &levels));
+    return proxy_of_levels(context, solid, levels, out);
 }

@@ -144,7 +144,8 @@ static starg_status list_missing(starg_context *context, const patched_solid *pa
 }
 
 void starg_patches_free(starg_context *context, uint32_t *missing) {
-    starg_release(context, missing);
+    (void)context;
+    RELEASE(missing);
 }
 
 starg_status starg_guards_patches(starg_context *context, const starg_solid *scene,

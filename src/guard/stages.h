@@ -42,6 +42,10 @@ typedef struct guard_problem {
     bool hurried; /* targets that no candidate sees are not looked for in the whole free space */
 } guard_problem;
 
+static inline void problem_free(guard_problem *problem) {
+    column_weights_free(&problem->weights);
+}
+
 /* What is found of the solid before anything is seen. */
 typedef struct guard_detail {
     starg_levels *levels;     /* simplified versions; NULL: none wanted, or no time */
@@ -136,7 +140,7 @@ void selection_free(guard_selection *selection);
 /* Everything from the solid to the choice (guard/guard.c). Errors: MEMORY, CANCELLED, those of a
  * solid without candidates. */
 starg_status find_guards(const guard_problem *problem, guard_outcome *out);
-void outcome_free(starg_context *context, guard_outcome *outcome);
+void outcome_free(guard_outcome *outcome);
 
 /* ---- guards that stay, faces that several must see: what is left for others (keep.c) ---- */
 
@@ -295,7 +299,7 @@ typedef struct point_round {
  * those of faces whose corners have to be seen first. *out is one of the two rounds. */
 starg_status find_guards_of_points(const guard_problem *problem, const mesh_patches *parts,
                                    point_round rounds[2], point_round **out);
-void point_round_free(starg_context *context, point_round *round);
+void point_round_free(point_round *round);
 
 /* ---- the result (measure.c) ---- */
 

@@ -67,13 +67,12 @@ static size_t words_of(const unseen_search *s) {
  * the budget lasts; at least once. */
 static starg_status look_from_above(unseen_search *s, uint64_t budget, uint8_t *tried,
                                     guard_pool *pool) {
-    starg_status status = STARG_OK;
     size_t faces = starg_space_model_faces(s->solid);
-    uint8_t *unseen = NULL;
-    candidate_points found = {0};
+    SCOPED uint8_t *unseen = NULL;
+    SCOPED_BY(candidates_free) candidate_points found = {0};
     const augmentation all = {s->solid, &s->view, s->clearance, tried};
     bool pending = true;
-    STARG_NEW_ZERO(s->context, STAGE, unseen, s->solid->mesh->face_count);
+    NEW_ZERO(s->context, STAGE, unseen, s->solid->mesh->face_count);
     while (pending && !pool->time_limited) {
         size_t before = 0, after = 0;
         for (size_t f = 0; f < faces; f++) {
@@ -81,58 +80,47 @@ static starg_status look_from_above(unseen_search *s, uint64_t budget, uint8_t *
             before += tried[f];
         }
         found.data.count = 0;
-        status = augment_candidates(s->context, &all, unseen, &found, &pending);
-        if (status == STARG_ERROR_TIME) {
-            status = STARG_OK;
-            break;
-        }
-        STARG_TRY(status);
+        starg_status status = augment_candidates(s->context, &all, unseen, &found, &pending);
+        if (status == STARG_ERROR_TIME)
+            return STARG_OK;
+        TRY(status);
         if (found.data.count > 0)
-            STARG_TRY(pool_add(pool, &found));
+            TRY(pool_add(pool, &found));
         for (size_t f = 0; f < faces; f++)
             after += tried[f];
         s->spent += (after - before) * ABOVE;
         pending = pending && s->spent < budget / 2;
     }
-done:
-    candidates_free(&found);
-    starg_release(s->context, unseen);
-    return status;
+    return STARG_OK;
 }
 
 static starg_status look_from_candidates(unseen_search *s, const starg_guard_options *options,
                                          uint64_t budget) {
-    starg_status status = STARG_OK;
-    guard_pool pool = {0};
-    candidate_points points = {0};
-    uint8_t *tried = NULL;
+    SCOPED_BY(pool_free) guard_pool pool = {0};
+    SCOPED_BY(candidates_free) candidate_points points = {0};
+    SCOPED uint8_t *tried = NULL;
     const candidate_shape shape = {s->solid, s->solid, s->clearance};
-    STARG_NEW_ZERO(s->context, STAGE, tried, s->solid->mesh->face_count);
+    NEW_ZERO(s->context, STAGE, tried, s->solid->mesh->face_count);
     for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++) {
         tried[f] = solid_is_target(s->solid, false, f) && solid_hides(s->solid, f);
         if (tried[f])
-            STARG_PUSH(s->context, STAGE, &s->buried, f);
+            PUSH(s->context, STAGE, &s->buried, f);
     }
-    STARG_TRY(pool_create(s->context, s->solid, options, &pool));
-    STARG_TRY(candidates_find(s->context, &shape, STARG_CANDIDATES_INTERIOR, CANDIDATES, &points));
-    STARG_TRY(pool_add(&pool, &points));
-    STARG_TRY(look_from_above(s, budget, tried, &pool));
+    TRY(pool_create(s->context, s->solid, options, &pool));
+    TRY(candidates_find(s->context, &shape, STARG_CANDIDATES_INTERIOR, CANDIDATES, &points));
+    TRY(pool_add(&pool, &points));
+    TRY(look_from_above(s, budget, tried, &pool));
     if (candidates_count(&points) == 0 && pool_count(&pool) == 0)
-        status = starg_fail(s->context, STARG_ERROR_MESH, STAGE,
-                            "no place was found where anybody may stand; try wider limits (box, "
-                            "distances, clearance)");
-    STARG_TRY(status);
+        return starg_fail(s->context, STARG_ERROR_MESH, STAGE,
+                          "no place was found where anybody may stand; try wider limits (box, "
+                          "distances, clearance)");
     for (uint32_t f = 0, k = 0; f < starg_space_model_faces(s->solid); f++) {
         bool buried = k < s->buried.count && s->buried.data[k] == f;
         k += buried;
         if (!buried && solid_is_target(s->solid, false, f) && !starg_bit_test(pool.coverable, f))
-            STARG_PUSH(s->context, STAGE, &s->list, f);
+            PUSH(s->context, STAGE, &s->list, f);
     }
-done:
-    pool_free(&pool);
-    candidates_free(&points);
-    starg_release(s->context, tried);
-    return status;
+    return STARG_OK;
 }
 
 static void middle_of(const bvh_box *box, double p[3]) {
@@ -352,13 +340,13 @@ static starg_status begin(unseen_search *s) {
 }
 
 static void end(unseen_search *s) {
-    starg_context *context = s->context;
+    s->context->work += s->spent;
     scene_free(s->points);
     box_scene_free(s->boxes);
     for (size_t i = 0; i < s->leaves.count; i++)
-        starg_release(context, s->leaves.data[i].open);
+        RELEASE(s->leaves.data[i].open);
     for (size_t i = 0; s->parts != NULL && i < 2 * BATCH; i++)
-        starg_release(context, s->parts[i].open);
+        RELEASE(s->parts[i].open);
     RELEASE(s->leaves.data, s->list.data, s->buried.data, s->open, s->parts, s->cut, s->work,
             s->looks);
 }
@@ -395,7 +383,6 @@ static starg_status report(const unseen_search *s, uint8_t **out) {
 starg_status starg_unseen(starg_context *context, const starg_solid *scene,
                           const starg_visibility_options *view, double clearance, uint64_t work,
                           uint8_t **out) {
-    starg_status status = STARG_OK;
     starg_guard_options options;
     *out = NULL;
     starg_guard_options_default(&options);
@@ -403,25 +390,20 @@ starg_status starg_unseen(starg_context *context, const starg_solid *scene,
         options.visibility = *view;
     options.visibility.target = STARG_TARGET_FACES;
     options.clearance = clearance;
+    SCOPED_BY(end)
     unseen_search s = {
         .context = context, .solid = scene, .view = options.visibility, .clearance = clearance};
-    STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), &options));
-    if (sensor_is_directed(&options.visibility)) {
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "what nobody sees is hidden in all directions; leave out cone and "
-                            "field of view");
-        goto done;
-    }
-    STARG_TRY(sensor_check(context, STAGE, 0, &options.visibility));
-    STARG_TRY(begin(&s));
-    STARG_TRY(look_from_candidates(&s, &options, work));
+    TRY(fields_check(context, STAGE, starg_guard_options_fields(), &options));
+    if (sensor_is_directed(&options.visibility))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "what nobody sees is hidden in all directions; leave out cone and "
+                          "field of view");
+    TRY(sensor_check(context, STAGE, 0, &options.visibility));
+    TRY(begin(&s));
+    TRY(look_from_candidates(&s, &options, work));
     if (s.list.count > 0)
-        STARG_TRY(cut_boxes(&s, work));
-    status = report(&s, out);
-done:
-    context->work += s.spent;
-    end(&s);
-    return status;
+        TRY(cut_boxes(&s, work));
+    return report(&s, out);
 }
 
 /* Proves matter that no place sees the patch? A hidden face may have visible parts. */
@@ -470,37 +452,34 @@ static size_t count_faces(const starg_solid *solid, const uint32_t *patches, con
 starg_status unseen_prove(starg_context *context, const starg_solid *solid,
                           const starg_guard_options *options, const uint32_t *patches, size_t count,
                           uint64_t work, size_t *faces, candidate_points *places) {
-    starg_status status = STARG_OK;
-    uint8_t *proven = NULL;
+    SCOPED uint8_t *proven = NULL;
     SCOPED uint64_t *unseen = NULL;
+    SCOPED_BY(end)
     unseen_search s = {.context = context,
                        .solid = solid,
                        .view = sensor_around(&options->visibility),
                        .clearance = options->clearance,
                        .places = places};
-    STARG_NEW(context, STAGE, proven, count);
+    NEW(context, STAGE, proven, count);
     hidden_job job = {solid, patches, proven};
     const starg_parallel_loop loop = {
         .stage = STAGE, .count = count, .shared = &job, .item = test_hidden, .silent = true};
-    STARG_TRY(starg_parallel_for(context, &loop));
+    TRY(starg_parallel_for(context, &loop));
     for (size_t i = 0; i < count; i++)
         if (!proven[i])
-            STARG_PUSH(context, STAGE, &s.list, patches[i]);
-    STARG_TRY(begin(&s));
+            PUSH(context, STAGE, &s.list, patches[i]);
+    TRY(begin(&s));
     if (s.list.count > 0)
-        STARG_TRY(cut_boxes(&s, work));
-    STARG_TRY(conclude(&s, &unseen));
+        TRY(cut_boxes(&s, work));
+    TRY(conclude(&s, &unseen));
     for (size_t i = 0, k = 0; i < count && k < s.list.count; i++)
         if (s.list.data[k] == patches[i])
             proven[i] = starg_bit_test(unseen, k++);
     *faces = count_faces(solid, patches, proven, count);
-done:
-    context->work += s.spent;
-    starg_release(context, proven);
-    end(&s);
-    return status;
+    return STARG_OK;
 }
 
 void starg_unseen_free(starg_context *context, uint8_t *faces) {
-    starg_release(context, faces);
+    (void)context;
+    RELEASE(faces);
 }

@@ -58,9 +58,7 @@ bool mesh_only_touches(const starg_check *check);
 bool mesh_is_rounded(const starg_check *check);
 void mesh_examination_free(mesh_examination *examination);
 
-static inline void starg_check_drop(starg_check **check) {
-    starg_check_free(NULL, *check);
-}
+STARG_DROP_RESULT(starg_check)
 
 /* ---- the grid on which coordinates lie (grid.c) ---- */
 

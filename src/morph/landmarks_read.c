@@ -124,5 +124,6 @@ done:
 }
 
 void starg_landmarks_free(starg_context *context, uint32_t *pairs) {
-    starg_release(context, pairs);
+    (void)context;
+    RELEASE(pairs);
 }

@@ -209,6 +209,4 @@ void solid_map_exponents(const starg_solid_map *map, int out[2]);
 double solid_map_ratio(const starg_solid_map *map, size_t t, const int exponents[2],
                        double *volume);
 
-static inline void starg_solid_map_drop(starg_solid_map **map) {
-    starg_solid_map_free(NULL, *map);
-}
+STARG_DROP_RESULT(starg_solid_map)

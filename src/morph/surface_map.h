@@ -240,9 +240,7 @@ void map_free_overlay(starg_overlay *overlay);
 /* A copy scaled to a unit cube about the origin. Errors: MESH (no extent), MEMORY. */
 starg_status map_unit_copy(starg_context *context, const starg_mesh *mesh, starg_mesh **out);
 
-static inline void starg_map_drop(starg_map **map) {
-    starg_map_free(NULL, *map);
-}
+STARG_DROP_RESULT(starg_map)
 
 /* ---- lines of numbers, with comments from '#' on (parse_numbers.c) ---- */
 

@@ -5,6 +5,8 @@
 #include "core/file.h"
 #include "shape/database.h"
 
+STARG_DROP_RESULT(starg_classes)
+
 static const char STAGE[] = "classes";
 static const char BLANKS[] = " \t\r";
 
@@ -42,26 +44,23 @@ static starg_status add_class(starg_context *context, starg_classes *classes, co
 /* Sorts the entries and numbers the distinct words. */
 static starg_status make_classes(starg_context *context, naming *namings, size_t count,
                                  size_t model_count, starg_classes **out) {
-    starg_status status = STARG_OK;
-    starg_classes *classes = NULL;
-    STARG_NEW_ZERO(context, STAGE, classes, 1);
+    SCOPED_BY(starg_classes_drop) starg_classes *classes = NULL;
+    NEW_ZERO(context, STAGE, classes, 1);
     classes->model_count = model_count;
-    STARG_NEW(context, STAGE, classes->names, count);
-    STARG_NEW(context, STAGE, classes->class_of, model_count);
+    NEW(context, STAGE, classes->names, count);
+    NEW(context, STAGE, classes->class_of, model_count);
     for (size_t i = 0; i < model_count; i++)
         classes->class_of[i] = STARG_NO_CLASS;
     if (count > 0)
         qsort(namings, count, sizeof *namings, by_word);
     for (size_t i = 0; i < count; i++) {
         if (i == 0 || !same_word(&namings[i - 1], &namings[i]))
-            STARG_TRY(add_class(context, classes, &namings[i]));
+            TRY(add_class(context, classes, &namings[i]));
         classes->class_of[namings[i].model] = (uint32_t)classes->count - 1;
     }
     *out = classes;
-done:
-    if (status != STARG_OK)
-        starg_classes_free(context, classes);
-    return status;
+    classes = NULL;
+    return STARG_OK;
 }
 
 starg_status starg_classes_by_prefix(starg_context *context, const starg_database_models *models,
@@ -77,10 +76,11 @@ starg_status starg_classes_by_prefix(starg_context *context, const starg_databas
 }
 
 void starg_classes_free(starg_context *context, starg_classes *classes) {
+    (void)context;
     if (classes == NULL)
         return;
     for (size_t i = 0; i < classes->count; i++)
-        starg_release(context, classes->names[i]);
+        RELEASE(classes->names[i]);
     RELEASE(classes->names, classes->class_of, classes);
 }
 

@@ -250,9 +250,10 @@ done:
 }
 
 void starg_database_report_free(starg_context *context, starg_database_report *report) {
+    (void)context;
     if (report == NULL)
         return;
     for (size_t i = 0; report->results != NULL && i < report->count; i++)
-        starg_release(context, report->results[i].text);
+        RELEASE(report->results[i].text);
     RELEASE(report->results, report);
 }

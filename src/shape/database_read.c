@@ -19,10 +19,11 @@ void database_models_clear(database_models *list) {
 }
 
 void starg_database_models_free(starg_context *context, starg_database_models *models) {
+    (void)context;
     if (models == NULL)
         return;
     database_models_clear(&(database_models){.data = models->items, .count = models->count});
-    starg_release(context, models);
+    RELEASE(models);
 }
 
 starg_status database_models_hand_over(starg_context *context, database_models *list,
@@ -77,22 +78,18 @@ void database_read_doubles(const uint8_t *bytes, size_t count, double *out) {
 starg_status database_read_signature(starg_database *d, sqlite3_stmt *row, int first,
                                      starg_signature_kind kind, starg_signature **out) {
     starg_context *context = d->context;
-    starg_status status = STARG_OK;
-    double *numbers = NULL;
+    SCOPED double *numbers = NULL;
     const uint8_t *bytes = sqlite3_column_blob(row, first + 1);
     size_t count = (size_t)sqlite3_column_bytes(row, first + 1) / 8;
-    STARG_NEW(context, DATABASE_STAGE, numbers, count);
+    NEW(context, DATABASE_STAGE, numbers, count);
     database_read_doubles(bytes, count, numbers);
-    status =
+    starg_status status =
         starg_signature_restore(context, kind, sqlite3_column_int(row, first), numbers, count, out);
-    if (status == STARG_ERROR_FORMAT)
-        status = starg_fail(context, status, DATABASE_STAGE,
-                            "model %lld of '%s' has no usable %s signature; add its file again",
-                            (long long)sqlite3_column_int64(row, 0), d->path,
-                            starg_signature_name(kind));
-done:
-    starg_release(context, numbers);
-    return status;
+    if (status != STARG_ERROR_FORMAT)
+        return status;
+    return starg_fail(context, status, DATABASE_STAGE,
+                      "model %lld of '%s' has no usable %s signature; add its file again",
+                      (long long)sqlite3_column_int64(row, 0), d->path, starg_signature_name(kind));
 }
 
 /* ---- lists ---- */

@@ -78,13 +78,12 @@ static void split_face(const uint32_t f[3], const uint32_t middle[3], uint32_t *
 }
 
 static starg_status subdivide(surface *s) {
-    starg_status status = STARG_OK;
     size_t edges = 3 * s->face_count;
-    surface fine = {.context = s->context, .face_count = 4 * s->face_count};
-    edge_table table = {0};
-    STARG_TRY(edge_table_make(s->context, STAGE, edges, &table));
-    STARG_NEW(s->context, STAGE, fine.positions, 3 * (s->vertex_count + edges));
-    STARG_NEW(s->context, STAGE, fine.faces, 3 * fine.face_count);
+    SCOPED_BY(surface_free) surface fine = {.context = s->context, .face_count = 4 * s->face_count};
+    SCOPED_BY(edge_table_free) edge_table table = {0};
+    TRY(edge_table_make(s->context, STAGE, edges, &table));
+    NEW(s->context, STAGE, fine.positions, 3 * (s->vertex_count + edges));
+    NEW(s->context, STAGE, fine.faces, 3 * fine.face_count);
     memcpy(fine.positions, s->positions, 3 * s->vertex_count * sizeof *fine.positions);
     for (size_t i = 0; i < s->face_count; i++) {
         const uint32_t *f = s->faces + 3 * i;
@@ -101,11 +100,8 @@ static starg_status subdivide(surface *s) {
     fine.vertex_count = s->vertex_count + table.count;
     surface_free(s);
     *s = fine;
-done:
-    if (status != STARG_OK)
-        surface_free(&fine);
-    edge_table_free(&table);
-    return status;
+    fine = (surface){0};
+    return STARG_OK;
 }
 
 /* Renumbers the vertices in use from 0, in order. */

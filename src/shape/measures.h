@@ -50,6 +50,4 @@ enum { DESCRIPTOR_VERSION = 5 };
 /* The file as a starg_descriptor. */
 extern const starg_fields descriptor_file_fields;
 
-static inline void starg_descriptor_drop(starg_descriptor **descriptor) {
-    starg_descriptor_free(NULL, *descriptor);
-}
+STARG_DROP_RESULT(starg_descriptor)

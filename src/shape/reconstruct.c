@@ -41,7 +41,8 @@ starg_status starg_descriptor_points(starg_context *context, const starg_descrip
 }
 
 void starg_descriptor_points_free(starg_context *context, double *points) {
-    starg_release(context, points);
+    (void)context;
+    RELEASE(points);
 }
 
 typedef struct comparison {

@@ -254,36 +254,28 @@ OPTIONS_BY(OPTIONS_TABLE, starg_skeleton_options)
 
 starg_status starg_skeleton_create(starg_context *context, const starg_solid *solid,
                                    const starg_skeleton_options *options, starg_skeleton **out) {
-    starg_status status = STARG_OK;
     starg_skeleton_options defaults;
-    starg_skeleton *skeleton = NULL;
-    attempt a = {0};
-    curve_graph graph = {0};
-    pruned_graph pruned = {0};
+    SCOPED_BY(starg_skeleton_drop) starg_skeleton *skeleton = NULL;
+    SCOPED_BY(attempt_free) attempt a = {0};
+    SCOPED_BY(graph_free) curve_graph graph = {0};
+    SCOPED_BY(prune_free) pruned_graph pruned = {0};
     *out = NULL;
     starg_skeleton_options_default(&defaults);
     options = options != NULL ? options : &defaults;
-    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
-    STARG_NEW_ZERO(context, STAGE, skeleton, 1);
-    STARG_TRY(find_graph(context, solid, &a));
-    STARG_TRY(graph_create(context, a.complex->node_count, a.complex->links, a.eroded.link_left,
-                           a.complex->link_count, &graph));
-    STARG_TRY(prune_graph(context, solid, a.complex, &graph, a.node_left, a.eroded.values,
-                          options->prune, a.spacing, &pruned));
-    STARG_TRY(
-        curve_create(context, solid, a.complex, &graph, &pruned, options->node_count, skeleton));
-    STARG_TRY(describe(context, solid, &a, skeleton));
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
+    NEW_ZERO(context, STAGE, skeleton, 1);
+    TRY(find_graph(context, solid, &a));
+    TRY(graph_create(context, a.complex->node_count, a.complex->links, a.eroded.link_left,
+                     a.complex->link_count, &graph));
+    TRY(prune_graph(context, solid, a.complex, &graph, a.node_left, a.eroded.values, options->prune,
+                    a.spacing, &pruned));
+    TRY(curve_create(context, solid, a.complex, &graph, &pruned, options->node_count, skeleton));
+    TRY(describe(context, solid, &a, skeleton));
     tell(context, solid, skeleton);
     *out = skeleton;
     skeleton = NULL;
-done:
-    starg_time_end(context, former);
-    attempt_free(&a);
-    graph_free(&graph);
-    prune_free(&pruned);
-    starg_skeleton_free(context, skeleton);
-    return status;
+    return STARG_OK;
 }
 
 void starg_skeleton_free(starg_context *context, starg_skeleton *skeleton) {

@@ -11,6 +11,8 @@
 
 #include <stddef.h>
 
+STARG_DROP_RESULT(starg_skeleton)
+
 /* ---- samples: a subdivision of the mesh, dense enough for the Voronoi diagram (samples.c) ---- */
 
 /* A closed mesh on the solid's faces. Its first points are the vertices of the solid. */

@@ -104,6 +104,4 @@ starg_status certified_decompose_tetmesh(starg_context *context, const starg_tet
                                          const starg_decompose_options *options,
                                          starg_decomposition **out);
 
-static inline void starg_decomposition_drop(starg_decomposition **decomposition) {
-    starg_decomposition_free(NULL, *decomposition);
-}
+STARG_DROP_RESULT(starg_decomposition)

@@ -7,6 +7,8 @@
 
 #include "verify/everywhere.h"
 
+STARG_DROP(starg_certificate, starg_certificate)
+
 typedef struct certificate_reader {
     starg_context *context;
     const char *name;
@@ -489,19 +491,16 @@ static starg_status read_all(certificate_reader *r) {
 
 starg_status starg_certificate_read_memory(starg_context *context, const void *bytes, size_t size,
                                            const char *name, starg_certificate **out) {
-    starg_status status = STARG_OK;
-    starg_certificate *own = NULL;
+    SCOPED_BY(starg_certificate_drop) starg_certificate *own = NULL;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, own, 1);
+    NEW_ZERO(context, STAGE, own, 1);
     own->context = context;
     const char *text = size > 0 ? bytes : "";
     certificate_reader r = {context, name, text, text + size, 1, own};
-    STARG_TRY(read_all(&r));
+    TRY(read_all(&r));
     *out = own;
-done:
-    if (status != STARG_OK)
-        starg_certificate_free(own);
-    return status;
+    own = NULL;
+    return STARG_OK;
 }
 
 void starg_certificate_free(starg_certificate *own) {

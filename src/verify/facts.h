@@ -11,9 +11,7 @@
 enum { VERIFY_CLAIMS = 64, VERIFY_UNCHECKED = 32 };
 
 starg_status verify_verdict_create(starg_context *context, starg_verdict **out);
-static inline void starg_verdict_drop(starg_verdict **verdict) {
-    starg_verdict_free(NULL, *verdict);
-}
+STARG_DROP_RESULT(starg_verdict)
 
 /* Adds a claim: what was checked, and, if it does not hold, what was found. */
 void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...)

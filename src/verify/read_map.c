@@ -7,6 +7,8 @@
 #include "core/json.h"
 #include "verify/map.h"
 
+STARG_DROP(starg_map_file, starg_map_file)
+
 static const char STAGE[] = "map file";
 
 typedef struct reader {
@@ -136,22 +138,18 @@ static void read_document(reader *r, const json_t *root, starg_map_file *file) {
 
 starg_status starg_map_file_read_memory(starg_context *context, const void *bytes, size_t size,
                                         const char *name, starg_map_file **out) {
-    starg_status status = STARG_OK;
     reader r = {context, name, STARG_OK};
-    starg_map_file *file = NULL;
-    json_t *root = NULL;
+    SCOPED_BY(starg_map_file_drop) starg_map_file *file = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
     *out = NULL;
-    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
-    STARG_NEW_ZERO(context, STAGE, file, 1);
+    TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
+    NEW_ZERO(context, STAGE, file, 1);
     file->context = context;
     read_document(&r, root, file);
-    STARG_TRY(r.status);
+    TRY(r.status);
     *out = file;
     file = NULL;
-done:
-    json_decref(root);
-    starg_map_file_free(file);
-    return status;
+    return STARG_OK;
 }
 
 void starg_map_file_free(starg_map_file *file) {

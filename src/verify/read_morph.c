@@ -5,6 +5,8 @@
 #include "core/json.h"
 #include "verify/map.h"
 
+STARG_DROP(starg_morph_report, starg_morph_report)
+
 static const char STAGE[] = "morph report";
 
 static starg_status reject(starg_context *context, const char *name, const char *key,
@@ -46,25 +48,21 @@ static starg_status read_frames(starg_context *context, const char *name, const 
 
 starg_status starg_morph_report_read_memory(starg_context *context, const void *bytes, size_t size,
                                             const char *name, starg_morph_report **out) {
-    starg_status status = STARG_OK;
-    starg_morph_report *report = NULL;
-    json_t *root = NULL;
+    SCOPED_BY(starg_morph_report_drop) starg_morph_report *report = NULL;
+    SCOPED_BY(json_decrefp) json_t *root = NULL;
     *out = NULL;
-    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
-    STARG_NEW_ZERO(context, STAGE, report, 1);
+    TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
+    NEW_ZERO(context, STAGE, report, 1);
     report->context = context;
     const char *format = json_string_value(json_object_get(root, "format"));
     if (format == NULL || strcmp(format, "starguard-morph") != 0)
-        STARG_TRY(reject(context, name, "format", "\"starguard-morph\""));
+        TRY(reject(context, name, "format", "\"starguard-morph\""));
     if (json_integer_value(json_object_get(root, "version")) != 1)
-        STARG_TRY(reject(context, name, "version", "1, the only supported one"));
-    STARG_TRY(read_frames(context, name, json_object_get(root, "frames"), report));
+        TRY(reject(context, name, "version", "1, the only supported one"));
+    TRY(read_frames(context, name, json_object_get(root, "frames"), report));
     *out = report;
     report = NULL;
-done:
-    json_decref(root);
-    starg_morph_report_free(report);
-    return status;
+    return STARG_OK;
 }
 
 void starg_morph_report_free(starg_morph_report *report) {

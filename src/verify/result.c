@@ -6,6 +6,8 @@
 #include "core/memory.h"
 #include "starguard/verify.h"
 
+STARG_DROP_RESULT(starg_result)
+
 static const char STAGE[] = "result file";
 
 /* Is it JSON with this "format"? */
@@ -40,31 +42,28 @@ static starg_status read_bytes(starg_context *context, const char *bytes, size_t
 }
 
 starg_status starg_result_read(starg_context *context, const char *path, starg_result **out) {
-    starg_status status = STARG_OK;
-    starg_result *result = NULL;
-    char *bytes = NULL;
+    SCOPED_BY(starg_result_drop) starg_result *result = NULL;
+    SCOPED char *bytes = NULL;
     size_t size;
     *out = NULL;
-    STARG_NEW_ZERO(context, STAGE, result, 1);
-    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    STARG_TRY(read_bytes(context, bytes, size, path, result));
+    NEW_ZERO(context, STAGE, result, 1);
+    TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    TRY(read_bytes(context, bytes, size, path, result));
     *out = result;
-done:
-    starg_release(context, bytes);
-    if (status != STARG_OK)
-        starg_result_free(context, result);
-    return status;
+    result = NULL;
+    return STARG_OK;
 }
 
 void starg_result_free(starg_context *context, starg_result *result) {
+    (void)context;
     if (result == NULL)
         return;
-    starg_guards_free(context, result->guards);
-    starg_pieces_mesh_free(context, result->pieces);
-    starg_pieces_report_free(context, result->report);
+    starg_guards_free(NULL, result->guards);
+    starg_pieces_mesh_free(NULL, result->pieces);
+    starg_pieces_report_free(NULL, result->report);
     starg_certificate_free(result->certificate);
     starg_map_file_free(result->map);
     starg_morph_report_free(result->morph);
-    starg_solid_map_free(context, result->solid_map);
-    starg_release(context, result);
+    starg_solid_map_free(NULL, result->solid_map);
+    RELEASE(result);
 }

@@ -480,11 +480,12 @@ done:
 }
 
 void starg_levels_free(starg_context *context, starg_levels *levels) {
+    (void)context;
     if (levels == NULL)
         return;
     for (size_t i = 0; i < levels->count; i++) {
         starg_mesh_free(levels->levels[i].mesh);
-        starg_release(context, levels->levels[i].vertex_map);
+        RELEASE(levels->levels[i].vertex_map);
     }
     RELEASE(levels->levels, levels);
 }

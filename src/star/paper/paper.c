@@ -19,6 +19,8 @@
 #include "star/paper/state.h"
 #include "starguard/guard.h"
 
+STARG_DROP_RESULT(starg_guards)
+
 /* The tetrahedra around each vertex: a counting sort by vertex. Cost: O(n). */
 
 starg_status tet_rings_create(starg_context *context, const starg_tetmesh *mesh, tet_rings *out) {
@@ -94,30 +96,23 @@ static starg_status take_guards(paper_state *s, const double *points, size_t cou
 /* Guards of section 3 for the boundary. Where that is no surface that they can be placed for
  * (it touches itself in an edge, for example), all is left to be guarded as it is cut. */
 static starg_status place_guards(paper_state *s, size_t most, bool *time_limited) {
-    starg_status status = STARG_OK;
-    starg_mesh *surface = NULL;
-    starg_solid *solid = NULL;
-    starg_guards *guards = NULL;
+    SCOPED_BY(starg_mesh_drop) starg_mesh *surface = NULL;
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED_BY(starg_guards_drop) starg_guards *guards = NULL;
     starg_guard_options wanted;
     starg_guard_options_default(&wanted);
     wanted.max_guards = most;
-    STARG_TRY(starg_tetmesh_surface(s->context, s->mesh, &surface, NULL));
-    status = solid_make(s->context, surface, &solid);
+    TRY(starg_tetmesh_surface(s->context, s->mesh, &surface, NULL));
+    starg_status status = solid_make(s->context, surface, &solid);
     if (status == STARG_OK)
         status = starg_guard(s->context, solid, &wanted, &guards);
     if (status == STARG_ERROR_MESH || status == STARG_ERROR_TIME) {
         *time_limited = status == STARG_ERROR_TIME;
-        status = STARG_OK;
-        goto done;
+        return STARG_OK;
     }
-    STARG_TRY(status);
+    TRY(status);
     *time_limited = guards->time_limited;
-    STARG_TRY(take_guards(s, guards->positions, guards->count, most));
-done:
-    starg_guards_free(s->context, guards);
-    starg_solid_free(solid);
-    starg_mesh_free(surface);
-    return status;
+    return take_guards(s, guards->positions, guards->count, most);
 }
 
 /* ---- growth ---- */
