@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 
 # A folder, and the public headers that it implements; star reads the pieces that verify checks.
 layers="core:bits,context,export,fields,ranks,status,version geometry:
-mesh:check,mesh,repair,simplify,solid,space skeleton:skeleton visibility:visibility,kernel cover:cover
+mesh:check,mesh,repair,simplify,solid,space visibility:visibility,kernel skeleton:skeleton cover:cover
 guard:guard tetra:tetra sphere: star:decompose,verify verify:verify sample:sample
 export:animation,page,picture,scene shape:database,descriptor,shape morph:morph,solidmap"
 above=""

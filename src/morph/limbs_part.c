@@ -14,8 +14,8 @@
  *
  * So a piece is cut until all is star-shaped or resists, in several runs, of which that is taken
  * which leaves the least, with the fewest cuts; they differ in what star-shaped sides count, and in
- * whether the other solid's piece must remain star-shaped. What resists is divided anew if it has
- * become smaller, else joined with a piece beside it, and that is divided.
+ * whether the other solid's piece must remain star-shaped. What resists is divided anew if it is
+ * no more than half, else joined with a piece beside it, and that is divided.
  *
  * Invariant: that of limbs_cut.c, but fans are not flat. */
 #include <stdlib.h>
@@ -28,7 +28,7 @@ enum { PROPOSED = 16 };              /* sets by which a star-shaped piece can be
 enum { RUNS = 8, CUTS_MOST = 250 };  /* for a piece; in a run */
 enum { TRIED = 96 };                 /* cuts after which there is no further run */
 enum { IDLE = 8 };                   /* cuts after which a piece is no smaller: it resists */
-static const double REST_MOST = 0.9; /* of a piece's faces may resist, and are divided anew */
+static const double REST_MOST = 0.5; /* of a piece's faces may resist, and are divided anew */
 /* What two star-shaped sides count, beside shares that are seen: in every other run. */
 static const double STAR[2] = {0.1, 0.5};
 

@@ -9,6 +9,8 @@
  * involved. Conforming may fail at very thin cracks and fins; then the strategy whose components
  * and loops are closest to those of the surface is used. Excess ones are cut and counted as mended.
  *
+ * Parts of a solid that touch each other have a skeleton each.
+ *
  * Cost: O(n log n) in practice for n samples, per strategy that loses faces. */
 #include "skeleton/skeleton.h"
 #include "core/fields.h"
@@ -16,10 +18,11 @@
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "skeleton/edge_table.h"
+#include "visibility/kernel.h"
 
 static const char STAGE[] = "skeleton";
 
-enum { LEAST_SAMPLES = 4000, MAX_MENDS = 600, MAX_NODES = 10000000 };
+enum { LEAST_SAMPLES = 4000, LEAST_OF_PARTS = 500, MAX_MENDS = 600, MAX_NODES = 10000000 };
 
 /* Result of one strategy of conforming. */
 typedef struct attempt {
@@ -109,14 +112,14 @@ static size_t count_faults(const starg_check *check, const attempt *a) {
            (a->loops < loops ? MISSING * (loops - a->loops) : a->loops - loops);
 }
 
-static starg_status find_best(starg_context *context, const starg_solid *solid, bool moved,
-                              attempt *best) {
+static starg_status find_best(starg_context *context, const starg_solid *solid, size_t wanted,
+                              bool moved, attempt *best) {
     starg_status status = STARG_OK;
     attempt a = {0};
     surface_samples samples = {0};
     conformed results[CONFORM_RESULTS] = {0};
     size_t count;
-    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, moved, &samples));
+    STARG_TRY(samples_create(context, solid, wanted, moved, &samples));
     STARG_TRY(conform_samples(context, &samples, results, &count));
     if (moved && results[0].lost > 0)
         goto done;
@@ -161,13 +164,14 @@ static starg_status repair_topology(starg_context *context, const starg_solid *s
     return STARG_OK;
 }
 
-static starg_status find_graph(starg_context *context, const starg_solid *solid, attempt *a) {
+static starg_status find_graph(starg_context *context, const starg_solid *solid, size_t samples,
+                               attempt *a) {
     if (solid->check->embedded)
-        TRY(find_best(context, solid, true, a));
+        TRY(find_best(context, solid, samples, true, a));
     if (a->complex == NULL || count_faults(solid->check, a) > 0 ||
         a->eroded.cut_count > solid->check->cavities) { /* too thin for samples that are moved */
         attempt_free(a);
-        TRY(find_best(context, solid, false, a));
+        TRY(find_best(context, solid, samples, false, a));
     }
     if (a->complex->node_count == 0)
         TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
@@ -252,29 +256,139 @@ static const starg_fields OPTIONS_TABLE = {
     .name = "skeleton options", .size = sizeof(starg_skeleton_options), FIELD_ROWS(OPTIONS)};
 OPTIONS_BY(OPTIONS_TABLE, starg_skeleton_options)
 
-starg_status starg_skeleton_create(starg_context *context, const starg_solid *solid,
-                                   const starg_skeleton_options *options, starg_skeleton **out) {
-    starg_skeleton_options defaults;
+/* The skeleton of a solid as a whole, from at least so many samples. */
+static starg_status create(starg_context *context, const starg_solid *solid,
+                           const starg_skeleton_options *options, size_t samples,
+                           starg_skeleton **out) {
     SCOPED_BY(starg_skeleton_drop) starg_skeleton *skeleton = NULL;
     SCOPED_BY(attempt_free) attempt a = {0};
     SCOPED_BY(graph_free) curve_graph graph = {0};
     SCOPED_BY(prune_free) pruned_graph pruned = {0};
-    *out = NULL;
-    starg_skeleton_options_default(&defaults);
-    options = options != NULL ? options : &defaults;
-    TIME_RULE(context, STARG_TIME_FAILS);
-    TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     NEW_ZERO(context, STAGE, skeleton, 1);
-    TRY(find_graph(context, solid, &a));
+    TRY(find_graph(context, solid, samples, &a));
     TRY(graph_create(context, a.complex->node_count, a.complex->links, a.eroded.link_left,
                      a.complex->link_count, &graph));
     TRY(prune_graph(context, solid, a.complex, &graph, a.node_left, a.eroded.values, options->prune,
                     a.spacing, &pruned));
     TRY(curve_create(context, solid, a.complex, &graph, &pruned, options->node_count, skeleton));
     TRY(describe(context, solid, &a, skeleton));
-    tell(context, solid, skeleton);
     *out = skeleton;
     skeleton = NULL;
+    return STARG_OK;
+}
+
+/* ---- parts that touch ---- */
+
+/* Samples of a surface that touches itself coincide, so that parts grow together, or are lost: each
+ * part has a skeleton of its own then. */
+typedef struct skeleton_parts {
+    starg_context *context;
+    const starg_solid *solid;
+    const starg_skeleton_options *options;
+    solid_parts parts;
+    STARG_ARRAY(double) positions, radii;
+    STARG_ARRAY(uint32_t) edges;
+    uint32_t *vertex_nodes;
+    STARG_ARRAY(uint32_t) vertices; /* of a part: the solid's; its faces, x 3, in these */
+    STARG_ARRAY(uint32_t) faces;
+    STARG_ARRAY(double) places; /* x 3 */
+    uint32_t *numbers;          /* per vertex of the solid: in a part */
+} skeleton_parts;
+
+static void free_parts(skeleton_parts *s) {
+    solid_parts_free(&s->parts);
+    RELEASE(s->positions.data, s->radii.data, s->edges.data, s->vertex_nodes, s->vertices.data,
+            s->faces.data, s->places.data, s->numbers);
+}
+
+static starg_status make_part(skeleton_parts *s, uint32_t part, starg_solid **out) {
+    SCOPED_BY(starg_mesh_drop) starg_mesh *own = NULL;
+    const starg_mesh *mesh = s->solid->mesh;
+    s->vertices.count = s->faces.count = s->places.count = 0;
+    memset(s->numbers, 0xff, mesh->vertex_count * sizeof *s->numbers);
+    for (size_t i = 0; i < 3 * mesh->face_count; i++) {
+        const uint32_t v = mesh->faces[i];
+        if (s->parts.of[i / 3] != part)
+            continue;
+        if (s->numbers[v] == UINT32_MAX) {
+            s->numbers[v] = (uint32_t)s->vertices.count;
+            PUSH(s->context, STAGE, &s->vertices, v);
+            for (size_t k = 0; k < 3; k++)
+                PUSH(s->context, STAGE, &s->places, mesh->vertices[3 * (size_t)v + k]);
+        }
+        PUSH(s->context, STAGE, &s->faces, s->numbers[v]);
+    }
+    TRY(starg_mesh_create(s->context, s->places.data, s->vertices.count, s->faces.data,
+                          s->faces.count / 3, &own));
+    return solid_make(s->context, own, out);
+}
+
+static starg_status add_part(skeleton_parts *s, uint32_t part, starg_skeleton *sums) {
+    SCOPED_BY(starg_solid_drop) starg_solid *solid = NULL;
+    SCOPED_BY(starg_skeleton_drop) starg_skeleton *own = NULL;
+    starg_skeleton_options options = *s->options;
+    const size_t count = s->parts.count, first = s->radii.count;
+    TRY(make_part(s, part, &solid));
+    const double share = solid->check->area / s->solid->check->area;
+    options.node_count = 1 + (size_t)(share * (double)options.node_count);
+    TRY(create(s->context, solid, &options, LEAST_OF_PARTS + LEAST_SAMPLES / count, &own));
+    for (size_t i = 0; i < own->node_count; i++) {
+        PUSH(s->context, STAGE, &s->radii, own->radii[i]);
+        for (size_t k = 0; k < 3; k++)
+            PUSH(s->context, STAGE, &s->positions, own->positions[3 * i + k]);
+    }
+    for (size_t i = 0; i < 2 * own->edge_count; i++)
+        PUSH(s->context, STAGE, &s->edges, (uint32_t)first + own->edges[i]);
+    for (size_t v = 0; v < s->vertices.count; v++)
+        s->vertex_nodes[s->vertices.data[v]] = (uint32_t)first + own->vertex_nodes[v];
+    sums->components += own->components;
+    sums->loops += own->loops;
+    sums->joints += own->joints;
+    sums->ends += own->ends;
+    sums->cuts += own->cuts;
+    sums->mends += own->mends;
+    sums->homotopic = sums->homotopic && own->homotopic;
+    return STARG_OK;
+}
+
+static starg_status create_by_parts(skeleton_parts *s, starg_skeleton **out) {
+    SCOPED_BY(starg_skeleton_drop) starg_skeleton *sums = NULL;
+    const size_t vertices = s->solid->mesh->vertex_count;
+    NEW_ZERO(s->context, STAGE, sums, 1);
+    NEW_ZERO(s->context, STAGE, s->vertex_nodes, vertices);
+    NEW(s->context, STAGE, s->numbers, vertices);
+    sums->homotopic = true;
+    for (uint32_t part = 0; part < s->parts.count; part++)
+        TRY(add_part(s, part, sums));
+    sums->node_count = s->radii.count;
+    sums->edge_count = s->edges.count / 2;
+    sums->vertex_count = vertices;
+    sums->positions = s->positions.data;
+    sums->radii = s->radii.data;
+    sums->edges = s->edges.data;
+    sums->vertex_nodes = s->vertex_nodes;
+    s->positions.data = s->radii.data = NULL;
+    s->edges.data = s->vertex_nodes = NULL;
+    *out = sums;
+    sums = NULL;
+    return STARG_OK;
+}
+
+starg_status starg_skeleton_create(starg_context *context, const starg_solid *solid,
+                                   const starg_skeleton_options *options, starg_skeleton **out) {
+    starg_skeleton_options defaults;
+    starg_skeleton_options_default(&defaults);
+    options = options != NULL ? options : &defaults;
+    SCOPED_BY(free_parts)
+    skeleton_parts by = {.context = context, .solid = solid, .options = options};
+    *out = NULL;
+    TIME_RULE(context, STARG_TIME_FAILS);
+    TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
+    if (!solid->check->embedded)
+        TRY(solid_parts_find(context, solid, &by.parts));
+    TRY(by.parts.count > 1 ? create_by_parts(&by, out)
+                           : create(context, solid, options, LEAST_SAMPLES, out));
+    tell(context, solid, *out);
     return STARG_OK;
 }
 

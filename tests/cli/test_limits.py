@@ -151,7 +151,7 @@ class TimeLimits(support.Case):
                  ["db", "add", "shapes.db", "horse.off", "cat.off", "maze.off"]]
         self.run_text("db", "create", "shapes.db")
         for words in cases:
-            for seconds in (1, 3) if LONG else (1,):
+            for seconds in (1, 3) if LONG else (0.5,):
                 with self.subTest(words=words, seconds=seconds):
                     self.spend(seconds, *words)
 

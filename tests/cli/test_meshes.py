@@ -116,6 +116,21 @@ class Details(Case):
                     self.run_text("verify", file, "p.vtk", "p.json")
 
 
+class Touching(Case):
+    def test_skeletons(self):
+        """Cubes that touch in edges and corners, with a bar among them: each has a skeleton of its own."""
+        cells = [(x, y, z) for x in range(3) for y in range(3) for z in range(3) if (x + y + z) % 2 == 0]
+        given = [(cell, (1, 1, 1), False) for cell in cells] + [((3, 3, 0), (9, 1, 1), False)]
+        self.write("in.off", off(*boxes(*given)))
+        report = self.run_json("skeleton", "in.off", "-o", "s.obj", "--nodes", "100")
+        self.assertEqual((report["components"], report["loops"], report["ends"]), (15, 0, 2))
+        self.assertEqual([line for line in report["log"] if line["level"] == "warning"], [])
+        nodes = [tuple(map(float, line.split()[1:])) for line in self.read("s.obj").decode().split("\n")
+                 if line.startswith("v ")]
+        for lower, sides, _ in given:
+            self.assertTrue(any(all(lower[k] < p[k] < lower[k] + sides[k] for k in range(3)) for p in nodes), lower)
+
+
 class Scenes(Case):
     """Scenes by starguard-import, and what happens without it or with broken files."""
 

@@ -80,7 +80,7 @@ class StarMaps(Case):
 
     def test_pieces_begun_anew(self):
         """Solids that no point sees, of which parts resist the first cuts and are cut anew."""
-        for seed in (57, 84, 89):
+        for seed in (57, 84, 89) if LONG else (84, 89):
             rng = random.Random(seed)
             for name in "ab":
                 star_solids.write(self.path(f"{name}.off"), star_solids.random_ball(rng)[1])

@@ -88,7 +88,7 @@ static void test_refined_crossing(void **state) {
     test_ok(context, starg_solid_create(context, mesh, &solid));
     starg_guard_options_default(&options);
     options.candidates = STARG_CANDIDATES_INTERIOR;
-    options.refine_lines = test_size(500000, 1000000);
+    options.refine_lines = test_size(250000, 1000000);
     test_ok(context, starg_guard(context, solid, &options, &guards));
     test_verified(context, "cat_08, refined", mesh, guards);
     assert_int_equal(guards->coverable_faces + guards->uncovered_count, guards->face_count);

@@ -308,7 +308,7 @@ static void release(void *user, void *block) {
 
 /* Allocations at even distances fail, one at a time: that is the status, and nothing is left. */
 static void test_memory(void **state) {
-    size_t all = 0, times = test_size(6, 100);
+    size_t all = 0, times = test_size(3, 100);
     (void)state;
     for (size_t i = 0; i <= times; i++) { /* the first time none fails */
         starg_context_options options;
