@@ -161,7 +161,7 @@ static starg_status fail_unknown(starg_context *context, const starg_face_values
                       "no file, and no group, object, material or property of faces in '%.200s', "
                       "is called '%.100s'%s%s",
                       path, values->pattern,
-                      any ? "; there are " : "; it names no faces: give a file of face numbers",
+                      any ? "; there are " : "; the model names no faces: give a file",
                       values->others);
 }
 

@@ -217,31 +217,25 @@ static starg_status decompose_filled(starg_context *context, const starg_solid *
     return STARG_OK;
 }
 
-/* What is known without a search: each part of the solid needs a piece, and two if its kernel has
- * no interior. */
-static starg_status bound_by_parts(starg_context *context, const starg_solid *solid,
-                                   starg_decomposition *d) {
-    SCOPED_BY(solid_parts_free) solid_parts parts = {0};
-    TRY(solid_parts_find(context, solid, &parts));
-    TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
-    d->optimal = d->lower_bound == d->piece_count;
-    return STARG_OK;
-}
-
-/* Nothing but the surface is needed where that bounds the solid as it is; else *out stays NULL. */
+/* Nothing but the surface is needed where that bounds the solid as it is; else *out stays NULL.
+ * Each part of the solid needs a piece, and two if its kernel has no interior. */
 static starg_status decompose_surface(starg_context *context, const starg_solid *solid,
                                       const starg_decompose_options *options,
                                       starg_decomposition **out) {
     SCOPED uint32_t *faces = NULL;
+    SCOPED_BY(solid_parts_free) solid_parts parts = {0};
     TRY(touching_weld(context, solid, &faces));
     if (faces == NULL)
         return STARG_OK;
     const kernel_faces surface = {solid->mesh->vertices, faces, solid->mesh->face_count};
-    TRY(certified_decompose_surface(context, &surface, options, out));
-    if (*out != NULL) {
-        (*out)->flattest_given = -1;
-        TRY(bound_by_parts(context, solid, *out));
-    }
+    TRY(solid_parts_find(context, solid, &parts));
+    TRY(certified_decompose_surface(context, &surface, &parts, options, out));
+    if (*out == NULL)
+        return STARG_OK;
+    starg_decomposition *d = *out;
+    d->flattest_given = -1;
+    TRY(solid_parts_bound(context, solid, &parts, NULL, 1, true, &d->lower_bound));
+    d->optimal = d->lower_bound == d->piece_count;
     return STARG_OK;
 }
 

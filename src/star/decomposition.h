@@ -92,9 +92,11 @@ starg_status paper_decompose(starg_context *context, const starg_tetmesh *mesh,
 /* ---- strict decomposition: every piece is proven star-shaped (certified/certified.c) ---- */
 
 /* From the surface alone, which faces outward and meets itself in common vertices and edges at
- * most. *out is NULL when roundings have spoilt all cuts of some piece. Errors: MEMORY, CANCELLED.
+ * most, and what is known of its parts, which are cut one by one. *out is NULL when roundings have
+ * spoilt all cuts of some piece. Errors: MEMORY, CANCELLED.
  */
 starg_status certified_decompose_surface(starg_context *context, const kernel_faces *surface,
+                                         const solid_parts *parts,
                                          const starg_decompose_options *options,
                                          starg_decomposition **out);
 

@@ -117,8 +117,9 @@ class Details(Case):
 
 
 class Touching(Case):
-    def test_skeletons(self):
-        """Cubes that touch in edges and corners, with a bar among them: each has a skeleton of its own."""
+    """Cubes that touch in edges and corners, with a bar among them: each has a skeleton and a piece of its own."""
+
+    def test_parts(self):
         cells = [(x, y, z) for x in range(3) for y in range(3) for z in range(3) if (x + y + z) % 2 == 0]
         given = [(cell, (1, 1, 1), False) for cell in cells] + [((3, 3, 0), (9, 1, 1), False)]
         self.write("in.off", off(*boxes(*given)))
@@ -127,6 +128,10 @@ class Touching(Case):
         self.assertEqual([line for line in report["log"] if line["level"] == "warning"], [])
         nodes = [tuple(map(float, line.split()[1:])) for line in self.read("s.obj").decode().split("\n")
                  if line.startswith("v ")]
+        pieces = self.run_json("decompose", "in.off", "-o", "p.vtk", "--report", "p.json")
+        self.assertEqual((len(pieces["pieces"]), pieces["optimal"], pieces["surface"]), (15, True, "kept"))
+        self.assertLess(pieces["counted_work"], 1000)
+        self.run_text("verify", "in.off", "p.vtk", "p.json")
         for lower, sides, _ in given:
             self.assertTrue(any(all(lower[k] < p[k] < lower[k] + sides[k] for k in range(3)) for p in nodes), lower)
 

@@ -397,7 +397,7 @@ static void test_large(void **state) {
     const kernel_faces surface = {starg_mesh_vertices(mesh), starg_mesh_faces(mesh),
                                   starg_mesh_face_count(mesh)};
     partition p;
-    test_ok(context, partition_create_from_surface(context, &surface, &p));
+    test_ok(context, partition_create_from_surface(context, &surface, NULL, &p));
     assert_true(surface.count > 25000);
     assert_true(start(&p, EVALUATIONS, false));
     assert_in_range(p.pieces.count, 2, 8);

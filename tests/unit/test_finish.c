@@ -192,7 +192,7 @@ static partition cut_sample(starg_context *context, const char *name, partition 
     const bsp_options options = {.to_the_end = true};
     bsp_report report;
     partition p;
-    test_ok(context, partition_create_from_surface(context, &surface, &p));
+    test_ok(context, partition_create_from_surface(context, &surface, NULL, &p));
     *first = partition_oracle_copy(&p);
     test_ok(context, bsp_start(&p, &options, &report));
     assert_true(report.done);

@@ -99,7 +99,7 @@ static void test_create_from_surface(void **state) {
         const kernel_faces surface = {starg_mesh_vertices(mesh), starg_mesh_faces(mesh),
                                       starg_mesh_face_count(mesh)};
         partition p;
-        test_ok(context, partition_create_from_surface(context, &surface, &p));
+        test_ok(context, partition_create_from_surface(context, &surface, NULL, &p));
         partition_oracle_check(&p);
         assert_int_equal(p.pieces.count, 1);
         assert_int_equal(p.facets.count, surface.count);

@@ -174,7 +174,12 @@ static starg_status fail_empty(repair_state *state) {
     if (state->input->face_count == 0)
         return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
                           "the mesh has no faces: there is nothing to repair");
-    double distance;
+    double distance = state->options.merge_distance;
+    if (distance > 0)
+        return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
+                          "nothing is left that encloses volume once vertices nearer than %g of "
+                          "the diagonal are merged; give a smaller --merge-distance, or none",
+                          distance);
     TRY(repair_suggest(state, &distance));
     if (distance > 0)
         return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,

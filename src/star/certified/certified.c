@@ -68,9 +68,10 @@ static starg_status finish(const partition *p, starg_decomposition **out) {
 
 /* ---- starts ---- */
 
-/* One of the two is NULL. */
+/* A surface, or tetrahedra. */
 typedef struct model {
     const kernel_faces *surface;
+    const solid_parts *parts; /* of the surface */
     const starg_tetmesh *mesh;
 } model;
 
@@ -87,7 +88,7 @@ static starg_status make_one_piece(const model *m, partition *p) {
     static const double nowhere[3] = {0, 0, 0};
     SCOPED uint32_t *labels = NULL;
     if (m->surface != NULL)
-        return partition_create_from_surface(p->context, m->surface, p);
+        return partition_create_from_surface(p->context, m->surface, m->parts, p);
     NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(m->mesh));
     return partition_create(p->context, m->mesh, labels, nowhere, 1, p);
 }
@@ -310,9 +311,10 @@ static starg_status decompose(starg_context *context, model of,
 }
 
 starg_status certified_decompose_surface(starg_context *context, const kernel_faces *surface,
+                                         const solid_parts *parts,
                                          const starg_decompose_options *options,
                                          starg_decomposition **out) {
-    return decompose(context, (model){.surface = surface}, options, out);
+    return decompose(context, (model){.surface = surface, .parts = parts}, options, out);
 }
 
 starg_status certified_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,

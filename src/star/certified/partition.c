@@ -182,7 +182,7 @@ starg_status partition_sort_edges(starg_context *context, partition_edge *edges,
 /* ---- from a surface ---- */
 
 starg_status partition_create_from_surface(starg_context *context, const kernel_faces *surface,
-                                           partition *out) {
+                                           const solid_parts *parts, partition *out) {
     const uint32_t *faces = surface->faces;
     size_t vertex_count = 0, face_count = surface->count;
     const piece whole = {.stamp = 1};
@@ -196,11 +196,13 @@ starg_status partition_create_from_surface(starg_context *context, const kernel_
     for (size_t i = 0; i < 3 * face_count; i++)
         numbers[faces[i]] = 0;
     TRY(add_points(out, surface->vertices, vertex_count, numbers));
-    PUSH(context, PARTITION_STAGE, &out->pieces, whole);
+    for (size_t i = 0; i < (parts != NULL ? parts->count : 1); i++)
+        PUSH(context, PARTITION_STAGE, &out->pieces, whole);
     for (size_t f = 0; f < face_count; f++) {
         const uint32_t *own = faces + 3 * f;
         const uint32_t corners[3] = {numbers[own[0]], numbers[own[1]], numbers[own[2]]};
-        TRY(partition_add_facet(out, corners, 0, PARTITION_OUTSIDE));
+        const uint32_t part = parts != NULL ? parts->of[f] : 0;
+        TRY(partition_add_facet(out, corners, part, PARTITION_OUTSIDE));
     }
     out->first_planes = out->planes.count;
     return partition_build_index(out);

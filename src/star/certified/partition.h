@@ -88,9 +88,9 @@ int partition_exponent(const partition *p);
 void partition_to_unit(const partition *p, const double point[3], double out[3]);
 void partition_from_unit(const partition *p, const double unit[3], double out[3]);
 
-/* A closed surface as one piece, without a guard. Errors: MEMORY. */
+/* A closed surface as a piece for each of the parts (NULL: one), without guards. Errors: MEMORY. */
 starg_status partition_create_from_surface(starg_context *context, const kernel_faces *surface,
-                                           partition *out);
+                                           const solid_parts *parts, partition *out);
 
 /* The partition of a tetrahedral mesh by labels 0 to count - 1, whose guards (count x 3, in the
  * mesh's coordinates) see their pieces as the invariants say. Errors: MEMORY. */
