@@ -32,7 +32,8 @@ enum {
     EDGES = 32,
     EDGE_TURNS = 8,
     HURRY = 8,
-    SAMPLE = 12000 /* triangles */
+    SAMPLE = 12000, /* triangles */
+    ABREAST = 16    /* summed up before it is asked whether that is too much */
 };
 
 static const double FAIR_LEAST = 0.3, FAIR_MOST = 0.7, EDGE_GAIN = 0.97, EDGE_HOPE = 1.2,
@@ -59,8 +60,9 @@ typedef struct plane_search {
     const split_plane_options *options;
     starg_rng *rng;
     region_scratch *scratch;
-    double size;         /* diagonal of the box */
-    region_values areas; /* of triangles */
+    double size;            /* diagonal of the box */
+    region_values areas;    /* of triangles */
+    region_values reach[2]; /* scratch: of those that reach below a plane, or above, else 0 */
     STARG_ARRAY(unsigned char) row_is_missed;
     STARG_ARRAY(unsigned char) sides; /* scratch: of vertices */
     STARG_ARRAY(unsigned char) bins;  /* scratch: of triangles, lowest and highest */
@@ -71,8 +73,8 @@ typedef struct plane_search {
 } plane_search;
 
 static void plane_search_free(plane_search *d) {
-    RELEASE(d->areas.data, d->row_is_missed.data, d->sides.data, d->bins.data, d->missed.data,
-            d->places.data);
+    RELEASE(d->areas.data, d->reach[0].data, d->reach[1].data, d->row_is_missed.data, d->sides.data,
+            d->bins.data, d->missed.data, d->places.data);
 }
 
 static const double *corner(const plane_search *d, const region_triangle *t, int k) {
@@ -92,8 +94,10 @@ static starg_status measure(plane_search *d) {
         const region_triangle *t = &d->r->triangles.data[i];
         PUSH(d->context, PARTITION_STAGE, &d->areas,
              vec3_triangle_area(corner(d, t, 0), corner(d, t, 1), corner(d, t, 2)));
-        PUSH(d->context, PARTITION_STAGE, &d->bins, 0);
-        PUSH(d->context, PARTITION_STAGE, &d->bins, 0);
+        for (int k = 0; k < 2; k++) {
+            PUSH(d->context, PARTITION_STAGE, &d->reach[k], 0);
+            PUSH(d->context, PARTITION_STAGE, &d->bins, 0);
+        }
     }
     for (size_t i = 0; i < d->r->vertices.count / 3; i++)
         PUSH(d->context, PARTITION_STAGE, &d->sides, 0);
@@ -319,29 +323,38 @@ static void turn_best(plane_search *d) {
 
 /* ---- planes through edges ---- */
 
-/* What is cheapest of the places on each side of a plane. */
-static double cost_of_plane(plane_search *d, const double normal[3], double height) {
-    double cost[3] = {0, INFINITY, INFINITY};
+/* The areas of the triangles that reach below a plane, and above. */
+static void find_reach(plane_search *d, const double normal[3], double height) {
     for (size_t i = 0; i < d->sides.count; i++) {
         double above = vec3_dot(normal, d->r->vertices.data + 3 * i) - height;
         d->sides.data[i] = above < -1e-12 ? BELOW : above > 1e-12 ? ABOVE : 0;
     }
+    for (size_t i = 0; i < d->areas.count; i++) {
+        const uint32_t *c = d->r->triangles.data[i].corners;
+        const int on = d->sides.data[c[0]] | d->sides.data[c[1]] | d->sides.data[c[2]];
+        d->reach[0].data[i] = on & BELOW ? d->areas.data[i] : 0;
+        d->reach[1].data[i] = on & ABOVE ? d->areas.data[i] : 0;
+    }
+}
+
+/* What is cheapest of the places on each side of a plane. */
+static double cost_of_plane(plane_search *d, const double normal[3], double height) {
+    double cost[2] = {INFINITY, INFINITY};
+    find_reach(d, normal, height);
     d->scratch->work += d->sides.count + d->missed.count / 2;
     for (size_t i = 0; i < d->places.count; i++) {
         const place *p = &d->places.data[i];
+        const uint32_t *missed = d->missed.data + p->first;
         double above = vec3_dot(normal, p->at) - height, sum = 0;
-        int side = above < 0 ? BELOW : ABOVE;
+        const int side = above >= 0;
         if (fabs(above) < d->options->margin)
             continue;
-        for (size_t k = p->first; k < p->first + p->count && sum < cost[side]; k++) {
-            const uint32_t *c = d->r->triangles.data[d->missed.data[k]].corners;
-            const unsigned char *sides = d->sides.data;
-            if ((sides[c[0]] | sides[c[1]] | sides[c[2]]) & side)
-                sum += d->areas.data[d->missed.data[k]];
-        }
+        for (size_t k = 0; k < p->count && sum < cost[side];)
+            for (const size_t end = k + ABREAST; k < end && k < p->count; k++)
+                sum += d->reach[side].data[missed[k]];
         cost[side] = fmin(cost[side], sum);
     }
-    return cost[BELOW] + cost[ABOVE];
+    return cost[0] + cost[1];
 }
 
 /* Turned about its edge by a random angle. */
