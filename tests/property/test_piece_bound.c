@@ -288,7 +288,7 @@ static void test_samples(void **state) {
     (void)state;
     static const char *const names[] = {"l-room", "horse", "octopus"};
     work = test_size(WORK / 3, WORK);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < test_size(2, 3); i++) {
         starg_context *context = test_context(2);
         starg_solid *solid = test_sample(context, names[i], 500);
         proof p = prove(context, solid);

@@ -198,7 +198,8 @@ static void test_few_pieces(void **state) {
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
-    starg_mesh *a = test_pose(context, "torus", 0, 800), *b = test_pose(context, "torus", 1, 800);
+    starg_mesh *a = test_pose(context, "torus", 0, VERTICES),
+               *b = test_pose(context, "torus", 1, VERTICES);
     starg_solid_map *map;
     test_ok(context, starg_solid_map_create(context, a, starg_mesh_vertices(b), &QUICK, &map));
     print_message("%zu pieces\n", map->piece_count);
