@@ -86,7 +86,7 @@ void cover_mask_fill(uint64_t *mask, size_t count);
 /* ---- the solvers behind the public function (cover.c, block.c, partial.c) ---- */
 
 typedef struct cover_answer {
-    cover_names rows;
+    cover_names rows;   /* first, so that SCOPED releases it */
     size_t lower_bound; /* no fewer rows reach the same */
     uint64_t weight;    /* covered by the rows; set by cover_solve_limited */
 } cover_answer;

@@ -211,13 +211,13 @@ static void tell(starg_context *context, const starg_solid *solid, const starg_s
         return;
     if (skeleton->mends > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "the surface is too thin in places or intersects itself: the skeleton had %zu "
+                  "the surface is too thin in places, or meets itself: the skeleton had %zu "
                   "components and loops that the solid does not have, and they were removed",
                   skeleton->mends);
     if (!is_as_expected(check, skeleton->components, skeleton->loops))
         starg_log(context, STARG_LOG_WARNING,
                   "the skeleton has %zu components and %zu loops, the solid has %zu and %lld; its "
-                  "surface is too coarse, too thin or intersects itself",
+                  "surface is too coarse or too thin, or meets itself",
                   skeleton->components, skeleton->loops, check->components - check->cavities,
                   (long long)check->genus);
     else if (check->cavities > 0)
