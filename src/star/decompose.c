@@ -428,6 +428,11 @@ static starg_status decompose_proven(request *r, starg_decomposition **out) {
         own.guard_count = bound->count;
     }
     TRY(decompose_model(r, &own, out));
+    if (!(*out)->tetra.surface_kept)
+        return starg_fail(r->context, STARG_ERROR_MESH, STAGE,
+                          "the model has details too small for cuts, so that pieces only "
+                          "approximate it, of which nothing can be proven; merge them with "
+                          "'starguard repair --merge-distance 1e-9', or leave out the proof");
     if (r->certified || (*out)->lower_bound < bound->bound)
         (*out)->lower_bound = bound->bound;
     (*out)->optimal = (*out)->lower_bound == (*out)->piece_count;
