@@ -5,12 +5,12 @@
  * in corners, edges and parts of faces; one that crosses another, perhaps along edges alone, lies
  * in none.
  *
- * Method: winding numbers are counted along a vertical line, exactly, from points that are on no
- * other shell: just beside a corner, within a face (bvh_crossing_beside), unless a face of another
- * shell overlaps this one there (bvh_covers_beside). Shells without contacts are asked at one
- * point, others also at all corners of faces in contact: there a shell that crosses another along
- * edges has points on both sides. A shell that others cover lies in none. Which way a shell faces
- * is the sign of its volume, in integers if doubles do not tell.
+ * Method: winding numbers are counted along a vertical line, exactly, from points just beside a
+ * corner, within a face (bvh_crossing_beside), about all shells but those a face of which overlaps
+ * this one there (bvh_covers_beside). Shells without contacts are asked at one point, others also
+ * at all corners of faces in contact: there a shell that crosses another along edges has points on
+ * both sides. A shell does not lie in one that covers it all. Which way a shell faces is the sign
+ * of its volume, in integers if doubles do not tell.
  *
  * Cost: O(log n) a shell and a contact, if few shells lie around one. */
 #include "mesh/examine.h"
@@ -28,8 +28,10 @@ static const char STAGE[] = "check";
 /* What is known of another shell, about the one in question. */
 typedef struct other_shell {
     bool listed;
-    int winding; /* about the point */
-    int known;   /* about points before */
+    bool covers;    /* the point is on it */
+    size_t covered; /* points before that were on it */
+    int winding;    /* about the point */
+    int known;      /* about points before that were not on it */
 } other_shell;
 
 typedef struct nesting {
@@ -41,8 +43,8 @@ typedef struct nesting {
     uint32_t *list;
     size_t count;
     uint32_t own;
-    bool asked;                   /* a point has been asked before */
-    bool covered;                 /* the point is on another shell */
+    size_t asked;                 /* points before */
+    bool covered;                 /* so far each has been on another shell */
     const double *p[3];           /* the point: beside p[0], towards p[1], a little to p[2] */
     STARG_ARRAY(uint32_t) around; /* pairs: a cavity, and a shell that it lies in */
 } nesting;
@@ -62,12 +64,13 @@ static bool count_crossing(void *user, uint32_t triangle) {
         return true;
     other_shell *other = &n->others[name];
     int crossing = bvh_crossing_beside(n->tree, triangle, n->p);
-    if (!other->listed && crossing != 0) {
+    bool covers = bvh_covers_beside(n->tree, triangle, n->p) != 0;
+    if (!other->listed && (crossing != 0 || covers)) {
         other->listed = true;
         n->list[n->count++] = name;
     }
     other->winding += crossing;
-    n->covered = n->covered || bvh_covers_beside(n->tree, triangle, n->p) != 0;
+    other->covers = other->covers || covers;
     return true;
 }
 
@@ -77,16 +80,20 @@ static void ask(nesting *n, mesh_shell *shells, size_t face, size_t k) {
         n->p[i] = corner(n, face, k + i);
     const double *p = n->p[0];
     const bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
-    n->covered = false;
+    bool covered = false;
     bvh_query_box(n->tree, &line, count_crossing, n);
     for (size_t i = 0; i < n->count; i++) {
         other_shell *other = &n->others[n->list[i]];
-        if (n->asked && !n->covered && other->known != other->winding)
+        if (!other->covers && other->covered < n->asked && other->known != other->winding)
             shells[n->own].crossed = shells[n->list[i]].crossed = true;
-        other->known = n->covered ? other->known : other->winding;
+        other->known = other->covers ? other->known : other->winding;
+        other->covered += other->covers;
+        covered = covered || other->covers;
         other->winding = 0;
+        other->covers = false;
     }
-    n->asked = n->asked || !n->covered;
+    n->asked++;
+    n->covered = n->covered && covered;
 }
 
 /* Asks about all others, and forgets. */
@@ -94,9 +101,10 @@ static starg_status nest(starg_context *context, nesting *n, const uint32_t *fac
                          const uint8_t *touching, mesh_shell *shells) {
     mesh_shell *own = &shells[n->own];
     size_t listed = n->around.count;
-    n->asked = false;
-    for (size_t i = 0; i < count && !n->asked; i++)
-        for (size_t k = 0; k < 3 && !n->asked && has_area(n, faces[i]); k++)
+    n->asked = 0;
+    n->covered = true;
+    for (size_t i = 0; i < count && n->covered; i++)
+        for (size_t k = 0; k < 3 && n->covered && has_area(n, faces[i]); k++)
             ask(n, shells, faces[i], k);
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < 3 && touching[faces[i]] && has_area(n, faces[i]); k++)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes as people have them: voxel bodies with T-junctions, solids to be united, formats of scenes."""
 import io
+import itertools
 import json
 import os
 import random
@@ -134,6 +135,41 @@ class Touching(Case):
         self.run_text("verify", "in.off", "p.vtk", "p.json")
         for lower, sides, _ in given:
             self.assertTrue(any(all(lower[k] < p[k] < lower[k] + sides[k] for k in range(3)) for p in nodes), lower)
+
+
+class Flush(Case):
+    """Boxes that overlap, with sides in common planes: none lies in another, and all are one solid."""
+
+    def measure(self, given):
+        """The union's volume, by unit cells, is that of the pieces; no box is turned."""
+        self.write("in.off", off(*boxes(*((lower, sides, False) for lower, sides in given))))
+        report = self.run_json("decompose", "in.off", "-o", "p.vtk", "--effort", "quick")
+        cells = {cell for lower, sides in given
+                 for cell in itertools.product(*(range(lower[k], lower[k] + sides[k]) for k in range(3)))}
+        self.assertAlmostEqual(report["volume"], len(cells), delta=1e-9 * len(cells), msg=given)
+        self.assertFalse([line for line in report["log"] if "turned" in line["message"]], given)
+
+    def test_row(self):
+        """Each begins where the one before the last ends: the others cover all of its sides."""
+        self.measure([((i, 0, 0), (2, 2, 8)) for i in range(5)])
+
+    def test_random(self):
+        for seed in range(200 if LONG else 20):
+            rng = random.Random(seed)
+            full = [rng.random() < 0.7 for _ in range(3)]
+            full[rng.randrange(3)] = False
+            given = []
+            for _ in range(rng.randint(2, 8)):
+                ends = [(0, 6) if full[k] else sorted(rng.sample(range(7), 2)) for k in range(3)]
+                lower, sides = tuple(e[0] for e in ends), tuple(e[1] - e[0] for e in ends)
+                if not any(is_within(a, b) or is_within(b, a) for a, b in ((box, (lower, sides)) for box in given)):
+                    given.append((lower, sides))
+            self.measure(given)
+
+
+def is_within(a, b):
+    """Is a box, of (lower corner, sides), within another, and be it flush?"""
+    return all(b[0][k] <= a[0][k] and a[0][k] + a[1][k] <= b[0][k] + b[1][k] for k in range(3))
 
 
 class Scenes(Case):
