@@ -23,7 +23,7 @@
 #include "core/parallel.h"
 #include "core/streams.h"
 
-enum { BATCH = 24, UNION_MOST = APPLY_MOST };
+enum { BATCH = 16, UNION_MOST = APPLY_MOST };
 
 /* Of all work, that goes to each sort of trials whatever it saves. */
 static const double FLOOR = 0.03;
