@@ -6,6 +6,7 @@
  * they are divided. A part is cut along the edges of the triangle that is nearest to its centre, as
  * far as it lies beyond them, and else halved, until the corner farthest from all of the surface is
  * nearly as far as the bound (within its double, or the step), or the part is as small as the step.
+ * Where surfaces coincide, smaller parts are cut, too, but along edges only.
  * Feet of perpendiculars are found as points of the triangle, so that rounding where triangles are
  * slivers only raises distances.
  *
@@ -22,6 +23,7 @@ static const char STAGE[] = "pieces";
 
 enum { MOST = 10, DEEPEST = 64 }; /* corners, of twice as many as a part that is cut; cuts */
 
+static const double COINCIDENT = 1e-6; /* of the step: that near are surfaces that coincide */
 static const double DOUBT =
     0x1p-44; /* of the extent: what distances may be off that are computed */
 
@@ -162,13 +164,15 @@ static void cut_at_corners(const part *own, part halves[2]) {
     }
 }
 
-/* Cuts along the edge that leaves most on either side, if any does. */
-static void divide(const survey *s, const part *own, const double *const t[3], part halves[2]) {
+/* Cuts along the edge that leaves most on either side, if any does; else halves a large part.
+ * False: it does neither. */
+static bool divide(const survey *s, const part *own, const double *const t[3], bool large,
+                   part halves[2]) {
     double value[MOST], best[MOST], most = s->least;
     bool found = false;
     if (own->count > MOST / 2) {
         cut_at_corners(own, halves);
-        return;
+        return true;
     }
     for (int k = 0; k < 3; k++) {
         double extent = beyond_edge(own, t, k, value);
@@ -179,9 +183,12 @@ static void divide(const survey *s, const part *own, const double *const t[3], p
         for (int i = 0; i < own->count; i++)
             best[i] = value[i];
     }
+    if (!found && !large)
+        return false;
     if (!found)
         halve(own, best);
     cut(own, best, halves);
+    return true;
 }
 
 static void look_at(survey *s, part *own) {
@@ -202,13 +209,13 @@ static void look_at(survey *s, part *own) {
         return;
     for (int i = 0; i < own->count; i++)
         nearest = fmax(nearest, bvh_distance(s->to, own->corner[i]));
-    if (own->bound - nearest <= fmax(s->least, fmin(nearest, s->step)) || radius <= s->step / 2 ||
-        own->depth == DEEPEST) {
+    part halves[2];
+    const bool large = radius > s->step / 2, coincides = nearest <= COINCIDENT * s->step;
+    if (own->bound - nearest <= fmax(s->least, fmin(nearest, s->step)) || own->depth == DEEPEST ||
+        !(large || coincides) || !divide(s, own, t, large, halves)) {
         raise(s, own->bound);
         return;
     }
-    part halves[2];
-    divide(s, own, t, halves);
     look_at(s, &halves[0]);
     look_at(s, &halves[1]);
 }

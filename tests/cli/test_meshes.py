@@ -72,6 +72,14 @@ class Junctions(Case):
                 self.assertLess(max(result["distance"], result["distance_back"]), 1e-8 * size)
         self.assertGreater(open_, 4)
 
+    def test_seeds(self):
+        """Of small triangles on a face each bounds how far that is from them, whatever cuts there are."""
+        case = families.voxels(random.Random(3), 13, True)
+        families.write(self.path("in.off"), case.vertices, case.faces)
+        for seed in 24, 34, 60:
+            report = self.run_json("decompose", "in.off", "-o", "p.vtk", "--effort", "20", "--seed", str(seed))
+            self.assertLess(max(report["distance"], report["distance_back"]), 1e-6, seed)
+
     def test_far(self):
         """Far from the origin parts of faces, whose distances are bounded, are convex up to rounding only."""
         for seed, far in (13, 1e6), (126, 1e8):
