@@ -31,9 +31,6 @@ enum {
     FILL_ITEMS = 32,    /* parts in which the matrix is filled */
     FILL_LEAST = 50000, /* products; fewer take less long than to wake a thread */
     ABREAST = 4,        /* columns of the factor */
-    FACTOR_BLOCK = 96,  /* rows of it that are found side by side, some in each item */
-    FACTOR_ROWS = 6,
-    FACTOR_LEAST = 128, /* columns; fewer take less long than to wake a thread */
     WIDTH = 8           /* sums of each, for vector instructions */
 };
 
@@ -54,7 +51,6 @@ typedef struct program {
     double *w, *t, *dw, *dt, *rw; /* by witness */
     double *matrix;               /* m x m; only the lower half is used */
     size_t *first;                /* by matrix row: its first nonzero column */
-    size_t block;                 /* first row of those whose factor is being found */
     uint64_t work;
 } program;
 
@@ -331,65 +327,33 @@ static void multiply_rows(const double *restrict row, const double *const others
     }
 }
 
-/* Entries of row i of the Cholesky factor L, ABREAST columns from j on, up to the diagonal. False:
+/* Overwrites the lower half by the Cholesky factor L, ABREAST columns of a row at a time. False:
  * rounding has made the matrix indefinite. */
-static bool factor_entries(const program *p, size_t i, size_t j) {
-    const size_t end = j + ABREAST <= i ? j + ABREAST : i + 1;
-    const double *others[ABREAST];
-    double sums[ABREAST], *row = p->matrix + i * p->m;
-    for (size_t q = 0; q < ABREAST; q++)
-        others[q] = j + q < end ? p->matrix + (j + q) * p->m : row;
-    multiply_rows(row, others, p->first[i], j, sums);
-    for (size_t c = j; c < end; c++) {
-        double left = row[c] - sums[c - j];
-        for (size_t k = j; k < c; k++)
-            left -= row[k] * others[c - j][k];
-        if (c < i)
-            row[c] = left / others[c - j][c];
-        else if (!(left > 0))
-            return false;
-        else
-            row[i] = sqrt(left);
+static bool factor(program *p) {
+    const size_t m = p->m;
+    for (size_t i = 0; i < m; i++) {
+        double *row = p->matrix + i * m;
+        for (size_t j = p->first[i] / ABREAST * ABREAST; j <= i; j += ABREAST) {
+            const size_t end = j + ABREAST <= i ? j + ABREAST : i + 1;
+            const double *others[ABREAST];
+            double sums[ABREAST];
+            for (size_t q = 0; q < ABREAST; q++)
+                others[q] = j + q < end ? p->matrix + (j + q) * m : row;
+            multiply_rows(row, others, p->first[i], j, sums);
+            for (size_t c = j; c < end; c++) {
+                double left = row[c] - sums[c - j];
+                for (size_t k = j; k < c; k++)
+                    left -= row[k] * others[c - j][k];
+                if (c < i)
+                    row[c] = left / others[c - j][c];
+                else if (!(left > 0))
+                    return false;
+                else
+                    row[i] = sqrt(left);
+            }
+        }
     }
     return true;
-}
-
-static size_t first_entries(const program *p, size_t i) {
-    return p->first[i] / ABREAST * ABREAST;
-}
-
-/* Some rows of a block, over the columns before it: those of rows that are done. */
-static starg_status factor_rows(starg_context *context, void *shared, void *scratch, size_t item) {
-    const program *p = shared;
-    const size_t from = p->block + item * FACTOR_ROWS;
-    (void)context;
-    (void)scratch;
-    for (size_t j = 0; j < p->block; j += ABREAST)
-        for (size_t i = from; i < from + FACTOR_ROWS && i < p->m; i++)
-            if (j >= first_entries(p, i))
-                factor_entries(p, i, j);
-    return STARG_OK;
-}
-
-/* Overwrites the lower half by L, a block of rows at a time. */
-static starg_status factor(program *p, bool *made) {
-    const starg_parallel_loop loop = {.stage = STAGE,
-                                      .count = FACTOR_BLOCK / FACTOR_ROWS,
-                                      .shared = p,
-                                      .item = factor_rows,
-                                      .silent = true};
-    *made = true;
-    for (p->block = 0; p->block < p->m && *made; p->block += FACTOR_BLOCK) {
-        if (p->block >= FACTOR_LEAST)
-            TRY(starg_parallel_for(p->context, &loop));
-        else
-            for (size_t item = 0; item < loop.count; item++)
-                factor_rows(p->context, p, NULL, item);
-        for (size_t i = p->block; i < p->block + FACTOR_BLOCK && i < p->m && *made; i++)
-            for (size_t j = first_entries(p, i); j <= i && *made; j += ABREAST)
-                *made = j < p->block || factor_entries(p, i, j);
-    }
-    return STARG_OK;
 }
 
 static void solve(const program *p, double *v) {
@@ -453,7 +417,7 @@ static void move(double *v, const double *dv, double a, size_t count) {
 
 static starg_status step(program *p, double gap, bool *made) {
     TRY(fill_matrix(p));
-    TRY(factor(p, made));
+    *made = factor(p);
     if (!*made)
         return STARG_OK;
     aim(p, 0, 0);

@@ -40,9 +40,8 @@ static void normal_of(const double p[4][3], int i, double out[3]) {
     vec3_cross(u, v, out);
 }
 
-/* Sine and cosine of the smallest dihedral angle, times some length. */
-static void find_smallest(const double p[4][3], double least[2]) {
-    double normal[4][3];
+double angles_smallest(const double p[4][3]) {
+    double normal[4][3], least[2] = {0, 0}; /* a sine and a cosine, times some length */
     double determinant = vec3_triple(p[1], p[2], p[3]);
     for (int i = 0; i < 4; i++)
         normal_of(p, i, normal[i]);
@@ -57,26 +56,13 @@ static void find_smallest(const double p[4][3], double least[2]) {
                 least[1] = cosine;
             }
         }
-}
-
-static double angle_of(const double sine_cosine[2]) {
-    return DEGREES * atan2(sine_cosine[0], sine_cosine[1]);
-}
-
-double angles_lack(const double p[4][3], double wanted) {
-    double least[2];
-    find_smallest(p, least);
-    /* Nearly always: the tangent of the angle exceeds that of the one wanted. */
-    if (least[0] >= 1.01 * wanted / DEGREES * least[1])
-        return 0;
-    return fmax(0, 1 - angle_of(least) / wanted);
+    return DEGREES * atan2(least[0], least[1]);
 }
 
 static double smallest_dihedral(const starg_tetmesh *mesh, size_t tetrahedron, int exponent) {
-    double p[4][3], least[2];
+    double p[4][3];
     gather(mesh, tetrahedron, exponent, p);
-    find_smallest((const double(*)[3])p, least);
-    return angle_of(least);
+    return angles_smallest((const double(*)[3])p);
 }
 
 static int ascending(const void *a, const void *b) {

@@ -60,9 +60,8 @@ bool tet_sight_is_free(const tet_sight *sight, const double p[3], const double q
 
 /* ---- how good the tetrahedra of a decomposition are (angles.c) ---- */
 
-/* What the smallest dihedral angle of a tetrahedron, the first corner of which is the origin, is
- * short of the one wanted, at most 9 degrees: max(0, 1 - angle / wanted). */
-double angles_lack(const double corners[4][3], double wanted);
+/* The smallest dihedral angle of a tetrahedron, in degrees. The first corner is the origin. */
+double angles_smallest(const double corners[4][3]);
 
 /* Sets smallest_angle and median_angle. Errors: MEMORY. */
 starg_status angles_measure(starg_context *context, starg_decomposition *d);

@@ -73,7 +73,7 @@ class Junctions(Case):
         self.assertGreater(open_, 4)
 
     def test_seeds(self):
-        """Of small triangles on a face each bounds how far that is from them, whatever cuts there are."""
+        """A face is as far from the small triangles that lie on it as rounding makes it, whatever the cuts."""
         case = families.voxels(random.Random(3), 13, True)
         families.write(self.path("in.off"), case.vertices, case.faces)
         for seed in 24, 34, 60:
@@ -145,6 +145,11 @@ class Touching(Case):
             self.assertTrue(any(all(lower[k] < p[k] < lower[k] + sides[k] for k in range(3)) for p in nodes), lower)
 
 
+def is_within(a, b):
+    """Is a box, of (lower corner, sides), within another, flush or not?"""
+    return all(b[0][k] <= a[0][k] and a[0][k] + a[1][k] <= b[0][k] + b[1][k] for k in range(3))
+
+
 class Flush(Case):
     """Boxes that overlap, with sides in common planes: none lies in another, and all are one solid."""
 
@@ -170,14 +175,10 @@ class Flush(Case):
             for _ in range(rng.randint(2, 8)):
                 ends = [(0, 6) if full[k] else sorted(rng.sample(range(7), 2)) for k in range(3)]
                 lower, sides = tuple(e[0] for e in ends), tuple(e[1] - e[0] for e in ends)
-                if not any(is_within(a, b) or is_within(b, a) for a, b in ((box, (lower, sides)) for box in given)):
-                    given.append((lower, sides))
+                fresh = (lower, sides)
+                if not any(is_within(box, fresh) or is_within(fresh, box) for box in given):
+                    given.append(fresh)
             self.measure(given)
-
-
-def is_within(a, b):
-    """Is a box, of (lower corner, sides), within another, and be it flush?"""
-    return all(b[0][k] <= a[0][k] and a[0][k] + a[1][k] <= b[0][k] + b[1][k] for k in range(3))
 
 
 class Scenes(Case):

@@ -56,23 +56,29 @@ static double lack_of_margin(const partition *p, uint32_t number, double diagona
     return WEIGHT * fmax(0, 1 - margin / FLATNESS_MARGIN);
 }
 
-double flatness_of_side(const partition *p, const facet *f, int side) {
-    uint32_t corners[3];
-    facet_outward(f, side, corners);
-    const double *guard = p->pieces.data[f->side[side]].guard,
-                 *origin = partition_point(p, corners[0]);
-    const double unit = ldexp(1, -partition_exponent(p));
+/* The smallest dihedral angle of the tetrahedron on a triangle of a piece, whose corners are
+ * counter-clockwise from outside; negative if its guard is not strictly inside. Degrees. */
+static double angle_over(const partition *p, uint32_t number, const uint32_t corners[3]) {
+    const double *guard = p->pieces.data[number].guard, *origin = partition_point(p, corners[0]);
     double place[4][3] = {{0}};
+    const int exponent = partition_exponent(p);
     if (orient3d(origin, partition_point(p, corners[1]), partition_point(p, corners[2]), guard) <=
         0)
-        return INFINITY;
+        return -1;
     for (int i = 1; i < 4; i++) {
         vec3_subtract(i == 3 ? guard : partition_point(p, corners[i]), origin, place[i]);
         for (int k = 0; k < 3; k++)
-            place[i][k] *= unit;
+            place[i][k] = ldexp(place[i][k], -exponent);
     }
-    const double lack = angles_lack((const double(*)[3])place, FLATNESS_ANGLE);
-    return lack * lack;
+    return angles_smallest((const double(*)[3])place);
+}
+
+double flatness_of_side(const partition *p, const facet *f, int side) {
+    uint32_t corners[3];
+    facet_outward(f, side, corners);
+    const double angle = angle_over(p, f->side[side], corners);
+    const double lack = fmax(0, 1 - angle / FLATNESS_ANGLE);
+    return angle < 0 ? INFINITY : lack * lack;
 }
 
 double flatness_of_facet(const partition *p, const facet *f) {
