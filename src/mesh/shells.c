@@ -39,6 +39,7 @@ typedef struct nesting {
     const mesh_topology *topology;
     const bvh *tree;
     int exponent;        /* starg_mesh_exponent */
+    bvh_box *boxes;      /* by shell */
     other_shell *others; /* by shell; all zero but for those in `list` */
     uint32_t *list;
     size_t count;
@@ -57,10 +58,13 @@ static bool has_area(const nesting *n, size_t face) {
     return !collinear(corner(n, face, 0), corner(n, face, 1), corner(n, face, 2));
 }
 
+/* Shells whose boxes do not hold the point have no winding number about it. */
 static bool count_crossing(void *user, uint32_t triangle) {
     nesting *n = user;
     uint32_t name = n->topology->component[triangle];
-    if (name == n->own)
+    const double *p = n->p[0];
+    const bvh_box point = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}};
+    if (name == n->own || !bvh_boxes_meet(&n->boxes[name], &point))
         return true;
     other_shell *other = &n->others[name];
     int crossing = bvh_crossing_beside(n->tree, triangle, n->p);
@@ -103,11 +107,9 @@ static starg_status nest(starg_context *context, nesting *n, const uint32_t *fac
     size_t listed = n->around.count;
     n->asked = 0;
     n->covered = true;
-    for (size_t i = 0; i < count && n->covered; i++)
-        for (size_t k = 0; k < 3 && n->covered && has_area(n, faces[i]); k++)
-            ask(n, shells, faces[i], k);
     for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < 3 && touching[faces[i]] && has_area(n, faces[i]); k++)
+        for (size_t k = 0; k < 3 && (touching[faces[i]] || n->covered) && has_area(n, faces[i]);
+             k++)
             ask(n, shells, faces[i], k);
     for (; n->count > 0; n->count--) {
         other_shell *other = &n->others[n->list[n->count - 1]];
@@ -137,6 +139,21 @@ static void find_innermost(const nesting *n, mesh_shell *shells) {
             (own->within == UINT32_MAX || shells[other].depth > shells[own->within].depth))
             own->within = other;
     }
+}
+
+static starg_status find_boxes(starg_context *context, nesting *n) {
+    const bvh_box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    NEW(context, STAGE, n->boxes, n->topology->component_count);
+    for (size_t c = 0; c < n->topology->component_count; c++)
+        n->boxes[c] = nothing;
+    for (size_t i = 0; i < 3 * n->mesh->face_count; i++) {
+        bvh_box *own = &n->boxes[n->topology->component[i / 3]];
+        for (size_t k = 0; k < 3; k++) {
+            own->lower[k] = fmin(own->lower[k], corner(n, i / 3, i % 3)[k]);
+            own->upper[k] = fmax(own->upper[k], corner(n, i / 3, i % 3)[k]);
+        }
+    }
+    return STARG_OK;
 }
 
 /* The faces shell by shell; those of shell c start at start[c]. */
@@ -199,6 +216,7 @@ starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
         .mesh = mesh, .topology = topology, .tree = tree, .exponent = starg_mesh_exponent(mesh)};
     size_t count = topology->component_count, *start = NULL;
     uint32_t *sorted = NULL;
+    STARG_TRY(find_boxes(context, &n));
     STARG_NEW_ZERO(context, STAGE, n.others, count);
     STARG_NEW(context, STAGE, n.list, count);
     STARG_NEW_ZERO(context, STAGE, start, count + 2);
@@ -219,6 +237,6 @@ starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
     }
     find_innermost(&n, shells);
 done:
-    RELEASE(n.around.data, n.others, n.list, start, sorted);
+    RELEASE(n.around.data, n.boxes, n.others, n.list, start, sorted);
     return status;
 }
